@@ -58,18 +58,31 @@ struct AxisFrame {
 
 AxisFrame frame_of(const Axis& axis);
 
-struct JoinedSherds {
-    Mesh mesh;
-    std::vector<Index> faces;                     ///< that are not of a break
-    std::vector<std::vector<Index>> of_fragment;  ///< the same, fragment by fragment
+/// A sherd on its way into the template.
+struct LaidSherd {
+    const Fragment* fragment = nullptr;
+    bool inside_out = false;  ///< its faces count the other way round
+    bool walls = true;        ///< it is closed, so that where its clay is can be told
+    Motion motion;            ///< to where its axis and height are those of all
 };
 
-JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vector<Motion>& motions);
+struct JoinedSherds {
+    Mesh mesh;
+    std::vector<std::vector<Index>> of_fragment;  ///< faces that are not of a break, sherd by sherd
+    [[nodiscard]] std::vector<Index> faces() const;
+};
 
-/// Each sherd's own axis is aligned with the mean of all: sherds put together by hand stand off each other by their joints. Fills
-/// in axis, sherds and notes of the template. The motions, one a sherd.
-std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
-                                RevolutionTemplate& result);
+/// The sherds for which `take` is true, moved; of the others no face.
+JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& take);
+
+/// The axis of all sherds that are not left out, and how each has to be moved so that its own is that: fills in axis, errors and
+/// sherds of the template, and the motions. Leaves out what tells nothing or contradicts the others. Throws Error (input) where
+/// no sherd is left.
+void find_common_axis(std::vector<LaidSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result);
+
+void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::string& remedy = {});
+/// Error (input) that names each sherd and why it is left out.
+[[noreturn]] void fail_all_left_out(const RevolutionTemplate& result);
 
 struct WallSection {
     detail::ProfileImage image;

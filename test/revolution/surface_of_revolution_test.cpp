@@ -150,11 +150,18 @@ TEST(RevolutionTemplate, RefusesWhatIsNoSurfaceOfRevolution) {
     CGAL::Euler::remove_face(open.mesh.halfedge(first), open.mesh);
     open.mesh.collect_garbage();
     EXPECT_THROW(template_of_revolution({&open}), Error);
-    // Two that do not lie as they did in one vessel.
+}
+
+TEST(RevolutionTemplate, OfTwoThatContradictEachOtherOneIsLeftOut) {
     Motion aside;
     aside.rotation = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
-    const Fragment a = sherd(0, 2, 0, 1, {}), b = sherd(2.2, 4, 0, 1, aside);
-    EXPECT_THROW(template_of_revolution({&a, &b}), Error);
+    const Fragment a = sherd(0, 2.5, 0, 1, {}), b = sherd(2.7, 4, 0, 1, aside);
+    const RevolutionTemplate revolved = template_of_revolution({&a, &b});
+    EXPECT_EQ(revolved.sherds[0].use, SherdUse::used);
+    EXPECT_EQ(revolved.sherds[1].use, SherdUse::left_out);
+    EXPECT_NE(revolved.sherds[1].reason.find("leans by 40"), std::string::npos) << revolved.sherds[1].reason;
+    EXPECT_FALSE(revolved.sherds[1].remedy.empty());
+    EXPECT_GT(std::abs(revolved.axis.direction.z()), 1 - 1e-5);
 }
 
 }  // namespace
