@@ -34,29 +34,48 @@ struct Layout {
     double missing;         ///< share of the sherds that were not found
 };
 
-/// How far the walls of the vessel are from the template, at most 5 % of the diagonal, only where some sherd lies.
-double profile_error(const Mesh& whole, const std::vector<Fragment>& truth, const std::vector<bool>& lies, const Mesh& made) {
-    const SurfaceSearch vessel(whole), surface(made);
+/// How far the walls of the vessel are from the template laid on it by its axis and height, at most 5 % of the diagonal, only at
+/// heights where some sherd lies.
+double profile_error(const Mesh& whole, const std::vector<Fragment>& truth, const std::vector<bool>& lies,
+                     RevolutionTemplate& made) {
+    const SurfaceSearch vessel(whole);
     const double diagonal = box_diagonal(whole);
-    double squares = 0, area = 0;
-    for (std::size_t k = 0; k < truth.size(); ++k) {
-        if (!lies[k]) continue;
-        const Mesh& mesh = truth[k].mesh;
-        for (const Face f : mesh.faces()) {
-            const Vector n = area_vector(mesh, f);
+    const Vector3d up = eigen(made.axis.direction);
+    Motion lay;
+    lay.rotation = Eigen::Quaterniond::FromTwoVectors(up, Vector3d(0, 0, up.z() < 0 ? -1 : 1)).toRotationMatrix();
+    const Vector3d foot = lay.rotation * eigen(made.axis.point);
+    lay.translation = Vector3d(-foot.x(), -foot.y(), 0);
+    std::vector<Point> places;
+    std::vector<Vector> normals;
+    std::vector<double> areas;
+    for (std::size_t k = 0; k < truth.size(); ++k)
+        for (const Face f : truth[k].mesh.faces()) {
+            const Vector n = area_vector(truth[k].mesh, f);
             const double length = std::sqrt(n.squared_length());
-            if (!(length > 0)) continue;
-            const Point p = centroid(mesh, f);
+            if (!lies[k] || !(length > 0)) continue;
             // Of the vessel's own walls.
-            const auto wall = vessel.closest_compatible(p, n / length, 0.8, 0.01 * diagonal);
+            const auto wall = vessel.closest_compatible(centroid(truth[k].mesh, f), n / length, 0.8, 0.01 * diagonal);
             if (!wall) continue;
-            const auto hit = surface.closest_compatible(wall->point, n / length, 0.7, 0.05 * diagonal);
-            const double off = hit ? hit->distance : 0.05 * diagonal;
-            squares += length * off * off;
-            area += length;
+            places.push_back(wall->point), normals.push_back(n / length), areas.push_back(length);
         }
+    double error = 0;
+    for (int round = 0; round < 12; ++round) {
+        const Mesh laid = moved(made.mesh, lay);
+        const SurfaceSearch surface(laid);
+        double squares = 0, area = 0, a = 0, b = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto hit = surface.closest_compatible(places[i], normals[i], 0.7, 0.05 * diagonal);
+            const double off = hit ? hit->distance : 0.05 * diagonal;
+            squares += areas[i] * off * off, area += areas[i];
+            if (!hit) continue;
+            const double slope = normals[i].z();
+            a += areas[i] * slope * slope, b += areas[i] * slope * (normals[i] * (places[i] - hit->point));
+        }
+        error = std::sqrt(squares / area) / diagonal;
+        if (!(a > 0) || std::abs(b / a) < 1e-5 * diagonal) break;
+        lay.translation.z() += b / a;
     }
-    return area > 0 ? std::sqrt(squares / area) / diagonal : 0;
+    return error;
 }
 
 }  // namespace
@@ -184,7 +203,7 @@ void turned_sherds(const BreakExperiment& options) {
             const Vector3d foot = at + up * ((0.5 * shape.height - at.z()) / up.z());
             percent.push_back(100 * foot.head<2>().norm() / diagonal);
             said.push_back(turned.direction_error);
-            walls.push_back(100 * profile_error(whole, truth, good, turned.mesh));
+            walls.push_back(100 * profile_error(whole, truth, good, turned));
             csv << '"' << layout.name << "\"," << shape_seed << ',' << fragments.size() << ',' << own_used << ',' << own_partly
                 << ',' << own_out << ',' << own_wrong << ',' << degrees.back() << ',' << percent.back() << ',' << said.back()
                 << ',' << walls.back() << '\n';

@@ -163,8 +163,10 @@ private:
         // Steps are about the sherd's place; here about the foot of the frame.
         Matrix4d there = Matrix4d::Identity();
         there.topRightCorner<2, 2>() = frame_.height(evidence.place) * Eigen::Matrix2d::Identity();
-        told.information = there.transpose() * evidence.information * there;
-        told.target = told.information * own_[k] - there.transpose() * evidence.gradient;
+        if (sherds_[k].axis) {
+            told.information = there.transpose() * evidence.information * there;
+            told.target = told.information * own_[k] - there.transpose() * evidence.gradient;
+        }
         const double shift = 1 / std::pow(options_.layout_shift * diagonal_, 2),
                      tilt = 1 / std::pow(options_.layout_angle * pi / 180, 2);
         told.layout = there.transpose() * Vector4d(shift, shift, tilt, tilt).asDiagonal() * there;
@@ -208,6 +210,7 @@ private:
                 one.disagreement = std::sqrt(std::max(0.0, mean.dot(pull)));
                 const double robust = std::pow(1 + std::pow(one.disagreement / 3, 2), -2);
                 contribution_[k] = robust * marginal;
+                pulls_[k] = robust * pull;
                 all += robust * marginal + 1e-9 * t.layout;
                 sum += robust * pull;
             }
@@ -226,6 +229,23 @@ private:
             result_.sherds[k].weight = (covariance_ * contribution_[k]).trace() / 4;
             round_[k] = told[k].round;
         }
+        spread_ = list.size() < 4 ? covariance_ : jackknife(list);
+    }
+
+    /// Covariance of the common axis by what it would be without each sherd: it needs no assumption on how well they were laid.
+    [[nodiscard]] Matrix4d jackknife(const std::vector<std::size_t>& list) const {
+        Matrix4d all = Matrix4d::Zero();
+        Vector4d sum = Vector4d::Zero(), mean = Vector4d::Zero();
+        for (const std::size_t k : list) all += contribution_[k], sum += pulls_[k];
+        std::vector<Vector4d> without;
+        for (const std::size_t k : list) {
+            const Matrix4d rest = all - contribution_[k];
+            without.push_back(solve_ldlt<4>(Matrix4d(rest + 1e-9 * all), Vector4d(sum - pulls_[k])));
+            mean += without.back() / static_cast<double>(list.size());
+        }
+        Matrix4d spread = Matrix4d::Zero();
+        for (const Vector4d& one : without) spread += (one - mean) * (one - mean).transpose();
+        return static_cast<double>(list.size() - 1) / static_cast<double>(list.size()) * spread;
     }
 
     static Matrix4d inverse(const Matrix4d& matrix) {
@@ -256,12 +276,14 @@ private:
         double most = 1;
         for (const std::size_t k : list) {
             measure_own(k);
+            if (!sherds_[k].axis) continue;
             const double off =
                 std::max(result_.sherds[k].disagreement / most_disagreement, round_[k] > 0 ? least_round / round_[k] : 1e300);
             if (off > most) worst = k, most = off;
         }
         if (!worst) return false;
         SherdOnProfile& one = result_.sherds[*worst];
+        sherds_[*worst].contradicts = true;
         const std::string remedy = "lay it as it was in the vessel, or leave it out";
         if (one.axis.found)
             leave_out(one,
@@ -293,11 +315,12 @@ private:
             result_.place_error = one.axis.figure("diameter error")->value / 2;
             return;
         }
-        const SymmetricEigen2 shifts(Eigen::Matrix2d(covariance_.topLeftCorner<2, 2>())),
-            tilts(Eigen::Matrix2d(covariance_.bottomRightCorner<2, 2>()));
+        const SymmetricEigen2 shifts(Eigen::Matrix2d(spread_.topLeftCorner<2, 2>())),
+            tilts(Eigen::Matrix2d(spread_.bottomRightCorner<2, 2>()));
         result_.direction_error = std::min(90.0, 180 / pi * std::sqrt(std::max(0.0, tilts.eigenvalues()[1])));
         result_.place_error = std::sqrt(std::max(0.0, shifts.eigenvalues()[1]));
-        if (result_.direction_error > 5) {
+        if (SymmetricEigen2(Eigen::Matrix2d(covariance_.bottomRightCorner<2, 2>())).eigenvalues()[1] >
+            std::pow(5 * pi / 180, 2)) {
             for (const std::size_t k : list)
                 leave_out(result_.sherds[k], "tells too little of an axis, and so do all together",
                           "give sherds that show more of the turn");
@@ -329,7 +352,8 @@ private:
     std::vector<Vector4d> own_;           ///< of each sherd's against the common one
     std::vector<Matrix4d> contribution_ = std::vector<Matrix4d>(sherds_.size(), Matrix4d::Zero());
     std::vector<double> round_ = std::vector<double>(sherds_.size(), 0);
-    Matrix4d covariance_ = Matrix4d::Zero();
+    std::vector<Vector4d> pulls_ = std::vector<Vector4d>(sherds_.size(), Vector4d::Zero());
+    Matrix4d covariance_ = Matrix4d::Zero(), spread_ = Matrix4d::Zero();
 };
 
 }  // namespace

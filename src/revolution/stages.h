@@ -61,9 +61,11 @@ AxisFrame frame_of(const Axis& axis);
 /// A sherd on its way into the template.
 struct LaidSherd {
     const Fragment* fragment = nullptr;
-    bool inside_out = false;  ///< its faces count the other way round
-    bool walls = true;        ///< it is closed, so that where its clay is can be told
-    Motion motion;            ///< to where its axis and height are those of all
+    bool inside_out = false;   ///< its faces count the other way round
+    bool walls = true;         ///< it is closed, so that where its clay is can be told
+    bool axis = true;          ///< what it tells of the axis counts
+    bool contradicts = false;  ///< it was left out because of what it tells of the axis
+    Motion motion;             ///< to where its axis and height are those of all
 };
 
 struct JoinedSherds {

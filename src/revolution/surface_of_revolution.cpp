@@ -24,7 +24,7 @@ public:
                       std::vector<SherdOnProfile> left_out)
         : options_(options) {
         for (const Fragment* sherd : sherds) {
-            sherds_.push_back({sherd, false, true, {}});
+            sherds_.emplace_back().fragment = sherd;
             result_.sherds.emplace_back();
             result_.sherds.back().name = sherd->name;
         }
@@ -41,7 +41,8 @@ public:
                     if (one.use != SherdUse::left_out) leave_out(one, one.reason, one.remedy);
                 fail_all_left_out(result_);
             }
-            if (turn() ? !drop_one_off_the_template() : !drop_the_least_sure()) break;
+            const bool again = turn() ? drop_one_off_the_template() || take_back() : drop_the_least_sure();
+            if (!again) break;
         }
         say_what_is_partly_used();
         result_.notes.insert(result_.notes.end(), bridged_.begin(), bridged_.end());
@@ -53,6 +54,8 @@ private:
     static constexpr int height_rounds = 4;
     /// Of a sherd's area, on the template that it is part of: less lies elsewhere. Breaks that are not known take up to half.
     static constexpr double least_on_template = 0.3;
+    /// Enough for one whose own axis says something else.
+    static constexpr double enough_on_template = 0.6;
 
     void look_at_each() {
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
@@ -126,6 +129,29 @@ private:
         return true;
     }
 
+    /// Sherds whose own axis contradicts the others (a short arc, breaks that are not known), but whose walls lie on the vessel
+    /// that the others make: their axis does not count, their walls do.
+    bool take_back() {
+        bool any = false;
+        const SurfaceSearch surface(result_.mesh);
+        for (std::size_t k = 0; k < sherds_.size(); ++k) {
+            LaidSherd& sherd = sherds_[k];
+            if (!sherd.contradicts || !sherd.walls || !sherd.axis) continue;
+            sherd.axis = false;
+            sherd.motion = {};
+            std::vector<bool> alone(sherds_.size(), false);
+            alone[k] = true;
+            const JoinedSherds own = joined(sherds_, alone);
+            if (on_template(surface, own.mesh, own.of_fragment[k]).share < enough_on_template) continue;
+            SherdOnProfile& one = result_.sherds[k];
+            one.use = SherdUse::partly;
+            one.reason = "tells radius and height where it lies; by itself it " + one.reason;
+            one.remedy.clear();
+            any = true;
+        }
+        return any;
+    }
+
     /// At no height do most of the walls lie at one radius: the sherd that tells least of the axis goes.
     bool drop_the_least_sure() {
         const std::vector<bool> take = of_walls();
@@ -142,7 +168,7 @@ private:
         for (SherdOnProfile& one : result_.sherds)
             if (one.use == SherdUse::used && !one.axis.found) {
                 one.use = SherdUse::partly;
-                one.reason = "tells radius and height where it lies; of the axis too little by itself: " + one.axis.reason;
+                one.reason = "tells radius and height where it lies; by itself it has no axis: " + one.axis.reason;
             }
     }
 
@@ -246,22 +272,32 @@ private:
         one.motion = sherds_[k].motion;
         one.on_template = one.residual = one.lowest = one.highest = 0;
         if (all.of_fragment[k].empty()) return;
-        const SurfaceSearch surface(result_.mesh);
-        double everything = 0, area = 0, squares = 0, tolerance = 0.02 * surface.diagonal();
         one.lowest = 1e300, one.highest = -1e300;
         for (const Index f : all.of_fragment[k]) {
-            const Vector3d p = eigen(centroid(all.mesh, Face(f))), n = eigen(area_vector(all.mesh, Face(f)));
-            one.lowest = std::min(one.lowest, frame_.height(p) - lowest_);
-            one.highest = std::max(one.highest, frame_.height(p) - lowest_);
+            const double height = frame_.height(eigen(centroid(all.mesh, Face(f)))) - lowest_;
+            one.lowest = std::min(one.lowest, height), one.highest = std::max(one.highest, height);
+        }
+        const OnTemplate found = on_template(SurfaceSearch(result_.mesh), all.mesh, all.of_fragment[k]);
+        one.on_template = found.share, one.residual = found.distance;
+    }
+
+    struct OnTemplate {
+        double share = 0, distance = 0;  ///< of the area; root mean square of that
+    };
+    static OnTemplate on_template(const SurfaceSearch& surface, const Mesh& mesh, const std::vector<Index>& faces) {
+        const double tolerance = 0.02 * surface.diagonal();
+        double all = 0, on = 0, squares = 0;
+        for (const Index f : faces) {
+            const Vector3d n = eigen(area_vector(mesh, Face(f)));
             if (!(n.norm() > 0)) continue;
-            everything += n.norm();
-            const auto hit = surface.closest_compatible(point_of(p), vector_of(n.normalized()), 0.8, tolerance);
+            all += n.norm();
+            const auto hit = surface.closest_compatible(centroid(mesh, Face(f)), vector_of(n.normalized()), 0.8, tolerance);
             if (!hit) continue;  // of a break
-            area += n.norm();
+            on += n.norm();
             squares += n.norm() * hit->distance * hit->distance;
         }
-        if (everything > 0) one.on_template = area / everything;
-        if (area > 0) one.residual = std::sqrt(squares / area);
+        if (!(on > 0)) return {};
+        return {on / all, std::sqrt(squares / on)};
     }
 
     std::vector<LaidSherd> sherds_;
