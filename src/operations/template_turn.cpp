@@ -2,6 +2,7 @@
 #include "operations.h"
 
 #include "ostraka/core/text.h"
+#include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/revolution/surface_of_revolution.h"
 
 namespace ostraka {
@@ -14,6 +15,7 @@ struct TemplateTurn final : Operation {
         p.output("output", Kind::folder, output, "folder to write the template to").flag();
         p.options("unit", unit, "unit of the coordinates, any text such as mm");
         options.describe(p.options);
+        reading.describe(p.options);
         p.report.schema = "turned";
         p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"), number("lean", "own axis leans, degrees"),
                        number("aside", "aside"), number("weight", "share of the axis %"), number("disagreement"),
@@ -28,7 +30,10 @@ struct TemplateTurn final : Operation {
         std::vector<const Fragment*> sherds;
         std::vector<SherdOnProfile> unreadable;
         for (std::size_t k = 0; k < files.size(); ++k) try {
-                sherds.push_back(&files.load<Fragment>(read_sherd, k));
+                const FragmentFile& file = files.load<FragmentFile>(
+                    [&](const Path& path) { return read_fragment(path, reading); }, k, options_text(reading));
+                context.notes(files.file(k), file.notes);
+                sherds.push_back(&file.fragment);
             } catch (const Error& error) {
                 if (error.kind() != ErrorKind::input || files.size() == 1) throw;
                 SherdOnProfile& one = unreadable.emplace_back();
@@ -42,18 +47,6 @@ struct TemplateTurn final : Operation {
         turned.annotations.unit = unit;
         write(context, turned);
         report_result(report, turned);
-    }
-
-    /// With the facets that the annotations beside it say.
-    static Fragment read_sherd(const Path& file) {
-        Fragment sherd;
-        sherd.name = file.stem().string();
-        sherd.mesh = read_mesh(file).mesh;
-        const Path beside = file.parent_path() / (sherd.name + ".ant.json");
-        if (!file_exists(beside)) return sherd;
-        const AnnotationSet set = read_annotations(beside, sherd.mesh);
-        sherd.facets = in_file(beside.string(), [&] { return facets_of(sherd.mesh, set); });
-        return sherd;
     }
 
     void write(Context& context, const RevolutionTemplate& turned) const {
@@ -121,6 +114,7 @@ struct TemplateTurn final : Operation {
     FolderOutput output;
     std::string unit;
     RevolutionOptions options;
+    FragmentFileOptions reading;
 };
 
 }  // namespace

@@ -268,6 +268,15 @@ private:
         one.aside = (off - off.dot(common.direction) * common.direction).norm();
     }
 
+    /// An own axis far from the common one, as a share of what is admitted: the equations are linear near the common one, and may
+    /// not see it.
+    [[nodiscard]] double own_off(const SherdOnProfile& one) const {
+        if (!one.axis.found) return 0;
+        const double tilt = most_disagreement * options_.layout_angle + 3 * one.axis.figure("direction error")->value,
+                     shift = most_disagreement * options_.layout_shift * diagonal_ + 3 * one.axis.figure("diameter error")->value;
+        return std::max(one.lean / tilt, one.aside / shift);
+    }
+
     /// The one that contradicts the others most goes, then the axis is found anew.
     bool drop_one_that_disagrees() {
         const std::vector<std::size_t> list = remaining();

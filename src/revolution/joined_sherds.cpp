@@ -22,6 +22,13 @@ std::vector<Index> JoinedSherds::faces() const {
     return all;
 }
 
+std::vector<bool> JoinedSherds::broken() const {
+    std::vector<bool> result(mesh.number_of_faces(), true);
+    for (const auto& own : of_fragment)
+        for (const Index f : own) result[f] = false;
+    return result;
+}
+
 JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& take) {
     JoinedSherds all;
     for (std::size_t k = 0; k < sherds.size(); ++k) {

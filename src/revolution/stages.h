@@ -22,10 +22,12 @@ struct Outline {
 struct ProfileImage {
     double step = 0;
     std::size_t rows = 0, columns = 0;
-    std::vector<double> wall_share;  ///< share of the rays that meet anything that is inside the wall
+    std::vector<double> wall_share;  ///< share of the rays that tell that is inside the wall
+    std::vector<double> telling;     ///< rays that tell whether there is wall
     std::vector<double> present;     ///< rays that meet anything, of each row
 
-    void add(std::size_t row, double from, double to);
+    /// To the cells of a row between two radii, of one of the two above.
+    void add(std::vector<double>& cells, std::size_t row, double from, double to) const;
     void clear(std::size_t row);
     /// In a row from `first` to before `end`.
     [[nodiscard]] bool reaches_axis(std::size_t first, std::size_t end) const;
@@ -72,6 +74,7 @@ struct JoinedSherds {
     Mesh mesh;
     std::vector<std::vector<Index>> of_fragment;  ///< faces that are not of a break, sherd by sherd
     [[nodiscard]] std::vector<Index> faces() const;
+    [[nodiscard]] std::vector<bool> broken() const;  ///< of each face of the mesh
 };
 
 /// The sherds for which `take` is true, moved; of the others no face.
@@ -96,9 +99,10 @@ struct WallSection {
     [[nodiscard]] bool has_rim(const RevolutionOptions& options) const;
 };
 
-/// How much of the wall rays from the axis meet, by height and radius.
-WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
-                         const RevolutionOptions& options);
+/// How much of the wall rays from the axis meet, by height and radius. A ray that leaves the clay, or enters it, by a break
+/// (`broken` of its face, or a normal far from the plane through the axis) does not tell whether there was wall beyond.
+WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
+                         double high, double far, const RevolutionOptions& options);
 
 /// Rings of vertices around the axis, each with as many as its size asks for, sewn together.
 class ProfileSweep {

@@ -53,7 +53,7 @@ public:
 private:
     static constexpr int height_rounds = 4;
     /// Of a sherd's area, on the template that it is part of: less lies elsewhere. Breaks that are not known take up to half.
-    static constexpr double least_on_template = 0.3;
+    static double least_on_template(const Fragment& sherd) { return sherd.facets.empty() ? 0.3 : 0.5; }
     /// Enough for one whose own axis says something else.
     static constexpr double enough_on_template = 0.6;
 
@@ -118,12 +118,15 @@ private:
     bool drop_one_off_the_template() {
         const std::vector<bool> take = of_walls();
         std::size_t worst = 0;
-        double least = 2;
-        for (std::size_t k = 0; k < sherds_.size(); ++k)
-            if (take[k] && result_.sherds[k].on_template < least) worst = k, least = result_.sherds[k].on_template;
-        if (least >= least_on_template) return false;
+        double least = 1;
+        for (std::size_t k = 0; k < sherds_.size(); ++k) {
+            const double share = result_.sherds[k].on_template / least_on_template(*sherds_[k].fragment);
+            if (take[k] && share < least) worst = k, least = share;
+        }
+        if (!(least < 1)) return false;
         leave_out(result_.sherds[worst],
-                  "has walls that are not on the vessel that the others make (" + digits(100 * least, 2) + " % of its area is)",
+                  "has walls that are not on the vessel that the others make (" +
+                      digits(100 * result_.sherds[worst].on_template, 2) + " % of its area is)",
                   "is it in another unit than the others, of another vessel, or not where it lay?");
         if (!any_walls()) fail_all_left_out(result_);
         return true;
@@ -207,7 +210,7 @@ private:
                 high = std::max(high, frame_.height(p));
                 far = std::max(far, frame_.across(p).norm());
             }
-            WallSection section = wall_section(search, frame_, low, high, far, options_);
+            WallSection section = wall_section(search, all.broken(), frame_, low, high, far, options_);
             section.drop_rare(options_);
             result_.rim = section.has_rim(options_);
             image_ = std::move(section.image);

@@ -27,14 +27,57 @@ bool WallSection::has_rim(const RevolutionOptions& options) const {
     return at > 0.8 * near && near > options.presence / 360 * static_cast<double>(tops.size());
 }
 
-WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
-                         const RevolutionOptions& options) {
+namespace {
+
+/// Sine of the angle between a wall's normal and the plane through the axis, at most.
+constexpr double most_around = 0.6;
+
+/// One ray from the axis outwards: where it is inside the clay, and where it tells that there is none.
+class Ray {
+public:
+    Ray(detail::ProfileImage& image, std::size_t row) : image_(image), row_(row) {}
+
+    void meet(double radius, bool leaving, bool broken) {
+        if (first_ && leaving) inside_ = true;
+        first_ = false;
+        if (leaving && inside_) {
+            image_.add(image_.wall_share, row_, begin_, radius);
+            image_.add(image_.telling, row_, begin_, radius);
+            any_ = true;
+            inside_ = false;
+            begin_ = radius;
+            known_ = !broken;
+        } else if (!leaving && !inside_) {
+            if (known_ || !broken) image_.add(image_.telling, row_, begin_, radius);
+            inside_ = true;
+            begin_ = radius;
+        }
+    }
+    /// Whether it met any wall.
+    bool end(double far) {
+        if (any_ && !inside_ && known_) image_.add(image_.telling, row_, begin_, far);
+        return any_;
+    }
+
+private:
+    detail::ProfileImage& image_;
+    std::size_t row_;
+    double begin_ = 0;  ///< of the clay it is in, or of the space it is in
+    bool inside_ = false, first_ = true, any_ = false;
+    bool known_ = false;  ///< the space began behind a wall's own surface
+};
+
+}  // namespace
+
+WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
+                         double high, double far, const RevolutionOptions& options) {
     WallSection section;
     detail::ProfileImage& image = section.image;
     image.step = (high - low) / options.rows;
     image.rows = static_cast<std::size_t>(options.rows);
     image.columns = static_cast<std::size_t>(std::ceil(far / image.step)) + 2;
     image.wall_share.assign(image.rows * image.columns, 0);
+    image.telling = image.wall_share;
     image.present.assign(image.rows, 0);
     const int half = std::max(4, options.columns / 2);
     std::vector<std::vector<bool>> met(image.rows, std::vector<bool>(2 * static_cast<std::size_t>(half), false));
@@ -46,26 +89,17 @@ WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, do
                 // Not along symmetric directions, which edges of synthetic meshes like.
                 const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
                 const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * far);
+                const Vector3d around = frame.up.cross(direction);
                 for (const double side : {1.0, -1.0}) {
-                    double begin = 0;
-                    bool inside = false, first = true, any = false;
-                    const auto visit = [&](const SurfaceHit& hit) {
+                    Ray ray(image, row);
+                    for (const SurfaceHit& hit : hits) {
                         const double radius = side * hit.distance;
-                        if (radius < 0) return;
-                        const bool leaving = side * eigen(search.normal(hit.face)).dot(direction) > 0;
-                        if (first && leaving) inside = true, begin = 0;
-                        first = false;
-                        if (leaving && inside) {
-                            image.add(row, begin, radius);
-                            any = true;
-                            inside = false;
-                        } else if (!leaving && !inside) {
-                            begin = radius;
-                            inside = true;
-                        }
-                    };
-                    // Outwards from the axis on either side of it.
-                    for (const SurfaceHit& hit : hits) visit(hit);
+                        if (radius < 0) continue;
+                        const Vector3d normal = eigen(search.normal(hit.face));
+                        ray.meet(radius, side * normal.dot(direction) > 0,
+                                 broken[hit.face] || std::abs(normal.dot(around)) > most_around);
+                    }
+                    const bool any = ray.end(static_cast<double>(image.columns) * image.step);
                     if (!any) continue;
                     met[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
                     ++image.present[row];
@@ -73,9 +107,9 @@ WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, do
             }
         },
         4);
-    for (std::size_t row = 0; row < image.rows; ++row)
-        for (std::size_t c = 0; c < image.columns; ++c)
-            if (image.present[row] > 0) image.wall_share[row * image.columns + c] /= image.present[row];
+    const double least = std::max(1.0, options.presence / 360 * 2 * half);
+    for (std::size_t cell = 0; cell < image.wall_share.size(); ++cell)
+        image.wall_share[cell] /= std::max(least, image.telling[cell]);
     std::vector<double>& tops = section.tops;
     tops.assign(2 * static_cast<std::size_t>(half), -1);
     for (std::size_t row = 0; row < image.rows; ++row)
