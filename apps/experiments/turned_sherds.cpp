@@ -5,10 +5,10 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
+#include "ostraka/fracture/facets.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
-#include "ostraka/fracture/facets.h"
 #include "ostraka/revolution/surface_of_revolution.h"
 #include "ostraka/synthetic/make_mesh.h"
 #include "shatter.h"
@@ -174,7 +174,7 @@ void turned_sherds(const BreakExperiment& options) {
             std::vector<const Fragment*> pointers;
             for (const Fragment& one : fragments) pointers.push_back(&one);
             const Stopwatch watch;
-            if (getenv("FF")) for (Fragment& one : fragments) one.facets = find_facets(one.mesh).of_face;
+            for (Fragment& one : fragments) one.facets = find_facets(one.mesh).of_face;
             RevolutionTemplate turned;
             try {
                 turned = template_of_revolution(pointers);

@@ -7,6 +7,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,7 @@ public:
 
     void run() {
         ask_each();
+        drop_other_units();
         for (;;) {
             if (remaining().empty()) fail_all_left_out(result_);
             const std::optional<Axis> start = first_axis();
@@ -101,13 +103,29 @@ private:
         return rotation_axis(some.mesh, some.faces(), options_.axis);
     }
 
+    /// By its size, but none outvotes three of most.
+    [[nodiscard]] double vote(std::size_t k) const { return std::min(size(k), 3 * median_size_); }
+    [[nodiscard]] double size(std::size_t k) const { return std::sqrt(witnesses_[k]->area()); }
+
+    /// In another unit than most.
+    void drop_other_units() {
+        std::vector<double> sizes;
+        for (const std::size_t k : remaining()) sizes.push_back(size(k));
+        if (sizes.empty()) return;
+        median_size_ = upper_median(sizes);
+        for (const std::size_t k : remaining())
+            if (sizes.size() > 2 && size(k) > 8 * median_size_)
+                leave_out(result_.sherds[k], "is " + digits(size(k) / median_size_, 3) + " times as large as most",
+                          "is it in another unit than the others? then scale it");
+    }
+
     /// How many sherds are round about it, larger ones counting for more.
     double agreement(const Axis& axis) const {
         const AxisFrame frame = frame_of(axis);
         double sum = 0;
         for (const std::size_t k : remaining()) {
             const double round = witnesses_[k]->at({frame.foot, frame.up, frame.u, frame.w}).round;
-            sum += round * round * std::sqrt(witnesses_[k]->area());
+            sum += round * round * vote(k);
         }
         return sum;
     }
@@ -121,7 +139,7 @@ private:
         for (const std::size_t k : list) candidates.push_back(result_.sherds[k].axis);
         std::optional<Axis> best;
         double most = 0, all = 0;
-        for (const std::size_t k : list) all += std::sqrt(witnesses_[k]->area());
+        for (const std::size_t k : list) all += vote(k);
         const auto consider = [&](const std::vector<Axis>& axes) {
             std::vector<double> scores(axes.size(), 0);
             parallel_for(
@@ -181,16 +199,18 @@ private:
         // Where the frame lies: next to the middle of all.
         Vector3d middle = Vector3d::Zero();
         double area = 0;
+        const AxisFrame about = frame_of(start);
         CGAL::Bbox_3 box;
         for (const std::size_t k : list) {
             middle += witnesses_[k]->area() * witnesses_[k]->centroid();
             area += witnesses_[k]->area();
+            if (list.size() > 2 && witnesses_[k]->at({about.foot, about.up, about.u, about.w}).round < least_round) continue;
             for (const Vertex v : sherds_[k].fragment->mesh.vertices()) box += sherds_[k].fragment->mesh.point(v).bbox();
         }
         middle /= area;
         diagonal_ = std::sqrt(std::pow(box.xmax() - box.xmin(), 2) + std::pow(box.ymax() - box.ymin(), 2) +
                               std::pow(box.zmax() - box.zmin(), 2));
-        frame_ = frame_of(start);
+        frame_ = about;
         frame_.foot += frame_.up * frame_.height(middle);
         common_.setZero();
         own_.assign(sherds_.size(), Vector4d::Zero());
@@ -286,8 +306,8 @@ private:
         for (const std::size_t k : list) {
             measure_own(k);
             if (!sherds_[k].axis) continue;
-            const double off =
-                std::max(result_.sherds[k].disagreement / most_disagreement, round_[k] > 0 ? least_round / round_[k] : 1e300);
+            const double off = std::max({result_.sherds[k].disagreement / most_disagreement, own_off(result_.sherds[k]),
+                                         round_[k] > 0 ? least_round / round_[k] : 1e300});
             if (off > most) worst = k, most = off;
         }
         if (!worst) return false;
@@ -356,7 +376,8 @@ private:
     RevolutionTemplate& result_;
     std::vector<std::unique_ptr<AxisWitness>> witnesses_;
     AxisFrame frame_;
-    double diagonal_ = 0;
+    double diagonal_ = 0;                 ///< of what lies about the axis
+    double median_size_ = 0;              ///< of the sherds: square roots of their areas
     Vector4d common_ = Vector4d::Zero();  ///< shift and tilt of the common axis against the frame
     std::vector<Vector4d> own_;           ///< of each sherd's against the common one
     std::vector<Matrix4d> contribution_ = std::vector<Matrix4d>(sherds_.size(), Matrix4d::Zero());

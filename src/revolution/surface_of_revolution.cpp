@@ -62,7 +62,7 @@ private:
             const Mesh& mesh = sherds_[k].fragment->mesh;
             SherdOnProfile& one = result_.sherds[k];
             if (mesh.number_of_faces() == 0) {
-                leave_out(one, "has no faces", "give a mesh: 'fracture facets' makes one of points");
+                leave_out(one, "has no faces", "give a mesh, or points of its surface");
                 continue;
             }
             sherds_[k].walls = CGAL::is_closed(mesh);

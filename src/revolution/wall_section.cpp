@@ -32,40 +32,46 @@ namespace {
 /// Sine of the angle between a wall's normal and the plane through the axis, at most.
 constexpr double most_around = 0.6;
 
-/// One ray from the axis outwards: where it is inside the clay, and where it tells that there is none.
-class Ray {
-public:
-    Ray(detail::ProfileImage& image, std::size_t row) : image_(image), row_(row) {}
+/// Space narrower than this share of the largest radius, at a break, is what was worn off.
+constexpr double worn_off = 0.02;
 
-    void meet(double radius, bool leaving, bool broken) {
-        if (first_ && leaving) inside_ = true;
-        first_ = false;
-        if (leaving && inside_) {
-            image_.add(image_.wall_share, row_, begin_, radius);
-            image_.add(image_.telling, row_, begin_, radius);
-            any_ = true;
-            inside_ = false;
-            begin_ = radius;
-            known_ = !broken;
-        } else if (!leaving && !inside_) {
-            if (known_ || !broken) image_.add(image_.telling, row_, begin_, radius);
-            inside_ = true;
-            begin_ = radius;
+struct RayHit {
+    double radius;
+    bool leaving, broken;
+};
+
+/// One ray from the axis outwards: where it is inside the clay, and where it tells that there is none. Sherds of a layout may
+/// overlap: it is inside as long as it is in any of them. Returns whether it met any.
+bool follow(const std::vector<RayHit>& hits, detail::ProfileImage& image, std::size_t row, double far) {
+    int depth = 0, least = 0;
+    for (const RayHit& hit : hits) {
+        depth += hit.leaving ? -1 : 1;
+        least = std::min(least, depth);
+    }
+    depth = -least;  // of sherds around the axis
+    bool any = false, known = false;
+    double begin = 0;  // of the clay or the space that it is in
+    const auto clay = [&](double from, double to) {
+        image.add(image.wall_share, row, from, to);
+        image.add(image.telling, row, from, to);
+        any = true;
+    };
+    for (const RayHit& hit : hits) {
+        const int before = depth;
+        depth += hit.leaving ? -1 : 1;
+        if (before == 1 && depth == 0) {
+            clay(begin, hit.radius);
+            begin = hit.radius;
+            known = !hit.broken;
+        } else if (before == 0 && depth == 1) {
+            if (any && (!known || hit.broken) && hit.radius - begin < worn_off * far) clay(begin, hit.radius);
+            else if (known || !hit.broken) image.add(image.telling, row, begin, hit.radius);
+            begin = hit.radius;
         }
     }
-    /// Whether it met any wall.
-    bool end(double far) {
-        if (any_ && !inside_ && known_) image_.add(image_.telling, row_, begin_, far);
-        return any_;
-    }
-
-private:
-    detail::ProfileImage& image_;
-    std::size_t row_;
-    double begin_ = 0;  ///< of the clay it is in, or of the space it is in
-    bool inside_ = false, first_ = true, any_ = false;
-    bool known_ = false;  ///< the space began behind a wall's own surface
-};
+    if (any && depth == 0 && known) image.add(image.telling, row, begin, static_cast<double>(image.columns) * image.step);
+    return any;
+}
 
 }  // namespace
 
@@ -91,16 +97,15 @@ WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& b
                 const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * far);
                 const Vector3d around = frame.up.cross(direction);
                 for (const double side : {1.0, -1.0}) {
-                    Ray ray(image, row);
+                    std::vector<RayHit> along;
                     for (const SurfaceHit& hit : hits) {
                         const double radius = side * hit.distance;
                         if (radius < 0) continue;
                         const Vector3d normal = eigen(search.normal(hit.face));
-                        ray.meet(radius, side * normal.dot(direction) > 0,
-                                 broken[hit.face] || std::abs(normal.dot(around)) > most_around);
+                        along.push_back({radius, side * normal.dot(direction) > 0,
+                                         broken[hit.face] || std::abs(normal.dot(around)) > most_around});
                     }
-                    const bool any = ray.end(static_cast<double>(image.columns) * image.step);
-                    if (!any) continue;
+                    if (!follow(along, image, row, far)) continue;
                     met[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
                     ++image.present[row];
                 }
