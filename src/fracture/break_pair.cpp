@@ -85,7 +85,8 @@ private:
                 const double against = -on_.normals[i].dot(pose.rotation * normal);
                 if (against > 0.3) touching += area * (1 - squared) * against;
             }
-            if (above < -0.5 * search_radius_) inside += area * std::min(1.0, -above / search_radius_ - 0.5);
+            // Far from its nearest place a point is inside only if it lies straight below it: normals are not exact.
+            if (above < -0.5 * search_radius_ && above < -0.9 * off.norm()) inside += area * std::min(1.0, -above / search_radius_ - 0.5);
         };
         for (const std::size_t i : fractures_) look(of_.fracture.places[i], of_.fracture.normals[i], each_fracture_, true);
         for (const std::size_t i : others_) look(of_.intact.places[i], of_.intact.normals[i], each_other_, false);
