@@ -160,6 +160,8 @@ struct BreakExperiment {
     std::string data = "../shared/data";  ///< folder with fragments-bottle-pair and fragments-vessel-sherds
     int motions = 3;                      ///< random ones of all sherds
     int pots = 4;                         ///< synthetic vessels of each kind
+    int first = 0;                        ///< vessels before the first one
+    bool write = false;                   ///< also the sherds
 };
 struct JoinExperiment {
     std::vector<std::string> boxes;  ///< see read_box
@@ -202,5 +204,7 @@ void facets(const FacetExperiment& options);
 void sherd_rotations(const BreakExperiment& options);
 /// Synthetic vessels, broken: rotations by breaks with wear, noise, a piece that is missing, one of another vessel.
 void broken_pots(const BreakExperiment& options);
+/// Synthetic vessels, broken: templates turned from sherds that lie well, badly, or do not belong.
+void turned_sherds(const BreakExperiment& options);
 
 }  // namespace ostraka::experiments

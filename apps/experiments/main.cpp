@@ -123,6 +123,8 @@ void declare_breaks(CLI::App& command, BreakExperiment& options) {
     command.add_option("--data", options.data, "folder with the scanned fragments")->capture_default_str();
     ranged(command, "--motions", options.motions, "random ones of all sherds", 1, 1000);
     ranged(command, "--pots", options.pots, "made vessels of each kind", 1, 1000);
+    ranged(command, "--first", options.first, "vessels left out before the first one", 0, 100000);
+    command.add_flag("--write", options.write, "write the sherds, too");
 }
 
 template <class Options>
@@ -281,6 +283,8 @@ constexpr Experiment list[] = {
     {"sherd-turns", "scanned sherds on the template turned from them, turns by breaks",
      declared<declare_breaks, sherd_rotations>},
     {"broken-pots", "made vessels, broken: turns by breaks", declared<declare_breaks, broken_pots>},
+    {"turned-sherds", "made vessels, broken: templates turned from sherds, some of no use",
+     declared<declare_breaks, turned_sherds>},
     {"moulds", "moulds of made heads and of mixes of faces, found again", declared<declare_moulds, moulds>},
     {"fragments", "fragments of deformed copies of a template, fitted", declared<declare_fragments, fragments>},
     {"verdicts", "pairs of fragments that belong together, or do not", declared<declare_verdicts, verdicts>},

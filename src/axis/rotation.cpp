@@ -1,5 +1,6 @@
 // Axis of a surface of revolution from normals, refined on positions.
 #include "axis_methods.h"
+#include "turned_profile.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
@@ -13,70 +14,10 @@ using namespace detail;
 
 namespace {
 
-/// A point of the surface, in the part's own frame (centroid at the origin, diagonal 1), with its normal and area.
-struct Sample {
-    Vector3d p, n;
-    double weight;
-};
-
-struct Line {
-    Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitZ();
-};
-
-/// Vertex normals of the part, averaged `rounds` times over edges of the part; then one sample a face, or 8000 spread by area.
-std::vector<Sample> take_samples(const Mesh& mesh, const std::vector<Index>& faces, int rounds, const Vector3d& centre,
-                                 double scale) {
-    std::vector<Index> vertices;
-    for (const Index f : faces)
-        for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v.idx());
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto place = [&](Vertex v) {
-        return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v.idx()) - vertices.begin());
-    };
-    std::vector<std::array<std::size_t, 3>> triangles;
-    std::vector<Vector3d> normals(vertices.size(), Vector3d::Zero());
-    double total = 0;
-    for (const Index f : faces) {
-        const auto c = corners(mesh, Face(f));
-        triangles.push_back({place(c[0]), place(c[1]), place(c[2])});
-        const Vector3d n = eigen(area_vector(mesh, Face(f)));
-        for (const std::size_t v : triangles.back()) normals[v] += n;
-        total += n.norm();
-    }
-    for (int round = 0; round <= rounds; ++round) {
-        for (auto& n : normals)
-            if (n.norm() > 0) n.normalize();
-        if (round == rounds) break;
-        std::vector<Vector3d> sums = normals;
-        for (const auto& [a, b, c] : triangles) {
-            const Vector3d sum = (normals[a] + normals[b] + normals[c]) / 3;
-            sums[a] += sum, sums[b] += sum, sums[c] += sum;
-        }
-        normals = std::move(sums);
-    }
-    const std::size_t maximum = 8000;
-    std::vector<Sample> samples;
-    double passed = 0;
-    std::size_t taken = 0;
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        const double area = face_area(mesh, Face(faces[i]));
-        if (!(area > 0)) continue;
-        passed += area;
-        double weight = area / total;
-        if (faces.size() > maximum) {
-            const auto due = static_cast<std::size_t>(passed / total * double(maximum));
-            if (due <= taken) continue;
-            weight = double(due - taken) / double(maximum);
-            taken = due;
-        }
-        Vector3d p = Vector3d::Zero(), n = Vector3d::Zero();
-        for (const Vertex v : corners(mesh, Face(faces[i]))) p += (eigen(mesh.point(v)) - centre) / (3 * scale);
-        for (const std::size_t v : triangles[i]) n += normals[v];
-        if (n.norm() > 0) samples.push_back({p, n.normalized(), weight});
-    }
-    return samples;
-}
+using Sample = RoundSample;
+using Line = AxisLine;
+using Profile = TurnedProfile;
+using Refinement = AxisRefinement;
 
 /// Normal equations of the line complex: n . m + (p x n) . a = 0 for the axis with direction a and moment m.
 struct Complex {
@@ -100,13 +41,6 @@ struct Complex {
         return {a.cross(-inverse * B * a), a};
     }
 };
-
-/// Sine of the angle between the normal and the plane through the axis and the point; 0 on the axis.
-double sine(const Sample& s, const Line& axis) {
-    const Vector3d v = axis.direction.cross(s.p - axis.point);
-    const double speed = v.norm();
-    return speed > 0.01 ? s.n.dot(v) / speed : 0;
-}
 
 double score(const std::vector<Sample>& samples, std::size_t step, const Line& axis) {
     double sum = 0;
@@ -154,144 +88,6 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     }
     return reweighted(samples, best, 15);
 }
-
-/// The turned profile: heights in bins, the two walls of a hollow part apart, radius = R + S (height - mean) in each.
-struct Profile {
-    struct Bin {
-        double weight = 0, height = 0, radius = 0, slope = 0;
-        double hh = 0, hr = 0;
-        std::vector<std::size_t> members;
-    };
-    std::vector<Bin> bins;
-    std::vector<int> bin_of;  ///< -1: faces along the axis, or next to it
-    std::vector<double> height, radius, error, robust;
-    double sigma = 0;
-
-    Profile(const std::vector<Sample>& samples, const Line& axis)
-        : bin_of(samples.size(), -1),
-          height(samples.size()),
-          radius(samples.size()),
-          error(samples.size(), 0),
-          robust(samples.size(), 1) {
-        const int count = 20;
-        double minimum = 1e300, maximum = -1e300;
-        std::vector<double> facing(samples.size(), 0);
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            const Vector3d d = samples[i].p - axis.point;
-            height[i] = d.dot(axis.direction);
-            const Vector3d away = d - height[i] * axis.direction;
-            radius[i] = away.norm();
-            if (radius[i] > 0.01) facing[i] = samples[i].n.dot(away) / radius[i];
-            if (std::abs(facing[i]) < 0.3) continue;
-            minimum = std::min(minimum, height[i]), maximum = std::max(maximum, height[i]);
-        }
-        if (minimum > maximum) return;
-        bins.resize(2 * static_cast<std::size_t>(count));
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            if (std::abs(facing[i]) < 0.3) continue;
-            const int at = maximum > minimum
-                               ? std::min(count - 1, static_cast<int>((height[i] - minimum) / (maximum - minimum) * count))
-                               : 0;
-            bin_of[i] = 2 * at + (facing[i] > 0 ? 1 : 0);
-            bins[static_cast<std::size_t>(bin_of[i])].members.push_back(i);
-        }
-        for (int round = 0; round < 6; ++round) fit(samples, round == 0);
-    }
-
-private:
-    void fit(const std::vector<Sample>& samples, bool first) {
-        std::vector<double> errors;
-        for (auto& bin : bins) {
-            if (first && !bin.members.empty()) {
-                // Start at the median: a handle must not pull the circle away.
-                std::vector<double> radii;
-                for (const std::size_t i : bin.members) radii.push_back(radius[i]);
-                bin.radius = upper_median(std::move(radii));
-            } else {
-                bin.weight = bin.height = bin.radius = bin.hh = bin.hr = 0;
-                for (const std::size_t i : bin.members) {
-                    const double w = samples[i].weight * robust[i];
-                    bin.weight += w, bin.height += w * height[i], bin.radius += w * radius[i];
-                }
-                if (!(bin.weight > 0)) continue;
-                bin.height /= bin.weight, bin.radius /= bin.weight;
-                for (const std::size_t i : bin.members) {
-                    const double w = samples[i].weight * robust[i], h = height[i] - bin.height;
-                    bin.hh += w * h * h, bin.hr += w * h * (radius[i] - bin.radius);
-                }
-                bin.slope = bin.hh > 1e-12 * bin.weight ? std::clamp(bin.hr / bin.hh, -4.0, 4.0) : 0;
-            }
-            for (const std::size_t i : bin.members) {
-                error[i] = (radius[i] - bin.radius - bin.slope * (height[i] - bin.height)) / std::hypot(1, bin.slope);
-                errors.push_back(std::abs(error[i]));
-            }
-        }
-        if (errors.empty()) return;
-        sigma = std::max(1.4826 * upper_median(std::move(errors)), 1e-6);
-        for (std::size_t i = 0; i < error.size(); ++i) {
-            const double t = error[i] / (4.685 * sigma);  // Tukey's biweight
-            robust[i] = std::abs(t) < 1 ? std::pow(1 - t * t, 2) : 0;
-        }
-    }
-};
-
-/// Normal equations of two shifts and two tilts of the axis, each bin's radius and slope eliminated.
-struct Refinement {
-    Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d g = Eigen::Vector4d::Zero();
-    double weight = 0, squares = 0, radius = 0, count = 0;
-    Vector3d u, w;
-
-    Refinement(const std::vector<Sample>& samples, const Line& axis, const Profile& profile) {
-        std::tie(u, w) = across(axis.direction);
-        double sum = 0, sum_squares = 0;
-        for (const auto& bin : profile.bins) {
-            if (bin.members.size() < 8 || !(bin.weight > 0)) continue;
-            const auto row = [&](std::size_t i) {
-                const Vector3d d = samples[i].p - axis.point;
-                const Vector3d e = (d - d.dot(axis.direction) * axis.direction).normalized();
-                const double arm = profile.height[i] + bin.slope * profile.radius[i];
-                return Eigen::Vector4d(Eigen::Vector4d(u.dot(e), w.dot(e), arm * u.dot(e), arm * w.dot(e)) /
-                                       -std::hypot(1, bin.slope));
-            };
-            Eigen::Vector4d mean = Eigen::Vector4d::Zero(), slope = Eigen::Vector4d::Zero();
-            for (const std::size_t i : bin.members) mean += samples[i].weight * profile.robust[i] / bin.weight * row(i);
-            for (const std::size_t i : bin.members)
-                slope += samples[i].weight * profile.robust[i] * (profile.height[i] - bin.height) * row(i);
-            if (bin.hh > 1e-12 * bin.weight) slope /= bin.hh;
-            else slope.setZero();
-            for (const std::size_t i : bin.members) {
-                const double at = samples[i].weight * profile.robust[i];
-                const Eigen::Vector4d r = row(i) - mean - (profile.height[i] - bin.height) * slope;
-                H += at * r * r.transpose();
-                g += at * profile.error[i] * r;
-                squares += at * profile.error[i] * profile.error[i];
-                radius += at * profile.radius[i];
-                sum += at, sum_squares += at * at;
-            }
-        }
-        weight = sum;
-        if (sum_squares > 0) count = sum * sum / sum_squares;
-        if (sum > 0) radius /= sum;
-    }
-    /// Variance of the shift of the axis along a vector across it, tilts free, for unit weight and noise.
-    [[nodiscard]] double radius_uncertainty(const Eigen::Vector2d& along) const {
-        const Eigen::Vector4d t(along.x(), along.y(), 0, 0);
-        const Eigen::Matrix4d information = H / weight + 1e-15 * H.trace() / weight * Eigen::Matrix4d::Identity();
-        return std::max(0.0, t.dot(solve_ldlt<4>(information, t)));
-    }
-    /// Least eigenvalue of the shifts, for unit weight: a half of a full turn, little of a short arc.
-    [[nodiscard]] double shift_information() const {
-        return std::max(0.0, SymmetricEigen2(Eigen::Matrix2d(H.topLeftCorner<2, 2>())).eigenvalues()[0]) / weight;
-    }
-    /// Least eigenvalue of the tilts with the shifts eliminated, for unit weight: 0 where a tilt changes nothing.
-    [[nodiscard]] double tilt_information() const {
-        const Eigen::Matrix2d shifts = H.topLeftCorner<2, 2>() + 1e-12 * (H.trace() + 1e-30) * Eigen::Matrix2d::Identity();
-        const Eigen::Matrix2d left =
-            H.bottomRightCorner<2, 2>() - H.bottomLeftCorner<2, 2>() * shifts.inverse() * H.topRightCorner<2, 2>();
-        return std::max(0.0, SymmetricEigen2(left).eigenvalues()[0]) / weight;
-    }
-};
 
 /// Area-weighted mean squared distance from the profile, none more than `limit`, which is that of what has no bin.
 double off_profile(const std::vector<Sample>& samples, const Profile& profile, double limit) {

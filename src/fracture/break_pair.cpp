@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <tuple>
 
 namespace ostraka {
 
@@ -85,7 +86,9 @@ private:
                 const double against = -on_.normals[i].dot(pose.rotation * normal);
                 if (against > 0.3) touching += area * (1 - squared) * against;
             }
-            if (above < -0.5 * search_radius_) inside += area * std::min(1.0, -above / search_radius_ - 0.5);
+            // Far from its nearest place a point is inside only if it lies straight below it: normals are not exact.
+            if (above < -0.5 * search_radius_ && above < -0.9 * off.norm())
+                inside += area * std::min(1.0, -above / search_radius_ - 0.5);
         };
         for (const std::size_t i : fractures_) look(of_.fracture.places[i], of_.fracture.normals[i], each_fracture_, true);
         for (const std::size_t i : others_) look(of_.intact.places[i], of_.intact.normals[i], each_other_, false);
@@ -183,8 +186,41 @@ double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
     return std::min({a.size(), b.size(), 6 * a.width(), 6 * b.width()});
 }
 
-BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
-    check_options(options, "pair");
+namespace {
+
+/// One that does not depend on which fragment is named first, nor on where they are.
+bool goes_first(const PreparedBreak& a, const PreparedBreak& b) {
+    const auto key = [](const PreparedBreak& one) {
+        return std::tuple(one.fracture_area(), one.size(), one.rim_length(), one.name());
+    };
+    return key(a) > key(b);
+}
+
+/// Candidates in the order of what is seen of them by at most `samples` places; `aligned` brings a pose to where it is seen.
+template <class Align>
+std::vector<PairCandidate> seen_candidates(const PreparedBreak& a, const PreparedBreak& b, const std::vector<Scored>& poses,
+                                           double tolerance, std::size_t samples, Align&& aligned) {
+    std::vector<PairCandidate> list(poses.size());
+    parallel_for(
+        poses.size(),
+        [&](std::size_t i) {
+            list[i].pose = aligned(poses[i].pose);
+            list[i].evidence = measure_join(a, b, list[i].pose, tolerance, samples);
+            list[i].log_odds = join_log_odds(list[i].evidence);
+        },
+        1);
+    std::stable_sort(list.begin(), list.end(),
+                     [](const PairCandidate& x, const PairCandidate& y) { return x.log_odds > y.log_odds; });
+    return list;
+}
+
+std::vector<Scored> scored(const std::vector<PairCandidate>& list) {
+    std::vector<Scored> result;
+    for (const PairCandidate& one : list) result.push_back({one.pose, one.log_odds});
+    return result;
+}
+
+BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
     const PreparedBreak::Parts &first = a.parts(), &second = b.parts();
     BreakPair result;
     result.size = std::min(first.size, second.size);
@@ -194,48 +230,51 @@ BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const Pair
     result.fracture_b = second.side.fracture.area;
     Vector3d middle = Vector3d::Zero();
     for (const Vector3d& p : second.side.fracture.places) middle += p / static_cast<double>(second.side.fracture.places.size());
-    const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples);
-    std::vector<Scored> poses = distinct(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, middle,
-                                         0.5 * search_radius, 6 * pi / 180);
-    const std::vector<Scored> by_frames = distinct(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried),
-                                                   starts / 2, middle, 0.5 * search_radius, 6 * pi / 180);
+    const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples),
+               refined = static_cast<std::size_t>(options.refined);
+    const auto unlike = [&](std::vector<Scored> list, std::size_t count, double degrees) {
+        return distinct(std::move(list), count, middle, 0.5 * search_radius, degrees * pi / 180);
+    };
+    std::vector<Scored> poses = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6);
+    const std::vector<Scored> by_frames =
+        unlike(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried), starts / 2, 6);
     poses.insert(poses.end(), by_frames.begin(), by_frames.end());
 
-    // The best refined: quickly, then to the end.
-    const BreakAligner aligner({first.side, first.fracture, first.frames, first.surface.get()}, second.side, search_radius,
-                               tolerance, options.edges);
-    const BreakAligner rough({first.side, first.fracture, first.frames, nullptr}, second.side, search_radius, tolerance,
-                             options.edges);
-    const QuickScore quick_score(first, second.side, search_radius);
-    const double smaller = std::min(result.fracture_a, result.fracture_b);
-    parallel_for(
-        poses.size(),
-        [&](std::size_t i) {
-            poses[i].pose = rough.align(poses[i].pose, 300, 10);
-            poses[i].score = rough.judge(poses[i].pose, 400, 0.3).score - quick_score.inside(poses[i].pose) / smaller;
-        },
-        1);
-    poses = distinct(poses, static_cast<std::size_t>(options.refined), middle, 0.5 * search_radius, 5 * pi / 180);
-    std::vector<PairCandidate> candidates(poses.size());
-    parallel_for(
-        poses.size(),
-        [&](std::size_t i) {
-            const Motion pose = aligner.align(poses[i].pose, samples, 40);
-            candidates[i] = aligner.judge(pose, samples, 0.25);
-            candidates[i].evidence = measure_join(a, b, pose, tolerance);
-            candidates[i].log_odds = join_log_odds(candidates[i].evidence);
-        },
-        1);
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const PairCandidate& x, const PairCandidate& y) { return x.log_odds > y.log_odds; });
-    for (const PairCandidate& one : candidates) {
+    // The best refined: quickly, better, then to the end, each time by what is seen of them.
+    const BreakAligner::Target target{first.side, first.fracture, first.frames, first.surface.get()};
+    const BreakAligner rough(target, second.side, search_radius, tolerance, options.edges);
+    constexpr double near = 4;  // tolerances
+    const BreakAligner fine(target, second.side, std::min(search_radius, near * tolerance), tolerance, options.edges);
+    const auto few = std::min<std::size_t>(300, samples), some = std::min<std::size_t>(800, samples);
+    const std::vector<PairCandidate> quick =
+        seen_candidates(a, b, poses, tolerance, few, [&](const Motion& pose) { return rough.align(pose, few, 10); });
+    const std::vector<PairCandidate> better = seen_candidates(a, b, unlike(scored(quick), refined, 5), tolerance, some,
+                                                              [&](const Motion& pose) { return rough.align(pose, some, 20); });
+    const std::size_t last = std::max<std::size_t>(static_cast<std::size_t>(options.candidates), refined / 3);
+    for (PairCandidate& one : seen_candidates(a, b, unlike(scored(better), last, 5), tolerance, samples,
+                                              [&](const Motion& pose) { return fine.align(pose, samples, 30); })) {
         if (result.candidates.size() == static_cast<std::size_t>(options.candidates)) break;
-        if (one.evidence.area > 0 &&
-            std::none_of(result.candidates.begin(), result.candidates.end(),
-                         [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, search_radius, 10 * pi / 180); }))
-            result.candidates.push_back(one);
+        if (!(one.evidence.area > 0) ||
+            std::any_of(result.candidates.begin(), result.candidates.end(),
+                        [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, search_radius, 10 * pi / 180); }))
+            continue;
+        PairCandidate judged = fine.judge(one.pose, samples, 0.25);
+        judged.evidence = one.evidence;
+        judged.log_odds = one.log_odds;
+        result.candidates.push_back(std::move(judged));
     }
     decide(result, options);
+    return result;
+}
+
+}  // namespace
+
+BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
+    check_options(options, "pair");
+    if (!goes_first(b, a)) return search(a, b, options);
+    BreakPair result = search(b, a, options);
+    std::swap(result.fracture_a, result.fracture_b);
+    for (PairCandidate& one : result.candidates) one.pose = one.pose.inverse();
     return result;
 }
 

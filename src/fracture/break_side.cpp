@@ -193,20 +193,25 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
             RimFrame& frame = found[i];
             frame.facet = fragment.facets[edge.side];
             frame.place = 0.5 * (eigen(mesh.point(mesh.vertex(edge.edge, 0))) + eigen(mesh.point(mesh.vertex(edge.edge, 1))));
-            Vector3d side = Vector3d::Zero(), across = Vector3d::Zero();
+            Vector3d side = Vector3d::Zero(), across = Vector3d::Zero(), beside = Vector3d::Zero();
+            double area = 0;
             std::vector<Index> near;
             tree.within(point_of(frame.place), radius, near);
             near.push_back(edge.side);
             near.push_back(edge.broken);
             for (const Index f : near) {
                 // Of the other side of a thin wall nothing.
-                if (fragment.facets[f] == frame.facet && normals[f] * normals[edge.side] > 0)
-                    side += face_area(mesh, Face(f)) * eigen(normals[f]);
-                else if (broken[f] && normals[f] * normals[edge.broken] > 0)
+                if (fragment.facets[f] == frame.facet && normals[f] * normals[edge.side] > 0) {
+                    const double here = face_area(mesh, Face(f));
+                    side += here * eigen(normals[f]);
+                    beside += here * eigen(centroids[f]);
+                    area += here;
+                } else if (broken[f] && normals[f] * normals[edge.broken] > 0)
                     across += face_area(mesh, Face(f)) * eigen(normals[f]);
             }
             if (!(side.norm() > 0)) return;
             frame.side = side.normalized();
+            frame.beside = beside / area;
             across -= across.dot(frame.side) * frame.side;
             if (!(across.norm() > 0)) return;
             frame.fracture = across.normalized();
@@ -223,6 +228,7 @@ BreakSide BreakSide::moved(const Motion& motion) const {
     BreakSide result = *this;
     for (RimFrame& frame : result.frames) {
         frame.place = motion(frame.place);
+        frame.beside = motion(frame.beside);
         frame.side = motion.rotation * frame.side;
         frame.fracture = motion.rotation * frame.fracture;
     }

@@ -13,6 +13,7 @@ namespace ostraka {
 /// A place on the rim of a fracture: unit normals of the side beside it and, across that, of the fracture.
 struct RimFrame {
     Eigen::Vector3d place, side, fracture;
+    Eigen::Vector3d beside;      ///< middle of the side's faces near the place: how the side goes on away from a worn edge
     Facet facet = Facet::outer;  ///< of the side
     [[nodiscard]] Eigen::Matrix3d axes() const;
     /// The motion that lays this frame onto `other`, fractures facing each other.

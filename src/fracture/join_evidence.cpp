@@ -18,38 +18,45 @@ constexpr double could_touch = 3;  // tolerances
 /// Contact seen from one side: the samples of `from`, moved by `pose`, on the break of `on`.
 struct Contact {
     std::vector<Vector3d> places, normals;
-    std::vector<double> off;
+    std::vector<Vector3d> wide_places;  ///< within two tolerances
     double area = 0, could = 0, square = 0, facing = 0;
+    double wide_area = 0, wide_square = 0;
 };
 
-Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance) {
+Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
+                std::size_t most) {
     Contact result;
     const SurfaceSamples& samples = from.side.fracture;
-    const double each = samples.area / static_cast<double>(samples.places.size());
-    for (std::size_t i = 0; i < samples.places.size(); ++i) {
+    const std::size_t count = std::min(most, samples.places.size());
+    const double each = samples.area / static_cast<double>(count);
+    for (std::size_t s = 0; s < count; ++s) {
+        const std::size_t i = (2 * s + 1) * samples.places.size() / (2 * count);
         const Vector3d p = pose(samples.places[i]);
         const PointTree::Near found = on.fracture.nearest(point_of(p), could_touch * tolerance);
         if (found.index == no_index) continue;
         result.could += each;
         const Vector3d& normal = on.side.fracture.normals[found.index];
         const double facing = -normal.dot(pose.rotation * samples.normals[i]);
-        if (found.squared > tolerance * tolerance || facing < min_facing) continue;
+        if (found.squared > 4 * tolerance * tolerance || facing < min_facing) continue;
         const double off = normal.dot(p - on.side.fracture.places[found.index]);
+        result.wide_area += each;
+        result.wide_square += each * off * off;
+        result.wide_places.push_back(p);
+        if (found.squared > tolerance * tolerance) continue;
         result.area += each;
         result.square += each * off * off;
         result.facing += each * facing;
         result.places.push_back(p);
         result.normals.push_back(normal);
-        result.off.push_back(off);
     }
     return result;
 }
 
 /// Area of `from` that lies deeper than the tolerance in `on`.
 void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
-               double& area, double& depth) {
+               std::size_t most, double& area, double& depth) {
     const auto over = [&](const SurfaceSamples& samples) {
-        const std::size_t count = std::min<std::size_t>(600, samples.places.size());
+        const std::size_t count = std::min<std::size_t>({600, most, samples.places.size()});
         const double each = count > 0 ? samples.area / static_cast<double>(count) : 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * samples.places.size() / (2 * count);
@@ -100,11 +107,12 @@ std::pair<double, double> deviations(const std::vector<Vector3d>& places) {
 
 }  // namespace
 
-JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance) {
+JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance,
+                          std::size_t samples) {
     const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
     JoinEvidence seen;
     const Motion back = pose.inverse();
-    const Contact on_a = contact(a, b, pose, tolerance), on_b = contact(b, a, back, tolerance);
+    const Contact on_a = contact(a, b, pose, tolerance, samples), on_b = contact(b, a, back, tolerance, samples);
     const double area = 0.5 * (on_a.area + on_b.area), both = on_a.area + on_b.area,
                  smaller = std::min(a.side.fracture.area, b.side.fracture.area);
     seen.area = area / (tolerance * tolerance);
@@ -117,9 +125,17 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
     const auto [plane, quadric] = deviations(on_a.places);
     seen.bending = plane / tolerance;
     seen.relief = quadric / tolerance;
+    const double wide = on_a.wide_area + on_b.wide_area;
+    seen.wide_share = 0.5 * wide / smaller;
+    seen.wide_coverage = wide / std::max(1e-300, on_a.could + on_b.could);
+    if (wide > 0) {
+        const double residual = std::sqrt((on_a.wide_square + on_b.wide_square) / wide) / tolerance;
+        seen.wide_relief =
+            std::log(std::clamp(deviations(on_a.wide_places).second / tolerance / std::max(residual, 0.02), 0.1, 30.0));
+    }
 
     std::vector<Vector3d> places = on_a.places, normals = on_a.normals;
-    double could = 0, square = 0;
+    double could = 0, square = 0, turns = 0, steps = 0, seen_sides = 0;
     const double each = b.side.frames.empty() ? 0 : b.side.rim_length / static_cast<double>(b.side.frames.size());
     for (const RimFrame& frame : b.side.frames) {
         const Vector3d p = pose(frame.place);
@@ -127,15 +143,25 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
         if (found.index == no_index) continue;
         could += each;
         const RimFrame& other = a.side.frames[found.index];
-        if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
-            other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
-            continue;
+        if (other.facet != frame.facet || other.fracture.dot(pose.rotation * frame.fracture) > -min_facing) continue;
+        const Vector3d side = pose.rotation * frame.side, across = pose(frame.beside) - other.beside;
+        const double cosine = other.side.dot(side), apart = across.norm();
+        // Sides that face each other, or stand on edge, do not continue each other at all.
+        turns += cosine > 0 ? 1 - cosine * cosine : 1;
+        steps += cosine > 0 && apart > 0 ? std::pow(0.5 * (side + other.side).dot(across) / apart, 2) : 1;
+        ++seen_sides;
+        if (cosine < continued) continue;
         const double step = other.side.dot(p - other.place);
         if (std::abs(step) > tolerance) continue;
         seen.rim += each;
         square += each * step * step;
         places.push_back(p);
         normals.push_back(other.side);
+    }
+    if (seen_sides > 0) {
+        seen.side_turn = std::sqrt(turns / seen_sides);
+        seen.side_step = std::sqrt(steps / seen_sides);
+        seen.side_length = seen_sides * each / tolerance;
     }
     const double shorter = std::min(a.side.rim_length, b.side.rim_length);
     seen.rim_coverage = could > 0 ? seen.rim / could : 0;
@@ -158,8 +184,8 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
         seen.grip = std::max(0.0, SymmetricEigenX(system).eigenvalues()[0]) / std::max(1e-300, system.trace() / 6);
     }
     double inside = 0, depth = 0;
-    penetrate(a, b, pose, tolerance, inside, depth);
-    penetrate(b, a, back, tolerance, inside, depth);
+    penetrate(a, b, pose, tolerance, samples, inside, depth);
+    penetrate(b, a, back, tolerance, samples, inside, depth);
     seen.penetration = inside / std::max(area, 0.01 * smaller);
     seen.depth = depth / tolerance;
     seen.widths = std::abs(std::log(a.width / b.width));
@@ -219,7 +245,13 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             -3 * rim_step,
             -logarithm(0.01 + penetration, 0.01, 10) - 2,
             -logarithm(1 + depth, 1, 100),
-            -3 * std::min(widths, 1.5)};
+            -3 * std::min(widths, 1.5),
+            4 * wide_share,
+            4 * wide_coverage,
+            wide_relief,
+            -5 * side_turn,
+            -5 * side_step,
+            logarithm(side_length, 0.5, 500) - 3};
 }
 
 const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
@@ -237,7 +269,13 @@ const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
                                                       "sides without step",
                                                       "no penetration",
                                                       "no depth",
-                                                      "breaks as wide"};
+                                                      "breaks as wide",
+                                                      "share of the smaller break nearly in contact",
+                                                      "what could touch nearly does",
+                                                      "matching relief of what nearly touches",
+                                                      "sides as steep beside the rim",
+                                                      "sides that continue beside the rim",
+                                                      "length of sides that could continue"};
     return names;
 }
 

@@ -1,6 +1,7 @@
 // assemble: a box of fragments put together by their breaks.
 #include "completed_output.h"
 #include "operations.h"
+#include "turned_groups.h"
 
 #include "ostraka/collection/objects.h"
 #include "ostraka/geom/eigen.h"
@@ -162,6 +163,7 @@ private:
             JsonValue one = json_object(allocator, "name", names[k], "group", result.group[k] + 1, "facetsBy", facets_from[k],
                                         "fracture", broken, "pose", pose_to_json(result.poses[k], allocator));
             if (!alone.empty()) add_members(one, allocator, "alone", alone);
+            if (result.group[k] < 0) report_own_axis(fragments[k], one, allocator);
             list.PushBack(one, allocator);
             report.row("fragments", {names[k], facets_from[k], number(100 * broken, 3),
                                      result.group[k] < 0 ? std::string("-") : std::to_string(result.group[k] + 1), alone});
@@ -179,8 +181,11 @@ private:
         for (const UndoneJoin& one : result.undone)
             report.line("not joined: " + printable(names[one.first]) + " and " + printable(names[one.second]) + " (" +
                         number(one.pair, 2) + " by the two alone): " + one.reason);
-        for (int g = 0; g < result.groups(); ++g)
-            write_group(context, report, result, g, content["groups"][static_cast<unsigned>(g)], allocator);
+        for (int g = 0; g < result.groups(); ++g) {
+            JsonValue& group = content["groups"][static_cast<unsigned>(g)];
+            report_group_axis(report, fragments, result, g, group, content["joins"], allocator);
+            write_group(context, report, result, g, group, allocator);
+        }
         report.values(content);
         output.write("assembly.json", content);
         const std::size_t joined =

@@ -32,12 +32,17 @@ struct TemplateClassify final : Operation {
         read_classes();
         std::vector<Classification> answers;
         std::optional<Error> first;
+        std::size_t kept = 0;
         Progress progress("asking classes", files.size());
         for (std::size_t i = 0; i < files.size(); ++i, progress.advance()) {
             if (is_class(i)) continue;
             answers.push_back(answer_of(context, i, first));
-            if (answer) keep(answers);
+            if (answer && answers.size() >= kept + 1 + kept / 32) {  // at most a thirty-second is lost: bytes in all O(n log n)
+                keep(answers);
+                kept = answers.size();
+            }
         }
+        if (answer && kept < answers.size()) keep(answers);
         if (std::all_of(answers.begin(), answers.end(), [](const auto& a) { return !a.problem.empty(); })) throw *first;
         report_result(report, answers);
         if (!std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.verdict == Membership::member; }))

@@ -2,6 +2,7 @@
 #include "operations.h"
 
 #include "ostraka/core/text.h"
+#include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/revolution/surface_of_revolution.h"
 
 namespace ostraka {
@@ -14,35 +15,38 @@ struct TemplateTurn final : Operation {
         p.output("output", Kind::folder, output, "folder to write the template to").flag();
         p.options("unit", unit, "unit of the coordinates, any text such as mm");
         options.describe(p.options);
+        reading.describe(p.options);
         p.report.schema = "turned";
-        p.report.table("sherds", text("name", "sherd"), boolean("axis"), number("lean", "own axis leans, degrees"),
-                       number("aside", "aside"), number("lowest", "from height"), number("highest", "to"),
-                       number("residual", "off the template"));
-        p.report.values(text("format"), integer("version"), numbers("through"), numbers("direction"),
-                        number("height", "", "length"), number("largestDiameter", "", "length"), boolean("base"), boolean("rim"),
-                        integer("vertices"));
+        p.report.table("sherds", text("name", "sherd"), text("use"), boolean("axis"), number("lean", "own axis leans, degrees"),
+                       number("aside", "aside"), number("weight", "share of the axis %"), number("disagreement"),
+                       number("lowest", "from height"), number("highest", "to"), number("residual", "off the template"),
+                       number("onTemplate", "on it %"), text("reason", ""), text("remedy", ""));
+        p.report.values(text("format"), integer("version"), numbers("through"), numbers("direction"), number("directionError"),
+                        number("placeError", "", "length"), number("height", "", "length"),
+                        number("largestDiameter", "", "length"), boolean("base"), boolean("rim"), integer("vertices"));
     }
 
     void run(Context& context, Report& report) override {
         std::vector<const Fragment*> sherds;
-        for (std::size_t k = 0; k < files.size(); ++k) sherds.push_back(&files.load<Fragment>(read_sherd, k));
+        std::vector<SherdOnProfile> unreadable;
+        for (std::size_t k = 0; k < files.size(); ++k) try {
+                const FragmentFile& file = files.load<FragmentFile>(
+                    [&](const Path& path) { return read_fragment(path, reading); }, k, options_text(reading));
+                context.notes(files.file(k), file.notes);
+                sherds.push_back(&file.fragment);
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::input || files.size() == 1) throw;
+                SherdOnProfile& one = unreadable.emplace_back();
+                one.name = files.path(k).stem().string();
+                one.use = SherdUse::left_out;
+                one.reason = "cannot be read: " + printable(files.file(k)) + " " + error.problem();
+                one.remedy = error.remedy();
+            }
         output.open();
-        RevolutionTemplate turned = template_of_revolution(sherds, options);
+        RevolutionTemplate turned = template_of_revolution(sherds, options, unreadable);
         turned.annotations.unit = unit;
         write(context, turned);
         report_result(report, turned);
-    }
-
-    /// With the facets that the annotations beside it say.
-    static Fragment read_sherd(const Path& file) {
-        Fragment sherd;
-        sherd.name = file.stem().string();
-        sherd.mesh = read_mesh(file).mesh;
-        const Path beside = file.parent_path() / (sherd.name + ".ant.json");
-        if (!file_exists(beside)) return sherd;
-        const AnnotationSet set = read_annotations(beside, sherd.mesh);
-        sherd.facets = in_file(beside.string(), [&] { return facets_of(sherd.mesh, set); });
-        return sherd;
     }
 
     void write(Context& context, const RevolutionTemplate& turned) const {
@@ -76,15 +80,30 @@ struct TemplateTurn final : Operation {
         double height = 0, widest = 0;
         for (const auto& p : turned.profile) height = std::max(height, p.y()), widest = std::max(widest, p.x());
         report("format", "ostraka-turned")("version", 1)("through", triple(turned.axis.point))(
-            "direction", triple(turned.axis.direction))("height", height)("largestDiameter", 2 * widest)("base", turned.base)(
+            "direction", triple(turned.axis.direction))("directionError", turned.direction_error)(
+            "placeError", turned.place_error)("height", height)("largestDiameter", 2 * widest)("base", turned.base)(
             "rim", turned.rim)("vertices", turned.mesh.number_of_vertices());
+        std::size_t used = 0;
         for (const SherdOnProfile& one : turned.sherds) {
-            const bool found = one.axis.found;
-            report.row("sherds")("name", one.name)("axis", found)("lean", one.lean,
-                                                                  found ? number(one.lean, 3) : one.axis.reason)(
-                "aside", one.aside, found ? number(one.aside, 3) : "-")("lowest", one.lowest, number(one.lowest, 4))(
-                "highest", one.highest, number(one.highest, 4))("residual", one.residual, number(one.residual, 3));
+            const bool found = one.axis.found, out = one.use == SherdUse::left_out;
+            used += out ? 0 : 1;
+            const auto shown = [&](double value, int places) { return out ? std::string("-") : number(value, places); };
+            Report::Row row = report.row("sherds");
+            row("name", one.name)("use", to_string(one.use))("axis", found)("lean", one.lean, found ? number(one.lean, 3) : "-")(
+                "aside", one.aside, found ? number(one.aside, 3) : "-")("weight", one.weight, shown(100 * one.weight, 2))(
+                "disagreement", one.disagreement)("lowest", one.lowest, shown(one.lowest, 4))(
+                "highest", one.highest, shown(one.highest, 4))("residual", one.residual, shown(one.residual, 3))(
+                "onTemplate", one.on_template, shown(100 * one.on_template, 2));
+            if (!one.reason.empty()) row("reason", one.reason);
+            if (!one.remedy.empty()) row("remedy", one.remedy);
         }
+        for (const SherdOnProfile& one : turned.sherds)
+            if (one.use != SherdUse::used)
+                report.line(to_string(one.use) + ": " + printable(one.name) + (one.use == SherdUse::left_out ? " " : ", which ") +
+                            one.reason + (one.remedy.empty() ? "" : "; " + one.remedy));
+        report.line(std::to_string(used) + " of " + std::to_string(turned.sherds.size()) +
+                    " sherds tell of the vessel; its axis is known to " + number(turned.direction_error, 2) + " degrees and " +
+                    number(turned.place_error, 2) + " aside");
         report.line("height " + number(height, 5) + ", largest diameter " + number(2 * widest, 5) + "; " +
                     (turned.base ? "with a base" : "no base") + ", " + (turned.rim ? "with a rim" : "no rim") + "; " +
                     std::to_string(turned.mesh.number_of_vertices()) + " vertices");
@@ -95,6 +114,7 @@ struct TemplateTurn final : Operation {
     FolderOutput output;
     std::string unit;
     RevolutionOptions options;
+    FragmentFileOptions reading;
 };
 
 }  // namespace

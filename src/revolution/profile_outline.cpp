@@ -11,11 +11,11 @@ namespace ostraka::detail {
 
 using Eigen::Vector2d;
 
-void ProfileImage::add(std::size_t row, double from, double to) {
+void ProfileImage::add(std::vector<double>& cells, std::size_t row, double from, double to) const {
     const double a = from / step, b = to / step;
     for (auto c = static_cast<std::size_t>(std::max(0.0, a)); c < columns && static_cast<double>(c) < b; ++c) {
         const auto left = static_cast<double>(c);
-        wall_share[row * columns + c] += std::max(0.0, std::min(b, left + 1) - std::max(a, left));
+        cells[row * columns + c] += std::max(0.0, std::min(b, left + 1) - std::max(a, left));
     }
 }
 
@@ -54,7 +54,7 @@ void ProfileImage::bridge(std::vector<std::string>* notes) {
             for (std::size_t between = last + 1; between < row; ++between) {
                 const double t = static_cast<double>(between - last) / static_cast<double>(row - last);
                 std::fill_n(wall_share.begin() + static_cast<long>(between * columns), columns, 0.0);
-                add(between, (1 - t) * a.first + t * b.first, (1 - t) * a.second + t * b.second);
+                add(wall_share, between, (1 - t) * a.first + t * b.first, (1 - t) * a.second + t * b.second);
             }
             if (notes != nullptr)
                 notes->push_back("no wall from height " + digits(static_cast<double>(last + 1) * step, 4) + " to " +

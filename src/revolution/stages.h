@@ -22,10 +22,12 @@ struct Outline {
 struct ProfileImage {
     double step = 0;
     std::size_t rows = 0, columns = 0;
-    std::vector<double> wall_share;  ///< share of the rays that meet anything that is inside the wall
+    std::vector<double> wall_share;  ///< share of the rays that tell that is inside the wall
+    std::vector<double> telling;     ///< rays that tell whether there is wall
     std::vector<double> present;     ///< rays that meet anything, of each row
 
-    void add(std::size_t row, double from, double to);
+    /// To the cells of a row between two radii, of one of the two above.
+    void add(std::vector<double>& cells, std::size_t row, double from, double to) const;
     void clear(std::size_t row);
     /// In a row from `first` to before `end`.
     [[nodiscard]] bool reaches_axis(std::size_t first, std::size_t end) const;
@@ -58,18 +60,34 @@ struct AxisFrame {
 
 AxisFrame frame_of(const Axis& axis);
 
-struct JoinedSherds {
-    Mesh mesh;
-    std::vector<Index> faces;                     ///< that are not of a break
-    std::vector<std::vector<Index>> of_fragment;  ///< the same, fragment by fragment
+/// A sherd on its way into the template.
+struct LaidSherd {
+    const Fragment* fragment = nullptr;
+    bool inside_out = false;   ///< its faces count the other way round
+    bool walls = true;         ///< it is closed, so that where its clay is can be told
+    bool axis = true;          ///< what it tells of the axis counts
+    bool contradicts = false;  ///< it was left out because of what it tells of the axis
+    Motion motion;             ///< to where its axis and height are those of all
 };
 
-JoinedSherds joined(const std::vector<const Fragment*>& sherds, const std::vector<Motion>& motions);
+struct JoinedSherds {
+    Mesh mesh;
+    std::vector<std::vector<Index>> of_fragment;  ///< faces that are not of a break, sherd by sherd
+    [[nodiscard]] std::vector<Index> faces() const;
+    [[nodiscard]] std::vector<bool> broken() const;  ///< of each face of the mesh
+};
 
-/// Each sherd's own axis is aligned with the mean of all: sherds put together by hand stand off each other by their joints. Fills
-/// in axis, sherds and notes of the template. The motions, one a sherd.
-std::vector<Motion> common_axis(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
-                                RevolutionTemplate& result);
+/// The sherds for which `take` is true, moved; of the others no face.
+JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& take);
+
+/// The axis of all sherds that are not left out, and how each has to be moved so that its own is that: fills in axis, errors and
+/// sherds of the template, and the motions. Leaves out what tells nothing or contradicts the others. Throws Error (input) where
+/// no sherd is left.
+void find_common_axis(std::vector<LaidSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result);
+
+void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::string& remedy = {});
+/// Error (input) that names each sherd and why it is left out.
+[[noreturn]] void fail_all_left_out(const RevolutionTemplate& result);
 
 struct WallSection {
     detail::ProfileImage image;
@@ -81,9 +99,10 @@ struct WallSection {
     [[nodiscard]] bool has_rim(const RevolutionOptions& options) const;
 };
 
-/// How much of the wall rays from the axis meet, by height and radius.
-WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
-                         const RevolutionOptions& options);
+/// How much of the wall rays from the axis meet, by height and radius. A ray that leaves the clay, or enters it, by a break
+/// (`broken` of its face, or a normal far from the plane through the axis) does not tell whether there was wall beyond.
+WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
+                         double high, double far, const RevolutionOptions& options);
 
 /// Rings of vertices around the axis, each with as many as its size asks for, sewn together.
 class ProfileSweep {

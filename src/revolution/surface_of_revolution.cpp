@@ -20,27 +20,31 @@ namespace {
 
 class RevolutionBuilder {
 public:
-    RevolutionBuilder(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options)
-        : sherds_(sherds), options_(options) {}
+    RevolutionBuilder(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
+                      std::vector<SherdOnProfile> left_out)
+        : options_(options) {
+        for (const Fragment* sherd : sherds) {
+            sherds_.emplace_back().fragment = sherd;
+            result_.sherds.emplace_back();
+            result_.sherds.back().name = sherd->name;
+        }
+        for (SherdOnProfile& one : left_out) result_.sherds.push_back(std::move(one));
+    }
 
     RevolutionTemplate run() {
-        for (const Fragment* sherd : sherds_)
-            if (!CGAL::is_closed(sherd->mesh))
-                fail_input("sherd " + sherd->name, "is not closed, so that where its clay is cannot be told",
-                           "close it ('mesh repair'), or leave it out");
-        motions_ = common_axis(sherds_, options_, result_);
-        // Heights are mended by what the template, made of all, says to each.
-        for (int round = 0;; ++round) {
-            const JoinedSherds all = joined(sherds_, motions_);
-            const SurfaceSearch search(all.mesh);
-            profile(search, all);
-            make();
-            if (round == height_rounds || sherds_.size() == 1) {
-                for (std::size_t k = 0; k < sherds_.size(); ++k) compare(all, k);
-                break;
+        look_at_each();
+        for (;;) {
+            for (LaidSherd& one : sherds_) one.motion = {};
+            find_common_axis(sherds_, options_, result_);
+            if (!any_walls()) {
+                for (SherdOnProfile& one : result_.sherds)
+                    if (one.use != SherdUse::left_out) leave_out(one, one.reason, one.remedy);
+                fail_all_left_out(result_);
             }
-            mend_heights(all);
+            const bool again = turn() ? drop_one_off_the_template() || take_back() : drop_the_least_sure();
+            if (!again) break;
         }
+        say_what_is_partly_used();
         result_.notes.insert(result_.notes.end(), bridged_.begin(), bridged_.end());
         annotate_revolution(result_, frame_, lowest_, rings_);
         return std::move(result_);
@@ -48,6 +52,128 @@ public:
 
 private:
     static constexpr int height_rounds = 4;
+    /// Of a sherd's area, on the template that it is part of: less lies elsewhere. Breaks that are not known take up to half.
+    static double least_on_template(const Fragment& sherd) { return sherd.facets.empty() ? 0.3 : 0.5; }
+    /// Enough for one whose own axis says something else.
+    static constexpr double enough_on_template = 0.6;
+
+    void look_at_each() {
+        for (std::size_t k = 0; k < sherds_.size(); ++k) {
+            const Mesh& mesh = sherds_[k].fragment->mesh;
+            SherdOnProfile& one = result_.sherds[k];
+            if (mesh.number_of_faces() == 0) {
+                leave_out(one, "has no faces", "give a mesh, or points of its surface");
+                continue;
+            }
+            sherds_[k].walls = CGAL::is_closed(mesh);
+            if (!sherds_[k].walls) {
+                one.use = SherdUse::partly;
+                one.reason = "is not closed, so that where its clay is cannot be told: of it the axis counts, not the walls";
+                one.remedy = "close it ('mesh repair')";
+                continue;
+            }
+            double volume = 0;
+            const Vector3d origin = eigen(mesh.point(*mesh.vertices().begin()));
+            for (const Face f : mesh.faces()) {
+                const auto [a, b, c] = corners(mesh, f);
+                volume +=
+                    (eigen(mesh.point(a)) - origin).dot((eigen(mesh.point(b)) - origin).cross(eigen(mesh.point(c)) - origin));
+            }
+            sherds_[k].inside_out = volume < 0;
+            if (volume < 0) result_.notes.push_back("sherd " + one.name + " is inside out: its faces count the other way round");
+        }
+    }
+
+    [[nodiscard]] std::vector<bool> of_walls() const {
+        std::vector<bool> take;
+        for (std::size_t k = 0; k < sherds_.size(); ++k)
+            take.push_back(sherds_[k].walls && result_.sherds[k].use != SherdUse::left_out);
+        return take;
+    }
+
+    [[nodiscard]] bool any_walls() const {
+        const std::vector<bool> take = of_walls();
+        return std::find(take.begin(), take.end(), true) != take.end();
+    }
+
+    /// The template of the sherds that are not left out. Heights are mended by what the template, made of all, says to each.
+    /// False where they have no profile.
+    bool turn() {
+        const std::vector<bool> take = of_walls();
+        const auto count = std::count(take.begin(), take.end(), true);
+        for (int round = 0;; ++round) {
+            const JoinedSherds all = joined(sherds_, take);
+            const SurfaceSearch search(all.mesh);
+            if (!profile(search, all)) return false;
+            make();
+            if (round == height_rounds || count == 1) {
+                for (std::size_t k = 0; k < sherds_.size(); ++k) compare(all, k);
+                return true;
+            }
+            mend_heights(all);
+        }
+    }
+
+    /// The one of which the least lies on the template.
+    bool drop_one_off_the_template() {
+        const std::vector<bool> take = of_walls();
+        std::size_t worst = 0;
+        double least = 1;
+        for (std::size_t k = 0; k < sherds_.size(); ++k) {
+            const double share = result_.sherds[k].on_template / least_on_template(*sherds_[k].fragment);
+            if (take[k] && share < least) worst = k, least = share;
+        }
+        if (!(least < 1)) return false;
+        leave_out(result_.sherds[worst],
+                  "has walls that are not on the vessel that the others make (" +
+                      digits(100 * result_.sherds[worst].on_template, 2) + " % of its area is)",
+                  "is it in another unit than the others, of another vessel, or not where it lay?");
+        if (!any_walls()) fail_all_left_out(result_);
+        return true;
+    }
+
+    /// Sherds whose own axis contradicts the others (a short arc, breaks that are not known), but whose walls lie on the vessel
+    /// that the others make: their axis does not count, their walls do.
+    bool take_back() {
+        bool any = false;
+        const SurfaceSearch surface(result_.mesh);
+        for (std::size_t k = 0; k < sherds_.size(); ++k) {
+            LaidSherd& sherd = sherds_[k];
+            if (!sherd.contradicts || !sherd.walls || !sherd.axis) continue;
+            sherd.axis = false;
+            sherd.motion = {};
+            std::vector<bool> alone(sherds_.size(), false);
+            alone[k] = true;
+            const JoinedSherds own = joined(sherds_, alone);
+            if (on_template(surface, own.mesh, own.of_fragment[k]).share < enough_on_template) continue;
+            SherdOnProfile& one = result_.sherds[k];
+            one.use = SherdUse::partly;
+            one.reason = "tells radius and height where it lies; by itself it " + one.reason;
+            one.remedy.clear();
+            any = true;
+        }
+        return any;
+    }
+
+    /// At no height do most of the walls lie at one radius: the sherd that tells least of the axis goes.
+    bool drop_the_least_sure() {
+        const std::vector<bool> take = of_walls();
+        std::size_t least = take.size();
+        for (std::size_t k = 0; k < take.size(); ++k)
+            if (take[k] && (least == take.size() || result_.sherds[k].weight < result_.sherds[least].weight)) least = k;
+        leave_out(result_.sherds[least], "has walls that are at no height where those of the others are",
+                  "ask for less presence (--presence), or look whether it is of the same vessel");
+        if (!any_walls()) fail_all_left_out(result_);
+        return true;
+    }
+
+    void say_what_is_partly_used() {
+        for (SherdOnProfile& one : result_.sherds)
+            if (one.use == SherdUse::used && !one.axis.found) {
+                one.use = SherdUse::partly;
+                one.reason = "tells radius and height where it lies; by itself it has no axis: " + one.axis.reason;
+            }
+    }
 
     void mend_heights(const JoinedSherds& all) {
         const SurfaceSearch surface(result_.mesh);
@@ -65,11 +191,12 @@ private:
                 b += n.norm() * up * m.dot(eigen(hit->point) - p);
             }
             // More than the step: part of the template there is the sherd itself.
-            if (a > 0) motions_[k].translation += std::clamp(1.3 * b / a, -search_radius, search_radius) * frame_.up;
+            if (a > 0) sherds_[k].motion.translation += std::clamp(1.3 * b / a, -search_radius, search_radius) * frame_.up;
         }
     }
 
-    void profile(const SurfaceSearch& search, const JoinedSherds& all) {
+    /// False where there is none.
+    bool profile(const SurfaceSearch& search, const JoinedSherds& all) {
         double low = 1e300, high = -1e300, far = 0;
         bridged_.clear();
         result_.present.clear();
@@ -83,7 +210,7 @@ private:
                 high = std::max(high, frame_.height(p));
                 far = std::max(far, frame_.across(p).norm());
             }
-            WallSection section = wall_section(search, frame_, low, high, far, options_);
+            WallSection section = wall_section(search, all.broken(), frame_, low, high, far, options_);
             section.drop_rare(options_);
             result_.rim = section.has_rim(options_);
             image_ = std::move(section.image);
@@ -96,9 +223,7 @@ private:
         image_.bridge(&bridged_);
         image_.smooth(options_.smoothing);
         detail::Outline outline = image_.outline();
-        if (outline.points.size() < 8)
-            fail_input("sherds", "have no profile: at no height is there enough of a wall",
-                       "ask for less presence, or look at their axis");
+        if (outline.points.size() < 8) return false;
         double lowest = 1e300;
         for (const Vector2d& p : outline.points) lowest = std::min(lowest, p.y());
         for (Vector2d& p : outline.points) p.y() -= lowest;
@@ -108,6 +233,7 @@ private:
         const std::size_t rows = image_.rows;
         for (std::size_t row = 0; row < rows; ++row)
             result_.present.push_back(360.0 * image_.present[row] / std::max(8.0, 2.0 * std::max(4, options_.columns / 2)));
+        return true;
     }
 
     void make() {
@@ -146,31 +272,40 @@ private:
 
     void compare(const JoinedSherds& all, std::size_t k) {
         SherdOnProfile& one = result_.sherds[k];
-        one.name = sherds_[k]->name;
-        one.motion = motions_[k];
-        const SurfaceSearch surface(result_.mesh);
-        double area = 0, squares = 0, tolerance = 0.02 * surface.diagonal();
+        one.motion = sherds_[k].motion;
+        one.on_template = one.residual = one.lowest = one.highest = 0;
+        if (all.of_fragment[k].empty()) return;
         one.lowest = 1e300, one.highest = -1e300;
         for (const Index f : all.of_fragment[k]) {
-            const Vector3d p = eigen(centroid(all.mesh, Face(f))), n = eigen(area_vector(all.mesh, Face(f)));
-            one.lowest = std::min(one.lowest, frame_.height(p) - lowest_);
-            one.highest = std::max(one.highest, frame_.height(p) - lowest_);
-            if (!(n.norm() > 0)) continue;
-            const auto hit = surface.closest_compatible(point_of(p), vector_of(n.normalized()), 0.8, tolerance);
-            if (!hit) continue;  // of a break
-            area += n.norm();
-            squares += n.norm() * hit->distance * hit->distance;
+            const double height = frame_.height(eigen(centroid(all.mesh, Face(f)))) - lowest_;
+            one.lowest = std::min(one.lowest, height), one.highest = std::max(one.highest, height);
         }
-        if (!(area > 0))
-            fail_input("sherd '" + one.name + "'", "its walls are nowhere on the vessel that all sherds make",
-                       "is it in another unit than the others, inside out, or of another vessel?");
-        one.residual = std::sqrt(squares / area);
+        const OnTemplate found = on_template(SurfaceSearch(result_.mesh), all.mesh, all.of_fragment[k]);
+        one.on_template = found.share, one.residual = found.distance;
     }
 
-    const std::vector<const Fragment*>& sherds_;
+    struct OnTemplate {
+        double share = 0, distance = 0;  ///< of the area; root mean square of that
+    };
+    static OnTemplate on_template(const SurfaceSearch& surface, const Mesh& mesh, const std::vector<Index>& faces) {
+        const double tolerance = 0.02 * surface.diagonal();
+        double all = 0, on = 0, squares = 0;
+        for (const Index f : faces) {
+            const Vector3d n = eigen(area_vector(mesh, Face(f)));
+            if (!(n.norm() > 0)) continue;
+            all += n.norm();
+            const auto hit = surface.closest_compatible(centroid(mesh, Face(f)), vector_of(n.normalized()), 0.8, tolerance);
+            if (!hit) continue;  // of a break
+            on += n.norm();
+            squares += n.norm() * hit->distance * hit->distance;
+        }
+        if (!(on > 0)) return {};
+        return {on / all, std::sqrt(squares / on)};
+    }
+
+    std::vector<LaidSherd> sherds_;
     const RevolutionOptions& options_;
     AxisFrame frame_;
-    std::vector<Motion> motions_;  ///< of each sherd to where its axis and height are those of all
     std::vector<std::string> bridged_;
     ProfileImage image_;
     double lowest_ = 0;
@@ -181,10 +316,11 @@ private:
 
 }  // namespace
 
-RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options) {
+RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
+                                          std::vector<SherdOnProfile> left_out) {
     check_options(options, "turned template");
-    if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
-    return RevolutionBuilder(sherds, options).run();
+    if (sherds.empty() && left_out.empty()) fail_usage("there is no sherd", "give one or more");
+    return RevolutionBuilder(sherds, options, std::move(left_out)).run();
 }
 
 void RevolutionOptions::describe(OptionList& visit) {
@@ -192,6 +328,10 @@ void RevolutionOptions::describe(OptionList& visit) {
     visit("columns", columns, "directions around the axis", Range{8, 7200});
     visit("presence", presence, "degrees of wall that a height must have to count", Range{0, 360});
     visit("profile-smoothing", smoothing, "of the profile: standard deviation in rows", Range{0, 50});
+    visit("layout-angle", layout_angle, "degrees by which a sherd may be tilted where it lies: standard deviation",
+          Range{0.001, 90});
+    visit("layout-shift", layout_shift, "share of the vessel's diagonal by which it may lie aside: standard deviation",
+          Range{1e-6, 1});
     visit("vertices", vertices, "of the template, about", Range{100, 1e7});
     axis.describe(visit);
 }

@@ -27,14 +27,63 @@ bool WallSection::has_rim(const RevolutionOptions& options) const {
     return at > 0.8 * near && near > options.presence / 360 * static_cast<double>(tops.size());
 }
 
-WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, double low, double high, double far,
-                         const RevolutionOptions& options) {
+namespace {
+
+/// Sine of the angle between a wall's normal and the plane through the axis, at most.
+constexpr double most_around = 0.6;
+
+/// Space narrower than this share of the largest radius, at a break, is what was worn off.
+constexpr double worn_off = 0.02;
+
+struct RayHit {
+    double radius;
+    bool leaving, broken;
+};
+
+/// One ray from the axis outwards: where it is inside the clay, and where it tells that there is none. Sherds of a layout may
+/// overlap: it is inside as long as it is in any of them. Returns whether it met any.
+bool follow(const std::vector<RayHit>& hits, detail::ProfileImage& image, std::size_t row, double far) {
+    int depth = 0, least = 0;
+    for (const RayHit& hit : hits) {
+        depth += hit.leaving ? -1 : 1;
+        least = std::min(least, depth);
+    }
+    depth = -least;  // of sherds around the axis
+    bool any = false, known = false;
+    double begin = 0;  // of the clay or the space that it is in
+    const auto clay = [&](double from, double to) {
+        image.add(image.wall_share, row, from, to);
+        image.add(image.telling, row, from, to);
+        any = true;
+    };
+    for (const RayHit& hit : hits) {
+        const int before = depth;
+        depth += hit.leaving ? -1 : 1;
+        if (before == 1 && depth == 0) {
+            clay(begin, hit.radius);
+            begin = hit.radius;
+            known = !hit.broken;
+        } else if (before == 0 && depth == 1) {
+            if (any && (!known || hit.broken) && hit.radius - begin < worn_off * far) clay(begin, hit.radius);
+            else if (known || !hit.broken) image.add(image.telling, row, begin, hit.radius);
+            begin = hit.radius;
+        }
+    }
+    if (any && depth == 0 && known) image.add(image.telling, row, begin, static_cast<double>(image.columns) * image.step);
+    return any;
+}
+
+}  // namespace
+
+WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
+                         double high, double far, const RevolutionOptions& options) {
     WallSection section;
     detail::ProfileImage& image = section.image;
     image.step = (high - low) / options.rows;
     image.rows = static_cast<std::size_t>(options.rows);
     image.columns = static_cast<std::size_t>(std::ceil(far / image.step)) + 2;
     image.wall_share.assign(image.rows * image.columns, 0);
+    image.telling = image.wall_share;
     image.present.assign(image.rows, 0);
     const int half = std::max(4, options.columns / 2);
     std::vector<std::vector<bool>> met(image.rows, std::vector<bool>(2 * static_cast<std::size_t>(half), false));
@@ -46,36 +95,26 @@ WallSection wall_section(const SurfaceSearch& search, const AxisFrame& frame, do
                 // Not along symmetric directions, which edges of synthetic meshes like.
                 const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
                 const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * far);
+                const Vector3d around = frame.up.cross(direction);
                 for (const double side : {1.0, -1.0}) {
-                    double begin = 0;
-                    bool inside = false, first = true, any = false;
-                    const auto visit = [&](const SurfaceHit& hit) {
+                    std::vector<RayHit> along;
+                    for (const SurfaceHit& hit : hits) {
                         const double radius = side * hit.distance;
-                        if (radius < 0) return;
-                        const bool leaving = side * eigen(search.normal(hit.face)).dot(direction) > 0;
-                        if (first && leaving) inside = true, begin = 0;
-                        first = false;
-                        if (leaving && inside) {
-                            image.add(row, begin, radius);
-                            any = true;
-                            inside = false;
-                        } else if (!leaving && !inside) {
-                            begin = radius;
-                            inside = true;
-                        }
-                    };
-                    // Outwards from the axis on either side of it.
-                    for (const SurfaceHit& hit : hits) visit(hit);
-                    if (!any) continue;
+                        if (radius < 0) continue;
+                        const Vector3d normal = eigen(search.normal(hit.face));
+                        along.push_back({radius, side * normal.dot(direction) > 0,
+                                         broken[hit.face] || std::abs(normal.dot(around)) > most_around});
+                    }
+                    if (!follow(along, image, row, far)) continue;
                     met[row][static_cast<std::size_t>(side > 0 ? k : half + k)] = true;
                     ++image.present[row];
                 }
             }
         },
         4);
-    for (std::size_t row = 0; row < image.rows; ++row)
-        for (std::size_t c = 0; c < image.columns; ++c)
-            if (image.present[row] > 0) image.wall_share[row * image.columns + c] /= image.present[row];
+    const double least = std::max(1.0, options.presence / 360 * 2 * half);
+    for (std::size_t cell = 0; cell < image.wall_share.size(); ++cell)
+        image.wall_share[cell] /= std::max(least, image.telling[cell]);
     std::vector<double>& tops = section.tops;
     tops.assign(2 * static_cast<std::size_t>(half), -1);
     for (std::size_t row = 0; row < image.rows; ++row)

@@ -1,5 +1,6 @@
 #include "scratch.h"
 
+#include "ostraka/core/file.h"
 #include "ostraka/core/json.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/template_package/template.h"
@@ -97,6 +98,45 @@ TEST_F(RevolutionCommand, AFitOnItMatchesRotationsByBreaks) {
     const auto never = run_command(fit + " --turns never");
     EXPECT_FALSE(parse_json(never.out, "report")["result"].HasMember("joints"));
     EXPECT_EQ(run_command(fit + " --turns perhaps").code, 2);
+}
+
+TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
+    const Path text = scratch / "text.ply", flat = scratch / "flat.ply", cut = scratch / "cut.ply";
+    write_file(text, "no mesh\n");
+    write_file(cut, read_file(files[1]).substr(0, 2000));
+    TriangleSoup box = to_soup(read_mesh(files[0]).mesh);
+    for (auto& p : box.points) p = {p[0] / 20, p[1] + 30, p[2]};
+    write_mesh(flat, build_mesh(box));
+    const std::string command = "template turn " + quoted(text) + " " + all() + quoted(flat) + " " + quoted(cut) +
+                                " --vertices 3000 --output " + quoted(scratch / "out");
+    const auto run = run_command(command + " --json");
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Json report = parse_json(run.out, "report");
+    const JsonValue& result = report["result"];
+    validate(result, "turned", "report");
+    ASSERT_EQ(result["sherds"].Size(), files.size() + 3);
+    EXPECT_NEAR(result["height"].GetDouble(), 20, 0.5);
+    std::size_t out = 0;
+    for (const auto& one : result["sherds"].GetArray()) {
+        const std::string name = one["name"].GetString();
+        if (name.rfind("sherd", 0) == 0) {
+            EXPECT_STRNE(one["use"].GetString(), "left out") << name;
+            continue;
+        }
+        EXPECT_STREQ(one["use"].GetString(), "left out") << name;
+        EXPECT_TRUE(one.HasMember("reason")) << name;
+        ++out;
+    }
+    EXPECT_EQ(out, 3U);
+    const auto words = run_command(command);
+    EXPECT_NE(words.out.find("left out: text"), std::string::npos) << words.out;
+    EXPECT_NE(words.out.find("cut.ply"), std::string::npos) << words.out;
+    EXPECT_NE(words.out.find("3 of 6 sherds"), std::string::npos) << words.out;
+    // Nothing but such: every one is named.
+    const auto none = run_command("template turn " + quoted(text) + " " + quoted(cut) + " --output " + quoted(scratch / "none"));
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("text.ply"), std::string::npos) << none.err;
+    EXPECT_NE(none.err.find("cut.ply"), std::string::npos) << none.err;
 }
 
 TEST_F(RevolutionCommand, BadInputIsNamedAndNothingIsWritten) {

@@ -8,6 +8,8 @@
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <gtest/gtest.h>
 
+#include "sherds.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -150,11 +152,181 @@ TEST(RevolutionTemplate, RefusesWhatIsNoSurfaceOfRevolution) {
     CGAL::Euler::remove_face(open.mesh.halfedge(first), open.mesh);
     open.mesh.collect_garbage();
     EXPECT_THROW(template_of_revolution({&open}), Error);
-    // Two that do not lie as they did in one vessel.
+}
+
+/// A flat piece: 1 x 1 x 0.1, its middle at the origin.
+Fragment tile(const Motion& motion) {
+    std::vector<int> side;
+    const TriangleSoup soup = test::box_grid(
+        {10, 10, 2},
+        [&](double u, double v, double w) {
+            const Vector3d p = motion({u - 0.5, v - 0.5, 0.1 * w - 0.05});
+            return std::array<double, 3>{p.x(), p.y(), p.z()};
+        },
+        side);
+    Fragment fragment;
+    fragment.name = "tile";
+    fragment.mesh = build_mesh(soup);
+    return fragment;
+}
+
+Fragment named(const std::string& name, Fragment fragment) {
+    fragment.name = name;
+    return fragment;
+}
+
+std::vector<const Fragment*> pointers(const std::vector<Fragment>& fragments) {
+    std::vector<const Fragment*> list;
+    for (const Fragment& one : fragments) list.push_back(&one);
+    return list;
+}
+
+/// Five sherds of the pot, from foot to rim, none with a third of the turn.
+std::vector<Fragment> five_sherds(const Motion& there) {
+    std::vector<Fragment> list;
+    list.push_back(named("a", sherd(0, 1.2, 0, 0.6, there)));
+    list.push_back(named("b", sherd(1.5, 2.6, 0.4, 1, there)));
+    list.push_back(named("c", sherd(2.8, 4, 0, 0.5, there)));
+    list.push_back(named("d", sherd(4, 5, 0.45, 1, there)));
+    list.push_back(named("e", sherd(5.2, 6.2, 0.2, 0.8, there)));
+    return list;
+}
+
+TEST(RevolutionTemplate, ThreeOfEightSherdsAreOfNoUse) {
+    const Motion there = tilted();
+    const Vector3d up = there.rotation * Vector3d::UnitZ();
+    std::vector<Fragment> sherds = five_sherds(there);
+    Motion anywhere;
+    anywhere.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 0.2, 0.4).normalized()).toRotationMatrix();
+    anywhere.translation = there.translation + Vector3d(2, 1, 0.5);
+    sherds.insert(sherds.begin() + 1, named("elsewhere", sherd(0, 1.5, 0, 0.9, anywhere)));
+    Motion beside = there;
+    beside.translation += there.rotation * Vector3d(1.4, 0.2, 1.3);
+    beside.rotation = there.rotation * Eigen::AngleAxisd(0.5, Vector3d::UnitX()).toRotationMatrix();
+    sherds.insert(sherds.begin() + 3, named("flat", tile(beside)));
+    Fragment large = named("inches", sherd(2.6, 4, 0.2, 0.9, there));
+    large.mesh = scaled_by(large.mesh, 25.4);
+    sherds.push_back(std::move(large));
+    const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
+    for (const SherdOnProfile& one : revolved.sherds) {
+        const bool belongs = one.name.size() == 1;
+        EXPECT_EQ(one.use == SherdUse::left_out, !belongs) << one.name << ": " << one.reason;
+        EXPECT_EQ(one.reason.empty(), one.use == SherdUse::used) << one.name;
+        if (belongs) {
+            EXPECT_LT(one.residual, 0.01) << one.name;
+            EXPECT_GT(one.weight, 0.02) << one.name;
+        }
+    }
+    EXPECT_GT(std::abs(eigen(revolved.axis.direction).dot(up)), 1 - 1e-5);
+    EXPECT_LT((eigen(revolved.axis.point) - there.translation).cross(up).norm(), 0.01);
+    EXPECT_LT(revolved.direction_error, 1);
+    if (eigen(revolved.axis.direction).dot(up) > 0) {
+        EXPECT_LT(worst(revolved), 0.02);
+    }
+    EXPECT_TRUE(CGAL::is_closed(revolved.mesh));
+}
+
+TEST(RevolutionTemplate, AShortArcTellsLittleOfTheAxisButItsWalls) {
+    const Motion there = tilted();
+    const std::vector<Fragment> sherds{named("wide", sherd(0, 2.2, 0, 1, there)), named("wider", sherd(2.4, 5, 0, 1, there)),
+                                       named("narrow", sherd(5.2, 5.4, 0.4, 0.5, there))};
+    const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
+    EXPECT_EQ(revolved.sherds[0].use, SherdUse::used);
+    EXPECT_EQ(revolved.sherds[1].use, SherdUse::used);
+    EXPECT_NE(revolved.sherds[2].use, SherdUse::left_out) << revolved.sherds[2].reason;
+    EXPECT_LT(revolved.sherds[2].weight, 0.8 * std::min(revolved.sherds[0].weight, revolved.sherds[1].weight));
+    EXPECT_LT(revolved.sherds[2].residual, 0.01);
+    double sum = 0;
+    for (const SherdOnProfile& one : revolved.sherds) sum += one.weight;
+    EXPECT_NEAR(sum, 1, 1e-6);
+}
+
+TEST(RevolutionTemplate, OfAnOpenSherdTheAxisCountsAndOneInsideOutIsTurned) {
+    const Motion there = tilted();
+    std::vector<Fragment> sherds = five_sherds(there);
+    CGAL::Euler::remove_face(sherds[2].mesh.halfedge(*sherds[2].mesh.faces().begin()), sherds[2].mesh);
+    sherds[2].mesh.collect_garbage();
+    TriangleSoup soup = to_soup(sherds[3].mesh);
+    for (auto& t : soup.triangles) std::swap(t[1], t[2]);
+    sherds[3].mesh = build_mesh(soup);
+    const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
+    EXPECT_EQ(revolved.sherds[2].use, SherdUse::partly);
+    EXPECT_NE(revolved.sherds[2].reason.find("not closed"), std::string::npos);
+    EXPECT_NE(revolved.sherds[2].remedy.find("mesh repair"), std::string::npos);
+    EXPECT_GT(revolved.sherds[2].weight, 0.05);
+    EXPECT_EQ(revolved.sherds[3].use, SherdUse::used);
+    EXPECT_LT(revolved.sherds[3].residual, 0.01);
+    ASSERT_FALSE(revolved.notes.empty());
+    EXPECT_NE(revolved.notes[0].find("inside out"), std::string::npos);
+    double area = 0, volume = 0;
+    for (const Face f : revolved.mesh.faces()) {
+        const auto [a, b, c] = corners(revolved.mesh, f);
+        area += face_area(revolved.mesh, f);
+        volume += eigen(revolved.mesh.point(a)).dot(eigen(revolved.mesh.point(b)).cross(eigen(revolved.mesh.point(c)))) / 6;
+    }
+    EXPECT_GT(volume, 0) << area;
+}
+
+TEST(RevolutionTemplate, OfAFloorHalfIsEnough) {
+    std::vector<Fragment> sherds = five_sherds({});
+    std::vector<int> side;
+    Fragment& floor = sherds.emplace_back();
+    floor.name = "floor";
+    // Broken along the plane through the axis; its edge lies a little inside the wall's.
+    floor.mesh = build_mesh(test::box_grid(
+        {30, 15, 4},
+        [](double u, double v, double w) {
+            const double x = 1.8 * u - 0.9;
+            return std::array<double, 3>{x, v * std::sqrt(0.93 * 0.93 - x * x), 0.2 * w};
+        },
+        side));
+    for (const int one : side) floor.facets.push_back(one < 4 ? Facet::fracture : one == 4 ? Facet::outer : Facet::inner);
+    const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
+    ASSERT_EQ(revolved.axis.direction.z() > 0.99, true);
+    EXPECT_TRUE(revolved.base);
+    EXPECT_NE(revolved.sherds.back().use, SherdUse::left_out) << revolved.sherds.back().reason;
+    double low = 1, high = -1;
+    for (const Vector2d& p : revolved.profile)
+        if (p.x() > 0.2 && p.x() < 0.6 && p.y() < 0.5) low = std::min(low, p.y()), high = std::max(high, p.y());
+    EXPECT_NEAR(low, 0, 0.03);
+    EXPECT_NEAR(high - low, 0.2, 0.02);
+}
+
+TEST(RevolutionTemplate, WhereNoSherdTellsAnythingAllAreNamed) {
+    Fragment few;
+    few.name = "few";
+    few.mesh = build_mesh(to_soup(tile({}).mesh));
+    std::vector<int> side;
+    few.mesh = build_mesh(test::box_grid(
+        {1, 1, 1},
+        [](double u, double v, double w) {
+            return std::array<double, 3>{u, v, w};
+        },
+        side));
+    Motion other = tilted();
+    const std::vector<Fragment> sherds{named("first tile", tile({})), named("second tile", tile(other)), few, {}};
+    try {
+        template_of_revolution(pointers(sherds));
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        const std::string text = error.what();
+        for (const char* name : {"first tile", "second tile", "few", "no faces"})
+            EXPECT_NE(text.find(name), std::string::npos) << text;
+        EXPECT_FALSE(error.remedy().empty());
+    }
+}
+
+TEST(RevolutionTemplate, OfTwoThatContradictEachOtherOneIsLeftOut) {
     Motion aside;
     aside.rotation = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
-    const Fragment a = sherd(0, 2, 0, 1, {}), b = sherd(2.2, 4, 0, 1, aside);
-    EXPECT_THROW(template_of_revolution({&a, &b}), Error);
+    const Fragment a = sherd(0, 2.5, 0, 1, {}), b = sherd(2.7, 4, 0, 1, aside);
+    const RevolutionTemplate revolved = template_of_revolution({&a, &b});
+    EXPECT_EQ(revolved.sherds[0].use, SherdUse::used);
+    EXPECT_EQ(revolved.sherds[1].use, SherdUse::left_out);
+    EXPECT_NE(revolved.sherds[1].reason.find("leans by 40"), std::string::npos) << revolved.sherds[1].reason;
+    EXPECT_FALSE(revolved.sherds[1].remedy.empty());
+    EXPECT_GT(std::abs(revolved.axis.direction.z()), 1 - 1e-5);
 }
 
 }  // namespace

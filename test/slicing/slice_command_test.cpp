@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+
 using namespace ostraka;
 using namespace ostraka::test;
 
@@ -116,6 +119,33 @@ TEST(SliceCommand, DirectionsHeightsAndReports) {
         EXPECT_GT(d["eccentricity"].GetDouble(), 0.97) << i;
     }
     EXPECT_EQ(count_files(scratch / "bent"), 5U);  // no profile
+}
+
+TEST(SliceCommand, ARawRangeMapIsNoPotAndAShortArcIsNotHalfThere) {
+    // The front of a vase as a scanner sees it from one side; then a wall of 4.6 degrees of the turn.
+    const test::Scratch scratch;
+    for (const double degrees : {150.0, 4.6}) {
+        const std::string file = (scratch / ("front" + std::to_string(int(degrees)) + ".ply")).string();
+        write_triangles(file, grid(80, 40, false, false, [&](double u, double v) {
+                            const double a = (u - 0.5) * degrees * M_PI / 180, r = 10 + 3 * std::sin(3 * v);
+                            return std::array<double, 3>{r * std::cos(a), r * std::sin(a), 20 * v};
+                        }));
+        const std::filesystem::path folder = scratch / ("slices" + std::to_string(int(degrees)));
+        const auto run = run_command("slice " + file + " --count 5 --json --output " + folder.string());
+        ASSERT_EQ(run.code, 0) << run.err;
+        EXPECT_TRUE(std::filesystem::exists(folder / "slices.svg"));
+        EXPECT_FALSE(std::filesystem::exists(folder / "profile.svg")) << degrees;
+        const Json slices = read_json((folder / "slices.json").string());
+        ASSERT_EQ(slices["slices"].Size(), 5U);
+        for (const auto& slice : slices["slices"].GetArray()) {
+            const auto& complete = slice["completeness"];
+            EXPECT_NEAR(complete["share"].GetDouble(), degrees / 360, 1e-3 + 0.01 * degrees / 360);
+            EXPECT_GE(complete["share_at_most"].GetDouble(), complete["share"].GetDouble());
+        }
+    }
+    // A closed one is drawn.
+    ASSERT_EQ(run_command("slice " + vase + "--count 5 --output " + (scratch / "whole").string()).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "whole" / "profile.svg"));
 }
 
 TEST(SliceCommand, OpenScansAndPartsAreSaidToBeOpen) {

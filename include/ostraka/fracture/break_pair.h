@@ -6,6 +6,7 @@
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/fracture/join_evidence.h"
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -95,8 +96,10 @@ BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& o
 /// better; of no unit.
 double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options = {});
 
-/// What is seen when `pose` lays b onto a; `tolerance` is a length.
-JoinEvidence measure_join(const PreparedBreak& a, const PreparedBreak& b, const Motion& pose, double tolerance);
+/// What is seen when `pose` lays b onto a; `tolerance` is a length. By at most `samples` places of each fracture, and of what may
+/// lie inside.
+JoinEvidence measure_join(const PreparedBreak& a, const PreparedBreak& b, const Motion& pose, double tolerance,
+                          std::size_t samples = std::numeric_limits<std::size_t>::max());
 
 /// A place of b's fracture or rim on a plane of a's; both in their own frames.
 struct ContactPoint {

@@ -1,0 +1,117 @@
+// Evidence of one part on an axis.
+#include "ostraka/axis/axis_evidence.h"
+
+#include "turned_profile.h"
+
+#include "ostraka/core/dense.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ostraka {
+
+using namespace detail;
+
+struct AxisWitness::State {
+    Vector3d centroid = Vector3d::Zero();
+    double scale = 1, area = 0, tolerance = 0;
+    std::vector<RoundSample> samples;
+};
+
+namespace {
+
+/// How many independent places lie behind `count` samples: means over patches of the wall (a bin of heights, as wide as high)
+/// vary as single places over their number would, or more.
+double independent(const std::vector<RoundSample>& samples, const AxisGuess& guess, const AxisLine& line,
+                   const TurnedProfile& profile, const std::vector<double>& error, double count) {
+    double lowest = 1e300, highest = -1e300;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (profile.bin_of[i] >= 0) lowest = std::min(lowest, profile.height[i]), highest = std::max(highest, profile.height[i]);
+    const double side = std::max(1e-9, (highest - lowest) / 20);
+    struct Patch {
+        double weight = 0, sum = 0, squares = 0;
+    };
+    std::map<std::pair<int, int>, Patch> patches;
+    double all = 0, squares = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double at = samples[i].weight * profile.robust[i];
+        if (profile.bin_of[i] < 0 || !(at > 0)) continue;
+        const Vector3d d = samples[i].p - line.point;
+        const double around = std::atan2(guess.w.dot(d), guess.u.dot(d)) * profile.radius[i];
+        Patch& patch = patches[{profile.bin_of[i], static_cast<int>(std::floor(around / side))}];
+        patch.weight += at, patch.sum += at * error[i], patch.squares += at * at;
+        all += at, squares += at * error[i] * error[i];
+    }
+    if (!(all > 0) || !(squares > 0)) return count;
+    const double variance = squares / all;
+    double of_means = 0, expected = 0;
+    for (const auto& [key, patch] : patches) {
+        of_means += patch.sum * patch.sum / patch.weight;
+        expected += variance * patch.squares / patch.weight;
+    }
+    return count / std::max(1.0, of_means / std::max(1e-300, expected));
+}
+
+}  // namespace
+
+AxisWitness::AxisWitness(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options)
+    : state_(std::make_unique<State>()) {
+    const AreaMoments moments = part_moments(mesh, faces, options);
+    state_->area = moments.area;
+    state_->centroid = eigen(moments.centroid);
+    state_->scale = part_diagonal(mesh, faces);
+    state_->tolerance = options.tolerance;
+    state_->samples = take_samples(mesh, faces, options.smoothing, state_->centroid, state_->scale);
+}
+AxisWitness::~AxisWitness() = default;
+AxisWitness::AxisWitness(AxisWitness&&) noexcept = default;
+
+bool AxisWitness::enough() const { return state_->samples.size() >= 12; }
+const Vector3d& AxisWitness::centroid() const { return state_->centroid; }
+double AxisWitness::area() const { return state_->area; }
+double AxisWitness::diagonal() const { return state_->scale; }
+
+AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
+    const double scale = state_->scale;
+    AxisEvidence evidence;
+    const Vector3d along = guess.direction.normalized();
+    evidence.place = guess.point + along * (state_->centroid - guess.point).dot(along);
+    if (!enough()) return evidence;
+    const auto& samples = state_->samples;
+    const AxisLine line{(evidence.place - state_->centroid) / scale, along};
+    const TurnedProfile profile(samples, line);
+    const AxisRefinement system(samples, line, profile, guess.u, guess.w);
+    // Heights of a floor count by their normals alone.
+    constexpr double meets = 0.2;
+    double all = 0, round = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        all += samples[i].weight;
+        if (std::abs(sine(samples[i], line)) > meets) continue;
+        if (profile.bin_of[i] >= 0 && std::abs(profile.error[i]) > state_->tolerance) continue;
+        round += samples[i].weight;
+    }
+    evidence.round = all > 0 ? round / all : 0;
+    if (!(system.weight > 0)) return evidence;
+    const Eigen::Matrix4d damped = system.H + 1e-9 * system.H.trace() * Eigen::Matrix4d::Identity();
+    const Eigen::Vector4d step = -solve_ldlt<4>(damped, system.g);
+    std::vector<double> error = profile.error;
+    double squares = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        // A step that is far is not to be believed.
+        if (step.allFinite() && step.norm() < 0.2) error[i] += system.rows[i].dot(step);
+        squares += samples[i].weight * profile.robust[i] * (profile.bin_of[i] >= 0 ? error[i] * error[i] : 0);
+    }
+    // Faces are chords: no mesh is rounder than that.
+    constexpr double least = 2e-4;
+    const double variance = squares / system.weight + least * least;
+    evidence.residual = std::sqrt(variance) * scale;
+    evidence.samples = independent(samples, guess, line, profile, error, system.count);
+    const Eigen::Vector4d unit(1 / scale, 1 / scale, 1, 1);
+    const double information = evidence.samples / (variance * system.weight);
+    evidence.information = information * unit.asDiagonal() * system.H * unit.asDiagonal();
+    evidence.gradient = information * unit.asDiagonal() * system.g;
+    return evidence;
+}
+
+}  // namespace ostraka

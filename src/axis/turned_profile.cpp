@@ -1,0 +1,190 @@
+// Profiles of parts about a line.
+#include "turned_profile.h"
+
+#include "ostraka/core/dense.h"
+#include "ostraka/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::detail {
+
+std::vector<RoundSample> take_samples(const Mesh& mesh, const std::vector<Index>& faces, int rounds, const Vector3d& centre,
+                                      double scale) {
+    std::vector<Index> vertices;
+    for (const Index f : faces)
+        for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v.idx());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const auto place = [&](Vertex v) {
+        return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v.idx()) - vertices.begin());
+    };
+    std::vector<std::array<std::size_t, 3>> triangles;
+    std::vector<Vector3d> normals(vertices.size(), Vector3d::Zero());
+    double total = 0;
+    for (const Index f : faces) {
+        const auto c = corners(mesh, Face(f));
+        triangles.push_back({place(c[0]), place(c[1]), place(c[2])});
+        const Vector3d n = eigen(area_vector(mesh, Face(f)));
+        for (const std::size_t v : triangles.back()) normals[v] += n;
+        total += n.norm();
+    }
+    for (int round = 0; round <= rounds; ++round) {
+        for (auto& n : normals)
+            if (n.norm() > 0) n.normalize();
+        if (round == rounds) break;
+        std::vector<Vector3d> sums = normals;
+        for (const auto& [a, b, c] : triangles) {
+            const Vector3d sum = (normals[a] + normals[b] + normals[c]) / 3;
+            sums[a] += sum, sums[b] += sum, sums[c] += sum;
+        }
+        normals = std::move(sums);
+    }
+    const std::size_t maximum = 8000;
+    std::vector<RoundSample> samples;
+    double passed = 0;
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const double area = face_area(mesh, Face(faces[i]));
+        if (!(area > 0)) continue;
+        passed += area;
+        double weight = area / total;
+        if (faces.size() > maximum) {
+            const auto due = static_cast<std::size_t>(passed / total * double(maximum));
+            if (due <= taken) continue;
+            weight = double(due - taken) / double(maximum);
+            taken = due;
+        }
+        Vector3d p = Vector3d::Zero(), n = Vector3d::Zero();
+        for (const Vertex v : corners(mesh, Face(faces[i]))) p += (eigen(mesh.point(v)) - centre) / (3 * scale);
+        for (const std::size_t v : triangles[i]) n += normals[v];
+        if (n.norm() > 0) samples.push_back({p, n.normalized(), weight});
+    }
+    return samples;
+}
+
+double sine(const RoundSample& s, const AxisLine& axis) {
+    const Vector3d v = axis.direction.cross(s.p - axis.point);
+    const double speed = v.norm();
+    return speed > 0.01 ? s.n.dot(v) / speed : 0;
+}
+
+TurnedProfile::TurnedProfile(const std::vector<RoundSample>& samples, const AxisLine& axis)
+    : bin_of(samples.size(), -1),
+      height(samples.size()),
+      radius(samples.size()),
+      error(samples.size(), 0),
+      robust(samples.size(), 1) {
+    const int count = 20;
+    double minimum = 1e300, maximum = -1e300;
+    std::vector<double> facing(samples.size(), 0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const Vector3d d = samples[i].p - axis.point;
+        height[i] = d.dot(axis.direction);
+        const Vector3d away = d - height[i] * axis.direction;
+        radius[i] = away.norm();
+        if (radius[i] > 0.01) facing[i] = samples[i].n.dot(away) / radius[i];
+        if (std::abs(facing[i]) < 0.3) continue;
+        minimum = std::min(minimum, height[i]), maximum = std::max(maximum, height[i]);
+    }
+    if (minimum > maximum) return;
+    bins.resize(2 * static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (std::abs(facing[i]) < 0.3) continue;
+        const int at =
+            maximum > minimum ? std::min(count - 1, static_cast<int>((height[i] - minimum) / (maximum - minimum) * count)) : 0;
+        bin_of[i] = 2 * at + (facing[i] > 0 ? 1 : 0);
+        bins[static_cast<std::size_t>(bin_of[i])].members.push_back(i);
+    }
+    for (int round = 0; round < 6; ++round) fit(samples, round == 0);
+}
+
+void TurnedProfile::fit(const std::vector<RoundSample>& samples, bool first) {
+    std::vector<double> errors;
+    for (auto& bin : bins) {
+        if (first && !bin.members.empty()) {
+            // Start at the median: a handle must not pull the circle away.
+            std::vector<double> radii;
+            for (const std::size_t i : bin.members) radii.push_back(radius[i]);
+            bin.radius = upper_median(std::move(radii));
+        } else {
+            bin.weight = bin.height = bin.radius = bin.hh = bin.hr = 0;
+            for (const std::size_t i : bin.members) {
+                const double w = samples[i].weight * robust[i];
+                bin.weight += w, bin.height += w * height[i], bin.radius += w * radius[i];
+            }
+            if (!(bin.weight > 0)) continue;
+            bin.height /= bin.weight, bin.radius /= bin.weight;
+            for (const std::size_t i : bin.members) {
+                const double w = samples[i].weight * robust[i], h = height[i] - bin.height;
+                bin.hh += w * h * h, bin.hr += w * h * (radius[i] - bin.radius);
+            }
+            bin.slope = bin.hh > 1e-12 * bin.weight ? std::clamp(bin.hr / bin.hh, -4.0, 4.0) : 0;
+        }
+        for (const std::size_t i : bin.members) {
+            error[i] = (radius[i] - bin.radius - bin.slope * (height[i] - bin.height)) / std::hypot(1, bin.slope);
+            errors.push_back(std::abs(error[i]));
+        }
+    }
+    if (errors.empty()) return;
+    sigma = std::max(1.4826 * upper_median(std::move(errors)), 1e-6);
+    for (std::size_t i = 0; i < error.size(); ++i) {
+        const double t = error[i] / (4.685 * sigma);  // Tukey's biweight
+        robust[i] = std::abs(t) < 1 ? std::pow(1 - t * t, 2) : 0;
+    }
+}
+
+AxisRefinement::AxisRefinement(const std::vector<RoundSample>& samples, const AxisLine& axis, const TurnedProfile& profile)
+    : AxisRefinement(samples, axis, profile, across(axis.direction).first, across(axis.direction).second) {}
+
+AxisRefinement::AxisRefinement(const std::vector<RoundSample>& samples, const AxisLine& axis, const TurnedProfile& profile,
+                               const Vector3d& along_u, const Vector3d& along_w)
+    : u(along_u), w(along_w), rows(samples.size(), Eigen::Vector4d::Zero()) {
+    double sum = 0, sum_squares = 0;
+    for (const auto& bin : profile.bins) {
+        if (bin.members.size() < 8 || !(bin.weight > 0)) continue;
+        const auto row = [&](std::size_t i) {
+            const Vector3d d = samples[i].p - axis.point;
+            const Vector3d e = (d - d.dot(axis.direction) * axis.direction).normalized();
+            const double arm = profile.height[i] + bin.slope * profile.radius[i];
+            return Eigen::Vector4d(Eigen::Vector4d(u.dot(e), w.dot(e), arm * u.dot(e), arm * w.dot(e)) /
+                                   -std::hypot(1, bin.slope));
+        };
+        Eigen::Vector4d mean = Eigen::Vector4d::Zero(), slope = Eigen::Vector4d::Zero();
+        for (const std::size_t i : bin.members) mean += samples[i].weight * profile.robust[i] / bin.weight * row(i);
+        for (const std::size_t i : bin.members)
+            slope += samples[i].weight * profile.robust[i] * (profile.height[i] - bin.height) * row(i);
+        if (bin.hh > 1e-12 * bin.weight) slope /= bin.hh;
+        else slope.setZero();
+        for (const std::size_t i : bin.members) {
+            const double at = samples[i].weight * profile.robust[i];
+            const Eigen::Vector4d r = row(i) - mean - (profile.height[i] - bin.height) * slope;
+            rows[i] = r;
+            H += at * r * r.transpose();
+            g += at * profile.error[i] * r;
+            squares += at * profile.error[i] * profile.error[i];
+            radius += at * profile.radius[i];
+            sum += at, sum_squares += at * at;
+        }
+    }
+    weight = sum;
+    if (sum_squares > 0) count = sum * sum / sum_squares;
+    if (sum > 0) radius /= sum;
+}
+
+double AxisRefinement::radius_uncertainty(const Eigen::Vector2d& along) const {
+    const Eigen::Vector4d t(along.x(), along.y(), 0, 0);
+    const Eigen::Matrix4d information = H / weight + 1e-15 * H.trace() / weight * Eigen::Matrix4d::Identity();
+    return std::max(0.0, t.dot(solve_ldlt<4>(information, t)));
+}
+double AxisRefinement::shift_information() const {
+    return std::max(0.0, SymmetricEigen2(Eigen::Matrix2d(H.topLeftCorner<2, 2>())).eigenvalues()[0]) / weight;
+}
+double AxisRefinement::tilt_information() const {
+    const Eigen::Matrix2d shifts = H.topLeftCorner<2, 2>() + 1e-12 * (H.trace() + 1e-30) * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d left =
+        H.bottomRightCorner<2, 2>() - H.bottomLeftCorner<2, 2>() * shifts.inverse() * H.topRightCorner<2, 2>();
+    return std::max(0.0, SymmetricEigen2(left).eigenvalues()[0]) / weight;
+}
+
+}  // namespace ostraka::detail
