@@ -52,6 +52,11 @@ private:
     void tell_breaks() {
         constexpr double even = 0, likely = 0.4;  // added to log odds
         if (label_breaks(even)) label_breaks(likely);
+        double intact = 0;
+        for (std::size_t p = 0; p < labels_.size(); ++p) intact += labels_[p] == broken ? 0 : graph_.areas[p];
+        constexpr double little = 0.02;  // of the area: a break is told beside what is intact
+        if (intact > little * graph_.area) return;
+        std::fill(labels_.begin(), labels_.end(), 0);
     }
 
     bool label_breaks(double shift) {
@@ -92,7 +97,7 @@ private:
         for (std::size_t p = 0; p < labels_.size(); ++p)
             if (labels_[p] != broken) intact.push_back(static_cast<Index>(p));
         outward_.assign(graph_.count(), 1);
-        result_.shell = is_shell(intact);
+        result_.shell = intact.size() < labels_.size() && is_shell(intact);
         if (!result_.shell) {
             result_.thickness = 0;
             return;

@@ -69,9 +69,16 @@ TEST(Facets, ASolidHasARoughEnd) {
         const SyntheticSherd bar = synthetic_bar(fineness);
         const Facets found = find_facets(bar.mesh);
         EXPECT_FALSE(found.shell);
-        EXPECT_GT(agreement(bar, found.of_face), 0.95) << fineness;
+        EXPECT_EQ(found.answer, Facets::Answer::broken);
         EXPECT_EQ(found.area(Facet::inner), 0);
-        EXPECT_GT(found.area(Facet::fracture), 0.5 * M_PI);
+        // The flat end may be cut or formed: what is said of it is not sure.
+        double missed = 0, flat = 0;
+        for (const Face f : bar.mesh.faces()) {
+            if (centroid(bar.mesh, f).z() < 1e-9) flat = std::max(flat, found.probability[f]);
+            else if (found.of_face[f] != bar.facets[f]) missed += face_area(bar.mesh, f);
+        }
+        EXPECT_LT(missed, 0.03 * surface_area(bar.mesh)) << fineness;
+        EXPECT_LT(flat, 0.8);
     }
 }
 
@@ -138,9 +145,9 @@ TEST(FacetsCommand, WritesThreeRegions) {
     const test::Scratch scratch;
     const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     write_mesh(scratch / "sherd.ply", sherd.mesh);
-    const auto run = test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " +
-                                       quoted(scratch / "sherd.ant.json") + " --unit mm --json --probability " +
-                                       quoted(scratch / "likely.txt"));
+    const auto run =
+        test::run_command("annotation facets " + quoted(scratch / "sherd.ply") + " " + quoted(scratch / "sherd.ant.json") +
+                          " --unit mm --json --probability " + quoted(scratch / "likely.txt"));
     ASSERT_EQ(run.code, 0) << run.err;
     std::istringstream values(read_file(scratch / "likely.txt"));
     const std::vector<double> likely{std::istream_iterator<double>(values), {}};
