@@ -90,10 +90,10 @@ struct TemplateTurn final : Operation {
             const auto shown = [&](double value, int places) { return out ? std::string("-") : number(value, places); };
             Report::Row row = report.row("sherds");
             row("name", one.name)("use", to_string(one.use))("axis", found)("lean", one.lean, found ? number(one.lean, 3) : "-")(
-                "aside", one.aside, found ? number(one.aside, 3) : "-")("weight", one.weight, shown(100 * one.weight, 2))(
+                "aside", one.aside, found ? number(one.aside, 3) : "-")("weight", one.weight, shown(100 * one.weight, 3))(
                 "disagreement", one.disagreement)("lowest", one.lowest, shown(one.lowest, 4))(
                 "highest", one.highest, shown(one.highest, 4))("residual", one.residual, shown(one.residual, 3))(
-                "onTemplate", one.on_template, shown(100 * one.on_template, 2));
+                "onTemplate", one.on_template, shown(100 * one.on_template, 3));
             if (!one.reason.empty()) row("reason", one.reason);
             if (!one.remedy.empty()) row("remedy", one.remedy);
         }

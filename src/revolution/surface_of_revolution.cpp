@@ -6,6 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +102,7 @@ private:
     bool turn() {
         const std::vector<bool> take = of_walls();
         const auto count = std::count(take.begin(), take.end(), true);
+        heights_.assign(sherds_.size(), 0);
         for (int round = 0;; ++round) {
             const JoinedSherds all = joined(sherds_, take);
             const SurfaceSearch search(all.mesh);
@@ -179,19 +181,40 @@ private:
         const SurfaceSearch surface(result_.mesh);
         const double search_radius = 0.05 * surface.diagonal();
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
-            double a = 0, b = 0;
+            struct Place {
+                double area, up, off;
+            };
+            std::vector<Place> places;
+            std::vector<double> offs;
             for (const Index f : all.of_fragment[k]) {
                 const Vector3d n = eigen(area_vector(all.mesh, Face(f))), p = eigen(centroid(all.mesh, Face(f)));
                 if (!(n.norm() > 0)) continue;
                 const auto hit = surface.closest_compatible(point_of(p), vector_of(n.normalized()), 0.8, search_radius);
                 if (!hit) continue;
                 const Vector3d m = eigen(surface.normal(hit->face));
-                const double up = m.dot(frame_.up);
-                a += n.norm() * up * up;
-                b += n.norm() * up * m.dot(eigen(hit->point) - p);
+                places.push_back({n.norm(), m.dot(frame_.up), m.dot(eigen(hit->point) - p)});
+                offs.push_back(std::abs(places.back().off));
             }
+            if (places.empty()) continue;
+            // A break that is not known may face the template, far from it: Tukey's weights.
+            const double limit = std::max(4.685 * 1.4826 * upper_median(std::move(offs)), 0.002 * surface.diagonal());
+            double a = 0, b = 0, area = 0;
+            for (const Place& place : places) {
+                const double t = place.off / limit;
+                if (std::abs(t) >= 1) continue;
+                const double weight = place.area * std::pow(1 - t * t, 2);
+                area += weight;
+                a += weight * place.up * place.up;
+                b += weight * place.up * place.off;
+            }
+            if (!(area > 0)) continue;
+            // Radii are right to about 0.2 % of the diagonal: a wall without slope does not tell its height, the layout does.
+            const double hold = area * std::pow(0.002 / options_.layout_shift, 2);
+            double& height = heights_[k];
             // More than the step: part of the template there is the sherd itself.
-            if (a > 0) sherds_[k].motion.translation += std::clamp(1.3 * b / a, -search_radius, search_radius) * frame_.up;
+            const double step = std::clamp(1.3 * (b - hold * height) / (a + hold), -search_radius, search_radius);
+            height += step;
+            sherds_[k].motion.translation += step * frame_.up;
         }
     }
 
@@ -306,6 +329,7 @@ private:
     std::vector<LaidSherd> sherds_;
     const RevolutionOptions& options_;
     AxisFrame frame_;
+    std::vector<double> heights_;  ///< by which each sherd was raised
     std::vector<std::string> bridged_;
     ProfileImage image_;
     double lowest_ = 0;
