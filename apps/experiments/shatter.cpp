@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 namespace ostraka {
 
@@ -141,6 +142,19 @@ Vector3d middle_of(const Mesh& mesh) {
         area += a;
     }
     return sum / area;
+}
+
+/// What two bodies have in common; false where the cut cannot be made: a rough sheet, or what earlier cuts left, may cross
+/// itself.
+bool intersected(Mesh body, Mesh half, Mesh& result) {
+    namespace PMP = CGAL::Polygon_mesh_processing;
+    try {
+        return PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
+    } catch (const std::runtime_error&) {  // of several kinds, all of them for bodies that cross themselves
+        return false;
+    } catch (const CGAL::Failure_exception&) {
+        return false;
+    }
 }
 
 /// What is worn off: faces of breaks move in, and vertices near their edges to the mean of their neighbours.
@@ -301,8 +315,8 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
         std::vector<Mesh> parts;
         bool sound = true;
         for (const double side : {1.0, -1.0}) {
-            Mesh body = piece, half = sheet.half(side, edge), result;
-            sound = sound && PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
+            Mesh result;
+            sound = sound && intersected(piece, sheet.half(side, edge), result);
             if (!sound) break;
             result.collect_garbage();
             result = in_order(result);
