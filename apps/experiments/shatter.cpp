@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 namespace ostraka {
 
@@ -143,6 +144,19 @@ Vector3d middle_of(const Mesh& mesh) {
         area += a;
     }
     return sum / area;
+}
+
+/// What two bodies have in common; false where the cut cannot be made: a rough sheet, or what earlier cuts left, may cross
+/// itself.
+bool intersected(Mesh body, Mesh half, Mesh& result) {
+    namespace PMP = CGAL::Polygon_mesh_processing;
+    try {
+        return PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
+    } catch (const std::runtime_error&) {  // of several kinds, all of them for bodies that cross themselves
+        return false;
+    } catch (const CGAL::Failure_exception&) {
+        return false;
+    }
 }
 
 /// What is worn off: faces of breaks move in, and vertices near their edges to the mean of their neighbours.
@@ -298,14 +312,14 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
         const Vector3d middle = middle_of(piece);
         Vector3d across(random.normal(), random.normal(), random.normal());
         const double extent = extent_of(piece, middle);
+        const bool coarse = options.sheet > 0;
         const Sheet sheet(middle + 0.15 * extent * random.uniform(-1, 1) * across.normalized(), across.normalized(), 1.2 * extent,
                           options, random);
         std::vector<Mesh> parts;
         bool sound = true;
         for (const double side : {1.0, -1.0}) {
-            Mesh body = piece, half = sheet.half(side, options.sheet > 0 ? options.sheet * extent : edge, options.sheet > 0),
-                 result;
-            sound = sound && PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
+            Mesh result;
+            sound = sound && intersected(piece, sheet.half(side, coarse ? options.sheet * extent : edge, coarse), result);
             if (!sound) break;
             result.collect_garbage();
             result = in_order(result);

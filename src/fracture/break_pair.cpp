@@ -162,6 +162,8 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     const double search_radius = options.search_radius * parts.size;
     parts.side = BreakSide(fragment, 0.75 * search_radius, options.frames, options.samples);
     parts.width = 2 * parts.side.fracture.area / parts.side.rim_length;
+    parts.faces = static_cast<std::size_t>(std::count(fragment.facets.begin(), fragment.facets.end(), Facet::fracture));
+    parts.relief = deviations(parts.side.fracture.places).second;
     parts.fracture = PointTree(points_of(parts.side.fracture.places));
     parts.frames = PointTree(places_of(parts.side.frames));
     parts.places = parts.side.fracture.places;
@@ -181,6 +183,8 @@ double PreparedBreak::size() const { return parts_->size; }
 double PreparedBreak::fracture_area() const { return parts_->side.fracture.area; }
 double PreparedBreak::rim_length() const { return parts_->side.rim_length; }
 double PreparedBreak::width() const { return parts_->width; }
+double PreparedBreak::relief() const { return parts_->relief; }
+std::size_t PreparedBreak::fracture_faces() const { return parts_->faces; }
 
 double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
     return std::min({a.size(), b.size(), 6 * a.width(), 6 * b.width()});
@@ -235,10 +239,12 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     const auto unlike = [&](std::vector<Scored> list, std::size_t count, double degrees) {
         return distinct(std::move(list), count, middle, 0.5 * search_radius, degrees * pi / 180);
     };
-    std::vector<Scored> poses = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6);
-    const std::vector<Scored> by_frames =
-        unlike(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried), starts / 2, 6);
-    poses.insert(poses.end(), by_frames.begin(), by_frames.end());
+    const std::vector<Scored> by_stretches = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6),
+                              by_frames = unlike(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried),
+                                                 starts / 2, 6);
+    std::vector<Scored> poses, others;
+    for (const std::vector<Scored>* list : {&by_stretches, &by_frames})
+        for (std::size_t k = 0; k < list->size(); ++k) (k < starts / 4 ? poses : others).push_back((*list)[k]);
 
     // The best refined: quickly, better, then to the end, each time by what is seen of them.
     const BreakAligner::Target target{first.side, first.fracture, first.frames, first.surface.get()};
@@ -246,12 +252,19 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     constexpr double near = 4;  // tolerances
     const BreakAligner fine(target, second.side, std::min(search_radius, near * tolerance), tolerance, options.edges);
     const auto few = std::min<std::size_t>(300, samples), some = std::min<std::size_t>(800, samples);
-    const std::vector<PairCandidate> quick =
-        seen_candidates(a, b, poses, tolerance, few, [&](const Motion& pose) { return rough.align(pose, few, 10); });
-    const std::vector<PairCandidate> better = seen_candidates(a, b, unlike(scored(quick), refined, 5), tolerance, some,
-                                                              [&](const Motion& pose) { return rough.align(pose, some, 20); });
-    const std::size_t last = std::max<std::size_t>(static_cast<std::size_t>(options.candidates), refined / 3);
-    for (PairCandidate& one : seen_candidates(a, b, unlike(scored(better), last, 5), tolerance, samples,
+    const auto quickly = [&](const Motion& pose) { return rough.align(pose, few, 10); };
+    std::vector<Scored> quick = scored(seen_candidates(a, b, poses, tolerance, few, quickly));
+    // Where the best of them are hopeless, the others are too; one is told all the same, to say why.
+    constexpr double least = 0.003;
+    const bool hopeless = quick.empty() || join_probability(quick.front().score, std::numeric_limits<double>::infinity()) < least;
+    if (!hopeless) {
+        const std::vector<Scored> more = scored(seen_candidates(a, b, others, tolerance, few, quickly));
+        quick.insert(quick.end(), more.begin(), more.end());
+        quick = scored(seen_candidates(a, b, unlike(quick, refined, 5), tolerance, some,
+                                       [&](const Motion& pose) { return rough.align(pose, some, 20); }));
+    }
+    const std::size_t last = hopeless ? 1 : std::max<std::size_t>(static_cast<std::size_t>(options.candidates), refined / 3);
+    for (PairCandidate& one : seen_candidates(a, b, unlike(quick, last, 5), tolerance, samples,
                                               [&](const Motion& pose) { return fine.align(pose, samples, 30); })) {
         if (result.candidates.size() == static_cast<std::size_t>(options.candidates)) break;
         if (!(one.evidence.area > 0) ||
@@ -278,12 +291,12 @@ BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const Pair
     return result;
 }
 
-double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options) {
+double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options, std::size_t places) {
+    if (goes_first(b, a)) return quick_fit(b, a, options, places);
     const PreparedBreak::Parts &first = a.parts(), &second = b.parts();
     const double size = std::min(first.size, second.size);
     const QuickScore quick_score(first, second.side, options.search_radius * size);
-    constexpr std::size_t few = 64;
-    const auto rows = thinned(first.side.frames.size(), few), columns = thinned(second.side.frames.size(), few);
+    const auto rows = thinned(first.side.frames.size(), places), columns = thinned(second.side.frames.size(), places);
     std::vector<double> best(rows.size(), 0);
     parallel_for(
         rows.size(),

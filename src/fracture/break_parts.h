@@ -10,13 +10,18 @@ namespace ostraka {
 struct PreparedBreak::Parts {
     Mesh mesh;
     std::string name;
-    double size = 0;   ///< square root of the surface's area
-    double width = 0;  ///< of the fracture: twice its area by the length of its rim; of a sherd that is its wall
+    double size = 0;        ///< square root of the surface's area
+    double width = 0;       ///< of the fracture: twice its area by the length of its rim; of a sherd that is its wall
+    std::size_t faces = 0;  ///< of the fracture
+    double relief = 0;      ///< root mean square deviation of the fracture from its quadric
     BreakSide side;
     PointTree fracture, frames;
     std::vector<Eigen::Vector3d> places, normals;  ///< fracture first, then intact surface
     std::unique_ptr<SampleGrid> grid;              ///< of places
     std::unique_ptr<SurfaceSearch> surface;
 };
+
+/// Root mean square deviations of places from their plane and from a quadric over it; 0 of fewer than ten.
+std::pair<double, double> deviations(const std::vector<Eigen::Vector3d>& places);
 
 }  // namespace ostraka

@@ -56,7 +56,7 @@ Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from
 void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
                std::size_t most, double& area, double& depth) {
     const auto over = [&](const SurfaceSamples& samples) {
-        const std::size_t count = std::min<std::size_t>({600, most, samples.places.size()});
+        const std::size_t count = std::min<std::size_t>({600, most / 3, samples.places.size()});
         const double each = count > 0 ? samples.area / static_cast<double>(count) : 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * samples.places.size() / (2 * count);
@@ -79,7 +79,8 @@ void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from,
     over(from.side.intact);
 }
 
-/// Root mean square deviations of places from their plane and from a quadric over it.
+}  // namespace
+
 std::pair<double, double> deviations(const std::vector<Vector3d>& places) {
     if (places.size() < 10) return {0, 0};
     Vector3d middle = Vector3d::Zero();
@@ -104,8 +105,6 @@ std::pair<double, double> deviations(const std::vector<Vector3d>& places) {
     const double rest = square - right.dot(solve_ldlt<6>(matrix, right));
     return {plane, unit * std::sqrt(std::max(0.0, rest))};
 }
-
-}  // namespace
 
 JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance,
                           std::size_t samples) {

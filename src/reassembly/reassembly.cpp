@@ -76,6 +76,11 @@ private:
                 result_.alone[k] = "it " + error.problem();
                 continue;
             }
+            result_.alone[k] = what_hides_the_break(*prepared_[k]);
+            if (!result_.alone[k].empty()) {
+                prepared_[k].reset();
+                continue;
+            }
             Vector3d middle = Vector3d::Zero();
             for (const Vertex v : given[k].mesh.vertices())
                 middle += eigen(given[k].mesh.point(v)) / static_cast<double>(given[k].mesh.number_of_vertices());
@@ -88,6 +93,18 @@ private:
             radius_[k] = radius;
         }
     }
+
+    /// Why a break cannot tell what it belongs to, before it is laid against any other; empty: it may.
+    [[nodiscard]] std::string what_hides_the_break(const PreparedBreak& one) const {
+        if (one.fracture_faces() < static_cast<std::size_t>(options_.min_faces))
+            return "its break has " + std::to_string(one.fracture_faces()) + " faces, too few to show how it broke";
+        constexpr double smooth = 0.7;  // tolerances
+        if (many() && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
+            return "its break is so smooth that it fits too many of so many fragments";
+        return "";
+    }
+    /// So many fragments that not all pairs are tried.
+    [[nodiscard]] bool many() const { return count_ > static_cast<std::size_t>(options_.partners) + 1; }
 
     [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const {
         return options_.pairs.last_search_radius * join_scale(*prepared_[a], *prepared_[b]);
@@ -131,12 +148,15 @@ private:
     /// Of many fragments those pairs of which one is among the partners that the other quickly fits best with.
     [[nodiscard]] Pairs promising(const Pairs& list) const {
         const auto partners = static_cast<std::size_t>(options_.partners);
-        if (count_ <= partners + 1) return list;
+        if (!many()) return list;
+        // Of very many pairs each is looked at by fewer places.
+        constexpr std::size_t very_many = 5000;
+        const std::size_t places = list.size() > very_many ? 24 : 64;
         std::vector<double> score(list.size());
         Progress progress("compare breaks quickly", list.size());
         for (std::size_t p = 0; p < list.size(); ++p) {
             check_cancelled();
-            score[p] = quick_fit(*prepared_[list[p].first], *prepared_[list[p].second], options_.pairs);
+            score[p] = quick_fit(*prepared_[list[p].first], *prepared_[list[p].second], options_.pairs, places);
             progress.advance();
         }
         std::vector<std::vector<std::size_t>> of(count_);
@@ -568,7 +588,7 @@ Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOp
 void ReassemblyOptions::describe(OptionList& visit) {
     visit("least-join", min_join, "probability from which fragments are joined", Range{0.01, 0.999});
     visit("partners", partners, "of each fragment, those whose breaks quickly fit best are tried in full", Range{1, 100000});
-    visit("least-faces", min_faces, "a fragment of fewer faces stays alone", Range{4, 1e9});
+    visit("least-faces", min_faces, "a fragment, or a break, of fewer faces stays alone", Range{4, 1e9});
     pairs.describe(visit);
 }
 

@@ -98,6 +98,29 @@ TEST(BreakPair, StrangersAreLessSure) {
     EXPECT_GT(with_mate, with_stranger + 0.2);
 }
 
+TEST(BreakPair, WhichIsNamedFirstDoesNotMatter) {
+    // Right pairs and a wrong one, the larger named first and last.
+    const Fragment a = fragment_of(synthetic_sherd(1, 2, 0, 1), "a"),
+                   b = fragment_of(synthetic_sherd(2, 3, 1, 2), "b", random_motion(7, 30)),
+                   c = fragment_of(synthetic_sherd(4, 5, 0, 1), "c", random_motion(8, 30));
+    for (const auto& [x, y] : {std::pair(&a, &b), std::pair(&b, &c), std::pair(&a, &c)}) {
+        const BreakPair there = pair_breaks(*x, *y, quick()), back = pair_breaks(*y, *x, quick());
+        EXPECT_EQ(there.confidence, back.confidence);
+        EXPECT_EQ(there.undecided, back.undecided);
+        EXPECT_EQ(there.fracture_a, back.fracture_b);
+        EXPECT_EQ(there.tried, back.tried);
+        ASSERT_EQ(there.candidates.size(), back.candidates.size());
+        ASSERT_FALSE(there.candidates.empty());
+        for (std::size_t i = 0; i < there.candidates.size(); ++i) {
+            EXPECT_EQ(there.candidates[i].log_odds, back.candidates[i].log_odds);
+            EXPECT_EQ(there.candidates[i].score, back.candidates[i].score);
+            const Motion round = there.candidates[i].pose.after(back.candidates[i].pose);
+            EXPECT_LT((round.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+            EXPECT_LT(round.translation.norm(), 1e-9);
+        }
+    }
+}
+
 TEST(BreakPair, ThreadsDoNotMatter) {
     const Fragment a = fragment_of(synthetic_bar(), "a"), b = fragment_of(synthetic_bar(1, true), "b", random_motion(4, 5));
     PairOptions options = quick();

@@ -129,5 +129,32 @@ TEST(Shatter, NeedsAnInside) {
     EXPECT_EQ(shatter(build_mesh(test::octahedron_sphere(2)), one).size(), 1U);
 }
 
+TEST(Shatter, ABodyThatCrossesItselfIsRefusedAsAnErrorOrBroken) {
+    // Pots that stand in each other: cuts run along where they cross.
+    const Mesh pot = make_pot(coarse());
+    TriangleSoup soup = to_soup(pot);
+    const std::size_t points = soup.points.size(), triangles = soup.triangles.size();
+    for (std::size_t k = 0; k < points; ++k) {
+        const auto p = soup.points[k];
+        soup.points.push_back({p[0] + 0.31, p[1] + 0.17, p[2] + 0.23});
+    }
+    for (std::size_t k = 0; k < triangles; ++k) {
+        auto corner = soup.triangles[k];
+        for (Index& one : corner) one += static_cast<Index>(points);
+        soup.triangles.push_back(corner);
+    }
+    const Mesh both = build_mesh(soup);
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        ShatterOptions options;
+        options.pieces = 3;
+        options.seed = seed;
+        try {
+            for (const Sherd& one : shatter(both, options)) EXPECT_TRUE(CGAL::is_closed(one.mesh));
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::failure) << error.what();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace ostraka

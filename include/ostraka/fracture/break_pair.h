@@ -45,6 +45,9 @@ public:
     [[nodiscard]] double rim_length() const;
     /// Twice the area of the fracture by the length of its rim: of a sherd the thickness of its wall.
     [[nodiscard]] double width() const;
+    /// Root mean square deviation of the fracture from a quadric over it.
+    [[nodiscard]] double relief() const;
+    [[nodiscard]] std::size_t fracture_faces() const;
 
     struct Parts;
     [[nodiscard]] const Parts& parts() const { return *parts_; }
@@ -87,14 +90,14 @@ struct BreakPair {
 /// all are scored by the fracture that comes into contact and by what would lie inside the other fragment. The best are refined
 /// by closest points, point to plane, between fractures that face each other, and between rims, whose sides continue each other;
 /// the search radius falls to its last value. What is then seen of each (join_evidence.h) says how likely it is. No chance is
-/// involved, and places and poses of the fragments do not matter.
+/// involved; places and poses of the fragments do not matter, nor which is named first: the other order gives inverse poses.
 BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options = {});
 /// The same, with the fragments prepared on the way.
 BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options = {});
 
-/// How well two breaks fit at best by a few places of each, before any pose is refined: to choose which pairs to try. More is
-/// better; of no unit.
-double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options = {});
+/// How well two breaks fit at best by `places` along the rim of each, before any pose is refined: to choose which pairs to try.
+/// More is better; of no unit.
+double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptions& options = {}, std::size_t places = 64);
 
 /// What is seen when `pose` lays b onto a; `tolerance` is a length. By at most `samples` places of each fracture, and of what may
 /// lie inside.
