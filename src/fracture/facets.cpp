@@ -119,17 +119,18 @@ private:
     [[nodiscard]] double outside(std::size_t p) const { return std::clamp((outward_[p] + 0.3) / 0.6, 0.0, 1.0); }
 
     void answer() {
-        double found = 0, expected = 0;
+        double found = 0, seen = 0, expected = 0;
         for (std::size_t p = 0; p < labels_.size(); ++p) {
-            if (labels_[p] == broken) found += graph_.areas[p];
+            if (labels_[p] == broken) found += graph_.areas[p], seen += graph_.areas[p] * shown_[p];
             expected += graph_.areas[p] * shown_[p];
         }
         constexpr double little = 0.05;  // of the area
-        result_.answer = found > 0                         ? Facets::Answer::broken
-                         : expected < little * graph_.area ? Facets::Answer::whole
-                                                           : Facets::Answer::unclear;
+        constexpr double sure = 0.65;
+        result_.answer = found > 0 ? (seen > sure * found ? Facets::Answer::broken : Facets::Answer::unclear)
+                                   : (expected < little * graph_.area ? Facets::Answer::whole : Facets::Answer::unclear);
         if (result_.answer == Facets::Answer::unclear)
-            result_.notes.emplace_back("whether there is a fracture cannot be told: some of the surface may be one");
+            result_.notes.emplace_back(found > 0 ? "what is called fracture may be a rough or formed surface: look at it"
+                                                 : "whether there is a fracture cannot be told: some of the surface may be one");
         if (!graph_.closed) result_.notes.emplace_back("the mesh is open: walls show only where rays meet another side");
     }
 

@@ -1,4 +1,4 @@
-// Outer, inner and fracture surface of a fragment told by its shape.
+// Outer, inner and fracture surface of a fragment classified by its shape.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -27,7 +27,8 @@ struct FacetSegment {
 };
 
 struct Facets {
-    /// Whether there is a break: one is found; none is seen anywhere; none is found, but some of the surface may be one.
+    /// Whether there is a break: one is found; none is seen anywhere; it cannot be told, what is called one may be none, or what
+    /// is not may be one.
     enum class Answer { broken, whole, unclear };
 
     std::vector<Facet> of_face;
@@ -43,8 +44,8 @@ struct Facets {
 
 std::string to_string(Facets::Answer answer);
 
-/// Faces are seen together in at most about 24 000 patches. A model (data/facets.model.json) made from objects broken by this
-/// toolkit gives each the probability that it is of a break. Labels minimise what patches show plus the length of their
+/// Faces are seen together in at most about 24 000 patches. A model (data/facets.model.json) learnt from broken objects, made and
+/// scanned, gives each the probability that it is of a break. Labels minimise what patches show plus the length of their
 /// boundaries, which cost little along sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). Where most of what
 /// is intact lies over a thin wall whose other side is intact too, it has an outer and an inner side: the outer one looks away
 /// from the axis of rotation (axis/axis.h), or, where there is none, from the point nearest to the lines along all normals.
