@@ -98,7 +98,7 @@ Trained train(const std::vector<Row>& rows) {
             for (std::size_t k = 0; k < features.size(); ++k) model.usual[k] += features[k];
         }
     for (double& one : model.usual) one /= static_cast<double>(std::max<std::size_t>(1, joins));
-    model.weights = logistic(inputs, truth, 3);
+    model.weights = logistic(inputs, truth, 10);
     inputs.clear();
     truth.clear();
     for (const Row& row : rows) {

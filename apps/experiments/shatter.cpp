@@ -13,8 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
-#include <stdexcept>
 
 namespace ostraka {
 
@@ -152,9 +152,9 @@ bool intersected(Mesh body, Mesh half, Mesh& result) {
     namespace PMP = CGAL::Polygon_mesh_processing;
     try {
         return PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
-    } catch (const std::runtime_error&) {  // of several kinds, all of them for bodies that cross themselves
-        return false;
-    } catch (const CGAL::Failure_exception&) {
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) {  // of several kinds, all of them for bodies that cross themselves
         return false;
     }
 }

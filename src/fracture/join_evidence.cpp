@@ -18,9 +18,7 @@ constexpr double could_touch = 3;  // tolerances
 /// Contact seen from one side: the samples of `from`, moved by `pose`, on the break of `on`.
 struct Contact {
     std::vector<Vector3d> places, normals;
-    std::vector<Vector3d> wide_places;  ///< within two tolerances
     double area = 0, could = 0, square = 0, facing = 0;
-    double wide_area = 0, wide_square = 0;
 };
 
 Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
@@ -37,12 +35,8 @@ Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from
         result.could += each;
         const Vector3d& normal = on.side.fracture.normals[found.index];
         const double facing = -normal.dot(pose.rotation * samples.normals[i]);
-        if (found.squared > 4 * tolerance * tolerance || facing < min_facing) continue;
+        if (found.squared > tolerance * tolerance || facing < min_facing) continue;
         const double off = normal.dot(p - on.side.fracture.places[found.index]);
-        result.wide_area += each;
-        result.wide_square += each * off * off;
-        result.wide_places.push_back(p);
-        if (found.squared > tolerance * tolerance) continue;
         result.area += each;
         result.square += each * off * off;
         result.facing += each * facing;
@@ -124,14 +118,6 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
     const auto [plane, quadric] = deviations(on_a.places);
     seen.bending = plane / tolerance;
     seen.relief = quadric / tolerance;
-    const double wide = on_a.wide_area + on_b.wide_area;
-    seen.wide_share = 0.5 * wide / smaller;
-    seen.wide_coverage = wide / std::max(1e-300, on_a.could + on_b.could);
-    if (wide > 0) {
-        const double residual = std::sqrt((on_a.wide_square + on_b.wide_square) / wide) / tolerance;
-        seen.wide_relief =
-            std::log(std::clamp(deviations(on_a.wide_places).second / tolerance / std::max(residual, 0.02), 0.1, 30.0));
-    }
 
     std::vector<Vector3d> places = on_a.places, normals = on_a.normals;
     double could = 0, square = 0, turns = 0, steps = 0, seen_sides = 0;
@@ -245,9 +231,6 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             -logarithm(0.01 + penetration, 0.01, 10) - 2,
             -logarithm(1 + depth, 1, 100),
             -3 * std::min(widths, 1.5),
-            4 * wide_share,
-            4 * wide_coverage,
-            wide_relief,
             -5 * side_turn,
             -5 * side_step,
             logarithm(side_length, 0.5, 500) - 3};
@@ -269,9 +252,6 @@ const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
                                                       "no penetration",
                                                       "no depth",
                                                       "breaks as wide",
-                                                      "share of the smaller break nearly in contact",
-                                                      "what could touch nearly does",
-                                                      "matching relief of what nearly touches",
                                                       "sides as steep beside the rim",
                                                       "sides that continue beside the rim",
                                                       "length of sides that could continue"};

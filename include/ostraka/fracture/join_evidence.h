@@ -27,16 +27,12 @@ struct JoinEvidence {
     double penetration = 0;   ///< area deeper in the other than the tolerance, both ways, by the contact
     double depth = 0;         ///< of the deepest point
     double widths = 0;        ///< absolute logarithm of the ratio of the two fractures' widths
-    // Twice as far, since noise and wear leave less within the tolerance itself.
-    double wide_share = 0;     ///< of the smaller fracture, within two tolerances
-    double wide_coverage = 0;  ///< contact within two tolerances by what could touch
-    double wide_relief = 0;    ///< logarithm of relief by residual within two tolerances
     // The sides beside the rims, which wear leaves as they were: over what rim could continue.
     double side_turn = 1;    ///< root mean square sine between their normals
     double side_step = 1;    ///< root mean square offset from each other's planes, by the distance between their middles
     double side_length = 0;  ///< length of the rim that this is seen of
 
-    static constexpr std::size_t count = 21;
+    static constexpr std::size_t count = 18;
     /// What the model adds up: each between about -3 and 3.
     [[nodiscard]] std::array<double, count> features() const;
     static const std::array<std::string, count>& names();
