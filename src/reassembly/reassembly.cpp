@@ -96,7 +96,8 @@ private:
 
     /// Why a break cannot tell what it belongs to, before it is laid against any other; empty: it may.
     [[nodiscard]] std::string what_hides_the_break(const PreparedBreak& one) const {
-        if (one.fracture_faces() < static_cast<std::size_t>(options_.min_faces))
+        constexpr std::size_t little = 30;  // coarse sherds of a thousand faces have breaks of about a hundred
+        if (one.fracture_faces() < little)
             return "its break has " + std::to_string(one.fracture_faces()) + " faces, too few to show how it broke";
         constexpr double smooth = 0.7;  // tolerances
         if (many() && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
@@ -588,7 +589,7 @@ Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOp
 void ReassemblyOptions::describe(OptionList& visit) {
     visit("least-join", min_join, "probability from which fragments are joined", Range{0.01, 0.999});
     visit("partners", partners, "of each fragment, those whose breaks quickly fit best are tried in full", Range{1, 100000});
-    visit("least-faces", min_faces, "a fragment, or a break, of fewer faces stays alone", Range{4, 1e9});
+    visit("least-faces", min_faces, "a fragment of fewer faces stays alone", Range{4, 1e9});
     pairs.describe(visit);
 }
 

@@ -14,7 +14,7 @@ struct ReassemblyOptions {
     PairOptions pairs;
     double min_join = 0.8;  ///< probability from which two groups are joined
     int partners = 24;      ///< of each fragment, those it quickly fits best with are tried in full, of those most nearly as wide
-    int min_faces = 100;    ///< a fragment or a break of fewer shows no relief
+    int min_faces = 100;    ///< a fragment of fewer shows no relief
 
     void describe(OptionList& visit);
 };
