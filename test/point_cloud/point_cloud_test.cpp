@@ -155,8 +155,10 @@ TEST(FragmentFile, PointsBecomeAFragmentWithFacets) {
     EXPECT_TRUE(file.points);
     EXPECT_EQ(file.facets_from, "shape");
     double broken = 0, truth = 0;
+    // The flat end may be cut or formed.
     for (const Face face : file.fragment.mesh.faces())
-        broken += file.fragment.facets[face] == Facet::fracture ? face_area(file.fragment.mesh, face) : 0;
+        if (centroid(file.fragment.mesh, face).z() > 0.1)
+            broken += file.fragment.facets[face] == Facet::fracture ? face_area(file.fragment.mesh, face) : 0;
     for (const Face face : bar.mesh.faces()) truth += bar.facets[face] == Facet::fracture ? face_area(bar.mesh, face) : 0;
     EXPECT_NEAR(broken, truth, 0.1 * truth);
 }
