@@ -339,14 +339,15 @@ private:
             const auto [i, j] = close[k];
             const double t = tolerance(i, j), smaller = std::min(prepared_[i]->fracture_area(), prepared_[j]->fracture_area()),
                          inside = seen[k].penetration * std::max(seen[k].area * t * t, 0.01 * smaller);
-            constexpr double too_much = 0.2;
+            constexpr double touches = 0.03;
+            // Where breaks touch, coarse or noisy ones overlap in places.
+            const double too_much = seen[k].share > touches ? 0.4 : 0.2;
             if (inside > too_much * smaller) {
                 verdict.against = prepared_[j]->name() + " would lie inside " + prepared_[i]->name();
                 verdict.log_odds = -1e9;
                 return verdict;
             }
             const bool itself = i == edge.a && j == edge.b;
-            constexpr double touches = 0.03;
             if (!itself && seen[k].share > touches) others += std::clamp(join_log_odds(seen[k]) - prior, -3.0, 5.0);
             if (!itself && seen[k].share <= touches && inside > 0.02 * smaller) others -= 1;
         }
