@@ -166,7 +166,9 @@ struct BreakExperiment {
 struct JoinExperiment {
     std::vector<std::string> boxes;  ///< see read_box
     std::string output = "experiments-output/joins";
-    std::string model;  ///< to train and write
+    std::vector<std::string> rows;  ///< joins.csv of earlier runs, to learn from too
+    std::string model;              ///< to train and write
+    std::string recipe;             ///< what is written into it on how it was made
     int pieces = 8;
     std::uint64_t seed = 0;
     std::string facets = "known";  ///< or "found" by the library; "both": of each second box

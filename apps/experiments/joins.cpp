@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 namespace ostraka::experiments {
@@ -26,7 +28,7 @@ struct Row {
     double contact = 0;  ///< truth: share of the smaller break; 0 for strangers
     bool stranger = false;
     std::vector<bool> right;  ///< of each candidate
-    std::vector<JoinEvidence> evidence;
+    std::vector<std::array<double, JoinEvidence::count>> features;
     std::vector<double> log_odds;
     double confidence = 0;
     double seconds = 0;
@@ -46,7 +48,7 @@ Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const
     for (const PairCandidate& one : pair.candidates) {
         const Motion off = one.pose.after(motion);
         row.right.push_back(!row.stranger && degrees_of(off) < 6 && off_of(mesh, off) < 0.06 * box_diagonal(mesh));
-        row.evidence.push_back(one.evidence);
+        row.features.push_back(one.evidence.features());
         row.log_odds.push_back(one.log_odds);
     }
     row.confidence = pair.confidence;
@@ -74,49 +76,62 @@ Eigen::VectorXd logistic(const std::vector<Eigen::VectorXd>& rows, const std::ve
     return weights;
 }
 
+using Features = std::array<double, JoinEvidence::count>;
+
 struct Trained {
     Eigen::VectorXd weights, pair;
-    std::array<double, JoinEvidence::count> usual{};
+    Features usual{};   ///< mean of each feature over true joins
     double joined = 0;  ///< share of the pairs whose first candidate is right
 };
 
-Trained train(const std::vector<Row>& rows) {
-    Trained model;
+Eigen::VectorXd with_one(const Features& features) {
+    Eigen::VectorXd x(JoinEvidence::count + 1);
+    x[0] = 1;
+    for (std::size_t k = 0; k < features.size(); ++k) x[static_cast<Eigen::Index>(k + 1)] = features[k];
+    return x;
+}
+
+Eigen::VectorXd learnt_from(const std::vector<Row>& rows, auto&& chosen) {
     std::vector<Eigen::VectorXd> inputs;
     std::vector<bool> truth;
-    std::size_t joins = 0;
     for (const Row& row : rows)
-        for (std::size_t c = 0; c < row.evidence.size(); ++c) {
-            const auto features = row.evidence[c].features();
-            Eigen::VectorXd x(JoinEvidence::count + 1);
-            x[0] = 1;
-            for (std::size_t k = 0; k < features.size(); ++k) x[static_cast<Eigen::Index>(k + 1)] = features[k];
-            inputs.push_back(x);
-            truth.push_back(row.right[c]);
+        if (chosen(row))
+            for (std::size_t c = 0; c < row.features.size(); ++c) {
+                inputs.push_back(with_one(row.features[c]));
+                truth.push_back(row.right[c]);
+            }
+    constexpr double ridge = 3;
+    return logistic(inputs, truth, ridge);
+}
+
+/// Weights are learnt from all rows; what a pair's log odds mean, by weights that have not seen its object (five folds).
+Trained train(const std::vector<Row>& rows) {
+    Trained model;
+    std::map<std::string, std::size_t> fold;
+    for (const Row& row : rows) fold.emplace(row.box, fold.size() % 5);
+    std::array<Eigen::VectorXd, 5> others;
+    for (std::size_t f = 0; f < others.size(); ++f)
+        others[f] = learnt_from(rows, [&](const Row& row) { return fold.at(row.box) != f; });
+    model.weights = learnt_from(rows, [](const Row&) { return true; });
+    double joins = 0;
+    std::vector<Eigen::VectorXd> inputs;
+    std::vector<bool> truth;
+    for (const Row& row : rows) {
+        std::vector<std::pair<double, bool>> scored;
+        for (std::size_t c = 0; c < row.features.size(); ++c) {
+            scored.emplace_back(-others[fold.at(row.box)].dot(with_one(row.features[c])), row.right[c]);
             if (!row.right[c]) continue;
             ++joins;
-            for (std::size_t k = 0; k < features.size(); ++k) model.usual[k] += features[k];
+            for (std::size_t k = 0; k < model.usual.size(); ++k) model.usual[k] += row.features[c][k];
         }
-    for (double& one : model.usual) one /= static_cast<double>(std::max<std::size_t>(1, joins));
-    model.weights = logistic(inputs, truth, 10);
-    inputs.clear();
-    truth.clear();
-    for (const Row& row : rows) {
-        if (row.evidence.empty()) continue;
-        std::vector<std::pair<double, bool>> scored;
-        for (std::size_t c = 0; c < row.evidence.size(); ++c) {
-            double sum = model.weights[0];
-            const auto features = row.evidence[c].features();
-            for (std::size_t k = 0; k < features.size(); ++k)
-                sum += model.weights[static_cast<Eigen::Index>(k + 1)] * features[k];
-            scored.emplace_back(-sum, row.right[c]);
-        }
+        if (scored.empty()) continue;
         std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
         const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 2;
-        inputs.push_back(Eigen::Vector3d(1, -scored[0].first, std::min(lead, 2.0)));
+        inputs.emplace_back(Eigen::Vector3d(1, -scored[0].first, std::min(lead, 2.0)));
         truth.push_back(scored[0].second);
         model.joined += scored[0].second ? 1 : 0;
     }
+    for (double& one : model.usual) one /= std::max(1.0, joins);
     model.joined /= static_cast<double>(rows.size());
     model.pair = logistic(inputs, truth, 0.01);
     return model;
@@ -126,19 +141,42 @@ void write_model(const Path& file, const Trained& model, const std::string& reci
     Json document;
     document.SetObject();
     auto& allocator = document.GetAllocator();
-    const auto list = [&](auto&& values, std::size_t from, std::size_t to) {
-        JsonValue result(rapidjson::kArrayType);
-        for (std::size_t k = from; k < to; ++k)
-            result.PushBack(static_cast<double>(values[static_cast<Eigen::Index>(k)]), allocator);
-        return result;
-    };
-    add_members(document, allocator, "recipe", recipe, "bias", model.weights[0], "joined", model.joined);
-    document.AddMember("weights", list(model.weights, 1, JoinEvidence::count + 1), allocator);
-    JsonValue usual(rapidjson::kArrayType);
-    for (const double one : model.usual) usual.PushBack(one, allocator);
-    document.AddMember("usual", usual, allocator);
-    document.AddMember("pair", list(model.pair, 0, 3), allocator);
+    const std::vector<double> weights(model.weights.begin() + 1, model.weights.end()),
+        usual(model.usual.begin(), model.usual.end()), pair(model.pair.begin(), model.pair.end());
+    add_members(document, allocator, "recipe", recipe, "bias", model.weights[0], "joined", model.joined, "weights", weights,
+                "usual", usual, "pair", pair);
     write_json(file, document);
+}
+
+/// The rows that an earlier run wrote. Throws Error (input) for what is no such table.
+std::vector<Row> read_rows(const std::string& file) {
+    std::ifstream in(file);
+    std::string line;
+    std::vector<Row> rows;
+    if (!std::getline(in, line)) fail_input(file, "cannot be read", "write it by 'ostraka_experiments joins'");
+    constexpr std::size_t before = 9;  // columns
+    while (std::getline(in, line)) {
+        std::vector<std::string> words;
+        std::istringstream text(line);
+        for (std::string word; std::getline(text, word, ',');) words.push_back(word);
+        if (words.size() != before + JoinEvidence::count)
+            fail_input(file, "has rows of another length than features are told of today", "make it anew");
+        const auto number = [&](std::size_t k) { return std::stod(words[k]); };
+        if (number(5) == 0) {
+            Row& row = rows.emplace_back();
+            row.box = words[0];
+            row.first = static_cast<std::size_t>(number(1)), row.second = static_cast<std::size_t>(number(2));
+            row.contact = number(3);
+            row.stranger = number(4) != 0;
+            row.confidence = number(8);
+        }
+        rows.back().right.push_back(number(6) != 0);
+        rows.back().log_odds.push_back(number(7));
+        Features features;
+        for (std::size_t k = 0; k < features.size(); ++k) features[k] = number(before + k);
+        rows.back().features.push_back(features);
+    }
+    return rows;
 }
 
 void report(const std::vector<Row>& rows, const std::string& what, std::ostream& out) {
@@ -234,21 +272,21 @@ void joins(const JoinExperiment& options) {
             for (std::size_t c = 0; c < row.right.size(); ++c) {
                 csv << row.box << ',' << row.first << ',' << row.second << ',' << row.contact << ',' << row.stranger << ',' << c
                     << ',' << row.right[c] << ',' << row.log_odds[c] << ',' << row.confidence;
-                for (const double x : row.evidence[c].features()) csv << ',' << x;
+                for (const double x : row.features[c]) csv << ',' << x;
                 csv << '\n';
             }
         all.insert(all.end(), rows.begin(), rows.end());
         before = std::move(box);
         prepared_before = std::move(prepared);
     }
-    report(all, "all", std::cout);
-    write_file(Path(options.output) / "joins.csv", csv.str());
-    if (options.model.empty()) return;
-    std::string recipe = "ostraka_experiments joins --pieces " + std::to_string(options.pieces) + " --seed " +
-                         std::to_string(options.seed) + " --facets " + options.facets + " --model FILE --boxes ";
-    for (const std::string& one : options.boxes)
-        recipe += (&one == &options.boxes.front() ? "" : ",") + Path(one).filename().string();
-    write_model(options.model, train(all), recipe);
+    if (!options.boxes.empty()) {
+        report(all, "all", std::cout);
+        std::filesystem::create_directories(options.output);
+        write_file(Path(options.output) / "joins.csv", csv.str());
+    }
+    for (const std::string& file : options.rows)
+        for (Row& row : read_rows(file)) all.push_back(std::move(row));
+    if (!options.model.empty()) write_model(options.model, train(all), options.recipe);
 }
 
 }  // namespace ostraka::experiments

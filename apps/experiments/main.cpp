@@ -133,8 +133,7 @@ void declare_boxes(CLI::App& command, Options& options) {
         .add_option("--boxes", options.boxes,
                     "pot:SHAPE, plate:SHAPE, stone:SHAPE, made:NAME or a mesh file, to be broken; or a folder of fragments in "
                     "assembled layout")
-        ->delimiter(',')
-        ->required();
+        ->delimiter(',');
     command.add_option("--output", options.output, "folder for tables")->capture_default_str();
     ranged(command, "--pieces", options.pieces, "that an object is broken into", 2, 100);
     command.add_option("--seed", options.seed, "of breaks, noise and wear");
@@ -142,7 +141,9 @@ void declare_boxes(CLI::App& command, Options& options) {
 
 void declare_joins(CLI::App& command, JoinExperiment& options) {
     declare_boxes(command, options);
+    command.add_option("--rows", options.rows, "joins.csv of earlier runs, to learn from")->delimiter(',');
     command.add_option("--model", options.model, "model to train and write (data/joins.model.json)");
+    command.add_option("--recipe", options.recipe, "how the model is made, in words: written into it")->needs("--model");
     command.add_option("--facets", options.facets, "as they are known, as the library finds them, or so for each second box")
         ->check(CLI::IsMember({"known", "found", "both"}))
         ->capture_default_str();

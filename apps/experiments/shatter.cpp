@@ -5,6 +5,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/remesh/remesh.h"
+#include "ostraka/remesh/simplify.h"
 #include "ostraka/stats/random.h"
 
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
@@ -361,6 +362,18 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
         sherds.push_back(std::move(sherd));
     }
     return sherds;
+}
+
+Sherd simplified(const Sherd& sherd, std::uint64_t vertices) {
+    Sherd result = sherd;
+    if (vertices >= sherd.mesh.number_of_vertices()) return result;
+    SimplifyOptions how;
+    how.vertices = vertices;
+    simplify(result.mesh, how);
+    const SurfaceSearch skin(sherd.mesh);
+    result.broken.clear();
+    for (const Face f : result.mesh.faces()) result.broken.push_back(sherd.broken[skin.closest(centroid(result.mesh, f)).face]);
+    return result;
 }
 
 void PotOptions::describe(OptionList& visit) {

@@ -51,4 +51,7 @@ struct Sherd {
 /// and noise is added. Throws Error (input) for a mesh that is not closed, (failure) where a cut cannot be made.
 std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options = {});
 
+/// With at most so many vertices, as where an archive wants scans small; facets are those of the nearest faces.
+Sherd simplified(const Sherd& sherd, std::uint64_t vertices);
+
 }  // namespace ostraka

@@ -6,6 +6,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/plane_motion.h"
 #include "ostraka/registration/pose_json.h"
 #include "rim_stretches.h"
 
@@ -44,11 +45,18 @@ struct Scored {
 std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const Vector3d& middle, double shift, double angle) {
     std::stable_sort(list.begin(), list.end(), [](const Scored& x, const Scored& y) { return x.score > y.score; });
     std::vector<Scored> kept;
+    std::vector<Vector3d> middles;
+    const double trace = 1 + 2 * std::cos(angle);  // of a rotation by the angle
     for (const Scored& one : list) {
         if (kept.size() == count) break;
-        if (std::none_of(kept.begin(), kept.end(),
-                         [&](const Scored& k) { return alike(k.pose, one.pose, middle, shift, angle); }))
-            kept.push_back(one);
+        const Vector3d here = one.pose(middle);
+        bool known = false;
+        for (std::size_t k = 0; k < kept.size() && !known; ++k)
+            known = (middles[k] - here).squaredNorm() <= shift * shift &&
+                    kept[k].pose.rotation.cwiseProduct(one.pose.rotation).sum() > trace;
+        if (known) continue;
+        kept.push_back(one);
+        middles.push_back(here);
     }
     return kept;
 }
@@ -70,8 +78,65 @@ public:
         const auto [touching, inside] = look_at(pose);
         return touching - inside;
     }
-    /// Area of the second side that lies inside the first, counted by how deep.
-    [[nodiscard]] double inside(const Motion& pose) const { return look_at(pose).second; }
+    /// Some steps of closest points, by few places, while the search radius falls to `close`; and the score there, where contact
+    /// is what is as near across the surface.
+    [[nodiscard]] Scored settled(Motion pose, const PointTree& frames, double close) const {
+        constexpr int steps = 6;
+        for (int step = 0; step < steps; ++step) {
+            const double radius = search_radius_ * std::pow(close / search_radius_, static_cast<double>(step) / (steps - 1));
+            struct Plane {
+                Vector3d point, normal;
+                double off, weight;
+            };
+            std::vector<Plane> planes;
+            for (const std::size_t i : fractures_) {
+                const Vector3d p = pose(of_.fracture.places[i]);
+                const Index k = on_.grid->near(p);
+                if (k == no_index || k >= fractures_on_) continue;
+                const double off = on_.normals[k].dot(on_.places[k] - p), share = off * off / (radius * radius);
+                if (share >= 1 || (on_.places[k] - p).squaredNorm() > search_radius_ * search_radius_ ||
+                    -on_.normals[k].dot(pose.rotation * of_.fracture.normals[i]) < 0.3)
+                    continue;
+                planes.push_back({p, on_.normals[k], off, (1 - share) * (1 - share)});
+            }
+            for (std::size_t i = 0; i < of_.frames.size(); i += 3) {
+                const RimFrame& frame = of_.frames[i];
+                const Vector3d p = pose(frame.place);
+                const PointTree::Near near = frames.nearest(point_of(p), 1.5 * radius);
+                if (near.index == no_index) continue;
+                const RimFrame& other = on_.side.frames[near.index];
+                if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < 0.5 ||
+                    other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
+                    continue;
+                const double weight = std::pow(1 - near.squared / (2.25 * radius * radius), 2);
+                planes.push_back({p, other.side, other.side.dot(other.place - p), weight});
+                planes.push_back({p, other.fracture, other.fracture.dot(other.place - p), weight});
+            }
+            if (planes.size() < 6) break;
+            Vector3d centre = Vector3d::Zero();
+            double total = 0, unit = 0;
+            for (const Plane& plane : planes) centre += plane.weight * plane.point, total += plane.weight;
+            if (!(total > 0)) break;
+            centre /= total;
+            for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
+            if (!(unit > 0)) break;
+            PlaneMotion system(centre, std::sqrt(unit));
+            for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
+            pose = system.motion(system.solve(1e-3 / 6)).after(pose);
+            pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
+        }
+        double touching = 0;
+        for (const std::size_t i : fractures_) {
+            const Vector3d p = pose(of_.fracture.places[i]);
+            const Index k = on_.grid->near(p);
+            if (k == no_index || k >= fractures_on_) continue;
+            const double off = on_.normals[k].dot(p - on_.places[k]) / close,
+                         against = -on_.normals[k].dot(pose.rotation * of_.fracture.normals[i]);
+            if (std::abs(off) < 1 && against > 0.3 && (on_.places[k] - p).squaredNorm() < search_radius_ * search_radius_)
+                touching += each_fracture_ * (1 - off * off) * against;
+        }
+        return {pose, touching - look_at(pose).second};
+    }
 
 private:
     [[nodiscard]] std::pair<double, double> look_at(const Motion& pose) const {
@@ -164,6 +229,8 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     parts.width = 2 * parts.side.fracture.area / parts.side.rim_length;
     parts.faces = static_cast<std::size_t>(std::count(fragment.facets.begin(), fragment.facets.end(), Facet::fracture));
     parts.relief = deviations(parts.side.fracture.places).second;
+    parts.noise = surface_noise(parts.side.intact);
+    parts.edge = mean_edge_length(parts.mesh);
     parts.fracture = PointTree(points_of(parts.side.fracture.places));
     parts.frames = PointTree(places_of(parts.side.frames));
     parts.places = parts.side.fracture.places;
@@ -239,12 +306,22 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     const auto unlike = [&](std::vector<Scored> list, std::size_t count, double degrees) {
         return distinct(std::move(list), count, middle, 0.5 * search_radius, degrees * pi / 180);
     };
-    const std::vector<Scored> by_stretches = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6),
-                              by_frames = unlike(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried),
-                                                 starts / 2, 6);
+    // The best of each kind, settled cheaply, and of these the best.
+    std::vector<Scored> by_stretches = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6),
+                        by_frames =
+                            unlike(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried), 6 * starts, 6);
+    std::vector<Scored> settled = by_stretches;
+    settled.insert(settled.end(), by_frames.begin(), by_frames.end());
+    const QuickScore quick_score(first, second.side, search_radius);
+    parallel_for(
+        settled.size(),
+        [&](std::size_t k) {
+            settled[k] = quick_score.settled(settled[k].pose, first.frames, std::max(0.4 * search_radius, 1.5 * tolerance));
+        },
+        8);
+    settled = unlike(std::move(settled), starts + starts / 2, 5);
     std::vector<Scored> poses, others;
-    for (const std::vector<Scored>* list : {&by_stretches, &by_frames})
-        for (std::size_t k = 0; k < list->size(); ++k) (k < starts / 4 ? poses : others).push_back((*list)[k]);
+    for (std::size_t k = 0; k < settled.size(); ++k) (k < starts / 2 ? poses : others).push_back(settled[k]);
 
     // The best refined: quickly, better, then to the end, each time by what is seen of them.
     const BreakAligner::Target target{first.side, first.fracture, first.frames, first.surface.get()};
@@ -255,7 +332,7 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     const auto quickly = [&](const Motion& pose) { return rough.align(pose, few, 10); };
     std::vector<Scored> quick = scored(seen_candidates(a, b, poses, tolerance, few, quickly));
     // Where the best of them are hopeless, the others are too; one is told all the same, to say why.
-    constexpr double least = 0.003;
+    constexpr double least = 0.0005;
     const bool hopeless = quick.empty() || join_probability(quick.front().score, std::numeric_limits<double>::infinity()) < least;
     if (!hopeless) {
         const std::vector<Scored> more = scored(seen_candidates(a, b, others, tolerance, few, quickly));

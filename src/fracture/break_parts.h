@@ -14,12 +14,18 @@ struct PreparedBreak::Parts {
     double width = 0;       ///< of the fracture: twice its area by the length of its rim; of a sherd that is its wall
     std::size_t faces = 0;  ///< of the fracture
     double relief = 0;      ///< root mean square deviation of the fracture from its quadric
+    double noise = 0;       ///< of the intact surface, a length: see surface_noise
+    double edge = 0;        ///< mean length of the mesh's edges
     BreakSide side;
     PointTree fracture, frames;
     std::vector<Eigen::Vector3d> places, normals;  ///< fracture first, then intact surface
     std::unique_ptr<SampleGrid> grid;              ///< of places
     std::unique_ptr<SurfaceSearch> surface;
 };
+
+/// How far an intact surface deviates from quadrics over small neighbourhoods: what scanner, grain and coarse triangles leave.
+/// Median of root mean squares; 0 of fewer than ten samples.
+double surface_noise(const SurfaceSamples& intact);
 
 /// Root mean square deviations of places from their plane and from a quadric over it; 0 of fewer than ten.
 std::pair<double, double> deviations(const std::vector<Eigen::Vector3d>& places);

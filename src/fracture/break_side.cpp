@@ -174,6 +174,9 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
         rim.push_back({e, f, g, length});
         rim_length += length;
     }
+    // About a broad break, what a frame stands on may be broad too, so that neither relief nor rounded edges turn it.
+    const double broad = rim_length > 0 ? 2 * fracture.area / rim_length : 0, size = fragment_size(mesh),
+                 about = std::max(radius, std::min(0.25 * broad, 0.1 * size));
     if (rim.empty())
         fail_input(where, "has a fracture without a rim: all of it is broken", "annotate what of it is \"outer\" surface");
     std::vector<RimEdge> places;
@@ -196,7 +199,7 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
             Vector3d side = Vector3d::Zero(), across = Vector3d::Zero(), beside = Vector3d::Zero();
             double area = 0;
             std::vector<Index> near;
-            tree.within(point_of(frame.place), radius, near);
+            tree.within(point_of(frame.place), about, near);
             near.push_back(edge.side);
             near.push_back(edge.broken);
             for (const Index f : near) {

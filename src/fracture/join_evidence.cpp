@@ -3,6 +3,7 @@
 #include "break_parts.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,6 +101,25 @@ std::pair<double, double> deviations(const std::vector<Vector3d>& places) {
     return {plane, unit * std::sqrt(std::max(0.0, rest))};
 }
 
+double surface_noise(const SurfaceSamples& intact) {
+    const std::size_t n = intact.places.size();
+    if (n < 10) return 0;
+    const PointTree tree(points_of(intact.places));
+    const double radius = 3 * std::sqrt(intact.area / static_cast<double>(n));
+    constexpr std::size_t looked_at = 200;
+    std::vector<double> found;
+    for (std::size_t k = 0; k < std::min(n, looked_at); ++k) {
+        const std::size_t i = (2 * k + 1) * n / (2 * std::min(n, looked_at));
+        std::vector<Index> near;
+        tree.within(point_of(intact.places[i]), radius, near);
+        std::vector<Vector3d> places;
+        for (const Index j : near)
+            if (intact.normals[j].dot(intact.normals[i]) > 0.7) places.push_back(intact.places[j]);
+        if (places.size() >= 12) found.push_back(deviations(places).second);
+    }
+    return found.empty() ? 0 : upper_median(std::move(found));
+}
+
 JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance,
                           std::size_t samples) {
     const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
@@ -174,6 +194,9 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
     seen.penetration = inside / std::max(area, 0.01 * smaller);
     seen.depth = depth / tolerance;
     seen.widths = std::abs(std::log(a.width / b.width));
+    seen.noise = std::hypot(a.noise, b.noise) / tolerance;
+    seen.edge = std::max(a.edge, b.edge) / tolerance;
+    seen.breaks = std::min(a.relief, b.relief) / tolerance;
     return seen;
 }
 
@@ -233,7 +256,11 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             -3 * std::min(widths, 1.5),
             -5 * side_turn,
             -5 * side_step,
-            logarithm(side_length, 0.5, 500) - 3};
+            logarithm(side_length, 0.5, 500) - 3,
+            logarithm(noise, 0.003, 3) + 3,
+            logarithm(edge, 0.1, 20),
+            logarithm(breaks, 0.1, 30),
+            -logarithm(std::max(residual, 0.02) / std::hypot(0.1, noise, 0.1 * edge), 0.1, 10)};
 }
 
 const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
@@ -254,7 +281,11 @@ const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
                                                       "breaks as wide",
                                                       "sides as steep beside the rim",
                                                       "sides that continue beside the rim",
-                                                      "length of sides that could continue"};
+                                                      "length of sides that could continue",
+                                                      "noise of the surfaces",
+                                                      "coarseness of the meshes",
+                                                      "relief of the breaks",
+                                                      "contact as close as noise allows"};
     return names;
 }
 

@@ -72,7 +72,7 @@ std::string weakest_evidence(const JoinEvidence& seen) {
     std::size_t worst = 0;
     const auto against = [&](std::size_t k) { return model.weights[k] * (features[k] - model.usual[k]); };
     for (std::size_t k = 1; k < features.size(); ++k)
-        if (against(k) < against(worst)) worst = k;
+        if (JoinEvidence::of_the_join(k) && against(k) < against(worst)) worst = k;
     return "there is too little of \"" + JoinEvidence::names()[worst] + '"';
 }
 

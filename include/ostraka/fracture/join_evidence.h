@@ -32,10 +32,18 @@ struct JoinEvidence {
     double side_step = 1;    ///< root mean square offset from each other's planes, by the distance between their middles
     double side_length = 0;  ///< length of the rim that this is seen of
 
-    static constexpr std::size_t count = 18;
+    // How well anything is seen of the two, wherever they are laid.
+    double noise = 0;   ///< of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
+    double edge = 0;    ///< mean length of the edges of the coarser mesh
+    double breaks = 0;  ///< root mean square deviation of the smoother one's break from a quadric
+
+    static constexpr std::size_t numbers = 21;  ///< above
+    static constexpr std::size_t count = 22;    ///< features
     /// What the model adds up: each between about -3 and 3.
     [[nodiscard]] std::array<double, count> features() const;
     static const std::array<std::string, count>& names();
+    /// Whether a feature speaks for or against a join, not only of how well anything is seen.
+    static bool of_the_join(std::size_t feature) { return feature != 18 && feature != 19; }
 };
 
 /// Of the evidence alone: that two fragments were joined so, against what is seen by chance, as learnt from breaks whose truth is
