@@ -29,7 +29,7 @@ FragmentPairs alike_in_width(const std::vector<std::unique_ptr<PreparedBreak>>& 
 PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options) {
     const auto partners = static_cast<std::size_t>(options.partners);
     PairEffort effort;
-    effort.first = effort.thorough = options.pairs;
+    effort.prepared = effort.first = effort.thorough = options.pairs;
     effort.all = fragments <= partners + 1;
     effort.partners = partners;
     if (effort.all) return effort;
@@ -38,8 +38,9 @@ PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options)
     const double share = std::min(1.0, static_cast<double>(hundred) / static_cast<double>(fragments));
     const auto less = [&](int all, int least) { return std::min(all, std::max(least, static_cast<int>(share * all))); };
     PairOptions& first = effort.first;
-    first.samples = effort.thorough.samples = less(options.pairs.samples, 500);
-    first.frames = effort.thorough.frames = less(options.pairs.frames, 80);
+    // Breaks keep their samples: where they lie wider apart than the tolerance, nothing counts as contact.
+    first.samples = less(options.pairs.samples, 500);
+    effort.prepared.frames = first.frames = effort.thorough.frames = less(options.pairs.frames, 80);
     first.starts = less(std::min(options.pairs.starts, 60), 24);
     first.refined = less(std::min(options.pairs.refined, 8), 6);
     constexpr std::size_t pairs = 6000, few = 6;

@@ -81,7 +81,7 @@ private:
             return;
         }
         try {
-            prepared_[k] = std::make_unique<PreparedBreak>(given, effort_.first);
+            prepared_[k] = std::make_unique<PreparedBreak>(given, effort_.prepared);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
             result_.alone[k] = "it " + error.problem();
