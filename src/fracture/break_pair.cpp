@@ -237,7 +237,9 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     parts.normals = parts.side.fracture.normals;
     parts.places.insert(parts.places.end(), parts.side.intact.places.begin(), parts.side.intact.places.end());
     parts.normals.insert(parts.normals.end(), parts.side.intact.normals.begin(), parts.side.intact.normals.end());
-    parts.grid = std::make_unique<SampleGrid>(parts.places, 2 * search_radius);
+    // About as fine as the samples lie.
+    const int cells = std::clamp(static_cast<int>(std::lround(64 * std::sqrt(options.samples / 2000.0))), 16, 64);
+    parts.grid = std::make_unique<SampleGrid>(parts.places, 2 * search_radius, cells);
     parts.surface = std::make_unique<SurfaceSearch>(parts.mesh);
 }
 

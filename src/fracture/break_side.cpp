@@ -246,7 +246,7 @@ BreakSide BreakSide::moved(const Motion& motion) const {
     return result;
 }
 
-SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin) {
+SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin, int cells) {
     Vector3d low = places.front(), high = low;
     for (const Vector3d& p : places) {
         low = low.cwiseMin(p);
@@ -254,7 +254,6 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin) {
     }
     low_ = low - Vector3d::Constant(margin);
     const Vector3d extent = high - low + Vector3d::Constant(2 * margin);
-    constexpr double cells = 64;
     width_ = extent.maxCoeff() / cells;
     for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<std::size_t>(extent[static_cast<Eigen::Index>(k)] / width_) + 1;
     nearest_.resize(count_[0] * count_[1] * count_[2]);
@@ -263,11 +262,14 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin) {
     parallel_for(
         count_[1] * count_[2],
         [&](std::size_t row) {
+            // What is nearest to the cell before is hardly farther away than what is nearest to this one.
+            double bound = far;
             for (std::size_t x = 0; x < count_[0]; ++x) {
                 const Vector3d middle =
                     low_ + width_ * Vector3d(static_cast<double>(x) + 0.5, static_cast<double>(row % count_[1]) + 0.5,
                                              static_cast<double>(row / count_[1]) + 0.5);
-                nearest_[row * count_[0] + x] = tree.nearest(point_of(middle), far).index;
+                if (x > 0) bound = (1 + 1e-9) * (places[nearest_[row * count_[0] + x - 1]] - middle).norm();
+                nearest_[row * count_[0] + x] = tree.nearest(point_of(middle), bound).index;
             }
         },
         16);

@@ -58,7 +58,8 @@ double fragment_size(const Mesh& mesh);
 /// The nearest of some samples from anywhere in a box, by a grid of cells that each know their nearest one.
 class SampleGrid {
 public:
-    SampleGrid(const std::vector<Eigen::Vector3d>& places, double margin);
+    /// `cells`: along the longest side.
+    SampleGrid(const std::vector<Eigen::Vector3d>& places, double margin, int cells = 64);
     /// Index of a sample that is near `place`, to the width of a cell; none outside the box.
     [[nodiscard]] Index near(const Eigen::Vector3d& place) const {
         const Eigen::Vector3d cell = (place - low_) / width_;

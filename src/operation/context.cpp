@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <set>
 #include <stdexcept>
 
 namespace ostraka {
@@ -73,7 +74,9 @@ Provenance Context::provenance() const {
     provenance.command = run_->command;
     provenance.options = run_->parameters->options.values();
     std::erase_if(provenance.options, [](const auto& option) { return option.second.empty(); });
-    std::vector<Path> listed;
+    std::set<Path> listed;
+    std::map<Path, std::string> known;  // checksums of what was read
+    for (const auto& entry : run_->read) known.emplace(entry.file, entry.sha256);
     for (const Slot* slot : run_->parameters->slots()) {
         if (slot->role != Role::input) continue;
         for (std::size_t i = 0; i < slot->sources.size(); ++i) {
@@ -83,21 +86,18 @@ Provenance Context::provenance() const {
                 provenance.inputs.emplace_back(Path(source.object.name).filename().string(), run_->know(*slot, i));
                 continue;
             }
-            listed.push_back(source.file);
+            listed.insert(source.file);
             const std::string called = (source.label.empty() ? "" : source.label + "=") + source.file.filename().string();
-            const auto read =
-                std::find_if(run_->read.begin(), run_->read.end(), [&](const auto& entry) { return entry.file == source.file; });
-            if (read == run_->read.end()) {  // not read yet, or a folder, whose files are read
+            if (!known.contains(source.file)) {  // not read yet, or a folder, whose files are read
                 if (!file_exists(source.file)) continue;
                 run_->read.push_back({source.file, sha256_of_file(source.file)});
-                provenance.inputs.emplace_back(called, run_->read.back().sha256);
-            } else {
-                provenance.inputs.emplace_back(called, read->sha256);
+                known.emplace(source.file, run_->read.back().sha256);
             }
+            provenance.inputs.emplace_back(called, known.at(source.file));
         }
     }
     for (const auto& entry : run_->read)
-        if (!is_memory(entry.file) && std::find(listed.begin(), listed.end(), entry.file) == listed.end())
+        if (!is_memory(entry.file) && !listed.contains(entry.file))
             provenance.inputs.emplace_back(entry.file.filename().string(), entry.sha256);
     provenance.inputs.insert(provenance.inputs.end(), run_->named.begin(), run_->named.end());
     return provenance;

@@ -4,6 +4,7 @@
 #include "turned_groups.h"
 
 #include "ostraka/collection/objects.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/reassembly/odd_fragments.h"
 #include "ostraka/reassembly/reassembly_json.h"
@@ -31,9 +32,9 @@ struct Assemble final : Operation {
             .many();
         p.output(
              "output", Kind::folder, output,
-             "folder for assembly.json and, of each group, group-N.ply (face labels: the number of the fragment), group-N.png "
-             "and "
-             "NAME.placed.ply; pairs that were tried are kept in its folder pairs, and not tried again; made if it is missing")
+             "folder for assembly.json and, of each group, group-N.ply (face labels: the number of the fragment), group-N.png, "
+             "group-N.exploded.png (fragments drawn apart) and NAME.placed.ply; pairs that were tried are kept in its folder "
+             "pairs, and not tried again; made if it is missing")
             .flag();
         p.input_option("template", Kind::template_package, known,
                        "template of the objects' class: each group is completed by it");
@@ -57,8 +58,8 @@ struct Assemble final : Operation {
         const ResultStore store(is_memory(folder) ? Path() : folder / "pairs");
         const Reassembly result = reassemble(fragments, options, memory_of(store));
         if (recalled > 0)
-            report.note(std::to_string(recalled) + " of " + std::to_string(result.pairs_tried) +
-                        " pairs were tried by an earlier run in " + output.file() + ": fragments and options are the same");
+            report.note(std::to_string(recalled) + " of " + std::to_string(asked) + " pairs were tried by an earlier run in " +
+                        output.file() + ": fragments and options are the same");
         write(context, report, result);
     }
 
@@ -80,41 +81,79 @@ private:
             }
             const std::vector<std::string> endings = endings_of(Kind::mesh);
             const std::size_t before = list.size();
-            for (const std::string& name : files_in(file))
-                if (std::find(endings.begin(), endings.end(), extension(name)) != endings.end())
-                    list.push_back({file / name, k, true});
+            std::size_t points = 0;
+            for (const std::string& name : files_in(file)) {
+                const std::string ending = extension(name);
+                if (std::find(endings.begin(), endings.end(), ending) != endings.end()) list.push_back({file / name, k, true});
+                points += ending == ".xyz" || ending == ".pts" || ending == ".asc" ? 1 : 0;
+            }
+            if (points > 0)
+                report.note(std::to_string(points) + " files of points (.xyz, .pts, .asc) in " + printable(file.string()) +
+                            " are not read: name them, or save them as .ply");
             if (list.size() == before)
                 fail_input(file.string(), "holds no mesh files",
                            "name the folder that holds the fragments (.ply, .obj, .off, .stl)");
         }
         if (list.size() < 2)
             fail_usage("there is one fragment, and nothing to join it with", "name two or more, or their folder");
-        std::set<std::string> taken;
+        // So that the order in which they are named does not matter.
+        std::stable_sort(list.begin(), list.end(),
+                         [](const Given& x, const Given& y) { return x.file.stem().string() < y.file.stem().string(); });
+        for (std::size_t k = 1; k < list.size(); ++k)
+            if (list[k].file.stem() == list[k - 1].file.stem())
+                fail_usage("two fragments are called '" + printable(list[k].file.stem().string()) + "'",
+                           "rename one of the files");
+        std::vector<FragmentFile> found(list.size());
+        std::vector<std::optional<Error>> problems(list.size());
         Progress progress("read fragments", list.size());
-        for (const Given& one : list) {
-            progress.advance();
-            const std::string name = one.file.stem().string();
-            if (!taken.insert(name).second) fail_usage("two fragments are called '" + name + "'", "rename one of the files");
+        const auto attempt = [&](std::size_t k, const auto& from) {
             try {
-                FragmentFile file;
-                if (one.listed) context.record([&] { file = read_fragment(one.file, reading); });
-                else
-                    file = files.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); }, one.slot,
-                                                    options_text(reading));
-                context.notes(one.file.string(), file.notes);
-                file.fragment.name = name;
-                fragments.push_back(std::move(file.fragment));
-                facets_from.push_back(file.facets_from);
+                found[k] = from();
             } catch (const Error& error) {
                 if (error.kind() != ErrorKind::input || list.size() < 3) throw;
-                unreadable.emplace_back(name, error.problem());
-                report.note(printable(one.file.string()) + " is left out: it " + error.problem());
+                problems[k] = error;
             }
+            progress.advance();
+        };
+        const auto in_memory = [&](std::size_t k) { return !list[k].listed && files.sources[list[k].slot].object; };
+        parallel_for(
+            list.size(),
+            [&](std::size_t k) {
+                if (!in_memory(k)) attempt(k, [&] { return read_fragment(list[k].file, reading); });
+            },
+            1);
+        // Each thread read on its own: that they are inputs is said here.
+        context.record([&] {
+            for (std::size_t k = 0; k < list.size(); ++k)
+                if (!in_memory(k))
+                    for (const Path& file : found[k].inputs) read_file(file);
+        });
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            if (in_memory(k))
+                attempt(k, [&] {
+                    return files.load<FragmentFile>([&](const Path& path) { return read_fragment(path, reading); }, list[k].slot,
+                                                    options_text(reading));
+                });
+            const std::string name = list[k].file.stem().string();
+            if (problems[k]) {
+                unreadable.emplace_back(name, problems[k]->problem() + remedy_of(*problems[k]));
+                report.note("left out: " + std::string(problems[k]->what()));
+                continue;
+            }
+            context.notes(list[k].file.string(), found[k].notes);
+            found[k].fragment.name = name;
+            fragments.push_back(std::move(found[k].fragment));
+            facets_from.push_back(found[k].facets_from);
         }
         if (fragments.size() < 2)
-            fail_input(files.file(0), "and the others leave fewer than two fragments that can be read", "see the notes above");
+            fail_input(files.file(0) + (files.size() > 1 ? " and others" : ""),
+                       "only " + std::to_string(fragments.size()) + " of " + std::to_string(list.size()) +
+                           " fragments can be read, and two are needed",
+                       "mend what the notes above name");
         find_odd(report);
     }
+
+    static std::string remedy_of(const Error& error) { return error.remedy().empty() ? "" : " (" + error.remedy() + ")"; }
 
     /// Copies count once; what is of another size altogether is said.
     void find_odd(Report& report) {
@@ -131,19 +170,21 @@ private:
     PairMemory memory_of(const ResultStore& store) {
         std::vector<std::string> sums;
         for (const Fragment& one : fragments) sums.push_back(fragment_checksum(one));
-        const std::string how = options_text(options.pairs) + join_model_version();
-        const auto key = [sums, how](std::size_t i, std::size_t j) { return ResultStore::key({sums[i], sums[j], how}); };
+        const auto key = [sums](std::size_t i, std::size_t j, const PairOptions& how) {
+            return ResultStore::key({sums[i], sums[j], options_text(how) + join_model_version()});
+        };
         PairMemory memory;
-        memory.recall = [this, key, &store](std::size_t i, std::size_t j) -> std::optional<PairOfMany> {
+        memory.recall = [this, key, &store](std::size_t i, std::size_t j, const PairOptions& how) -> std::optional<PairOfMany> {
+            ++asked;
             if (fresh) return {};
-            const std::string known_by = key(i, j);
+            const std::string known_by = key(i, j, how);
             const std::optional<Json> found = store.find(known_by.substr(0, 32), known_by);
             if (!found) return {};
             ++recalled;
             return pair_of_many_from_json(*found, i, j);
         };
-        memory.keep = [key, &store](const PairOfMany& pair) {
-            const std::string known_by = key(pair.first, pair.second);
+        memory.keep = [key, &store](const PairOfMany& pair, const PairOptions& how) {
+            const std::string known_by = key(pair.first, pair.second, how);
             Json document;
             store.keep(known_by.substr(0, 32), known_by, pair_of_many_to_json(pair, document.GetAllocator()));
         };
@@ -157,20 +198,21 @@ private:
         auto& allocator = document.GetAllocator();
         JsonValue content = json_object(allocator, "format", "ostraka-reassembly", "version", 1);
         JsonValue list(rapidjson::kArrayType);
+        const std::vector<GroupAxis> axes = own_axes(fragments, result);
         for (std::size_t k = 0; k < fragments.size(); ++k) {
-            std::string alone = left_out.contains(k) ? left_out.at(k) : result.alone[k];
             const double broken = fracture_share(fragments[k]);
+            const std::string alone = why_alone(k, result.alone[k], broken);
             JsonValue one = json_object(allocator, "name", names[k], "group", result.group[k] + 1, "facetsBy", facets_from[k],
                                         "fracture", broken, "pose", pose_to_json(result.poses[k], allocator));
             if (!alone.empty()) add_members(one, allocator, "alone", alone);
-            if (result.group[k] < 0) report_own_axis(fragments[k], one, allocator);
+            report_own_axis(axes[k], one, allocator);
             list.PushBack(one, allocator);
-            report.row("fragments", {names[k], facets_from[k], number(100 * broken, 3),
+            report.row("fragments", {names[k], facets_from[k], left_out.contains(k) ? std::string("-") : number(100 * broken, 3),
                                      result.group[k] < 0 ? std::string("-") : std::to_string(result.group[k] + 1), alone});
         }
         for (const auto& [name, problem] : unreadable) {
-            list.PushBack(json_object(allocator, "name", name, "group", 0, "alone", "it " + problem), allocator);
-            report.row("fragments", {name, std::string("-"), std::string("-"), std::string("-"), "it " + problem});
+            list.PushBack(json_object(allocator, "name", name, "group", 0, "alone", "cannot be read: " + problem), allocator);
+            report.row("fragments", {name, std::string("-"), std::string("-"), std::string("-"), "cannot be read: " + problem});
         }
         add_members(content, allocator, "fragments", list);
         const JsonValue found = reassembly_to_json(result, names, allocator);
@@ -188,12 +230,37 @@ private:
         }
         report.values(content);
         output.write("assembly.json", content);
+        if (result.pairs_left > 0)
+            report.note(
+                "not all pairs were tried, but " + std::to_string(result.pairs_tried) + " of " +
+                std::to_string(result.pairs_tried + result.pairs_left) +
+                ", whose breaks fit best when compared quickly; a join of two others is only found where both are joined " +
+                "to the same group (--partners tries more)");
         const std::size_t joined =
             static_cast<std::size_t>(std::count_if(result.group.begin(), result.group.end(), [](int g) { return g >= 0; }));
         report.line(std::to_string(joined) + " of " + std::to_string(fragments.size() + unreadable.size()) +
                     " fragments are in " + std::to_string(result.groups()) + (result.groups() == 1 ? " group; " : " groups; ") +
                     std::to_string(fragments.size() + unreadable.size() - joined) + " stay alone");
         if (result.groups() == 0) report.answer_no();
+    }
+
+    /// In words of the files: what is known of how facets came about.
+    [[nodiscard]] std::string why_alone(std::size_t k, const std::string& reason, double broken) const {
+        if (left_out.contains(k)) return left_out.at(k);
+        if (reason.empty() || fragments[k].mesh.number_of_faces() < static_cast<std::size_t>(options.min_faces) ||
+            (broken > 0 && broken < 1))
+            return reason;
+        const std::string beside = fragments[k].name + ".ant.json", &from = facets_from[k];
+        if (broken > 0)
+            return "all of its surface is called fracture (by " + from +
+                   "), so that its break has no edge; mark what is not broken " + "as regions \"outer\" or \"inner\" in " +
+                   beside;
+        if (from == "nowhere")
+            return "no break was looked for, because its surface is open or --facets says so: give --facets auto, or mark a "
+                   "region " +
+                   std::string("\"fracture\" in ") + beside;
+        if (from == "annotations") return beside + " names no region \"fracture\" that has faces: mark one";
+        return "no break is found on it, it may be whole; if it is not, mark a region \"fracture\" in " + beside;
     }
 
     static double fracture_share(const Fragment& fragment) {
@@ -213,6 +280,7 @@ private:
         MeshExtras extras;
         Scene scene;
         std::size_t shown = 0;
+        std::vector<std::size_t> begins;  // of each fragment's points
         for (std::size_t k = 0; k < fragments.size(); ++k) {
             if (result.group[k] != g) continue;
             const Mesh placed = moved(fragments[k].mesh, result.poses[k]);
@@ -221,6 +289,7 @@ private:
             output.write(fragments[k].name + ".placed.ply", placed, facets);
             const TriangleSoup own = to_soup(placed);
             const auto offset = static_cast<Index>(soup.points.size());
+            begins.push_back(offset);
             soup.points.insert(soup.points.end(), own.points.begin(), own.points.end());
             const Rgb colour = category_colour(shown);
             for (auto triangle : own.triangles) {
@@ -240,14 +309,37 @@ private:
         output.write(name + ".ply", whole.mesh, extras);
         add_members(entry, allocator, "mesh", name + ".ply");
         if (!no_pictures) {
-            scene.mesh = std::move(soup);
+            if (shown > scene.legend.size())
+                scene.legend.push_back({"and " + std::to_string(shown - scene.legend.size()) + " more", clay, LegendMark::point});
             RenderOptions drawing;
             drawing.views = RenderOptions::Views::six;
             drawing.size = "1500x1000";
-            write_png(output.in(name + ".png"), render({scene}, drawing).picture);
-            add_members(entry, allocator, "picture", name + ".png");
+            for (const auto& [ending, member] : {std::pair(".png", "picture"), std::pair(".exploded.png", "exploded")}) {
+                scene.mesh = soup;
+                write_png(output.in(name + ending), render({scene}, drawing).picture);
+                add_members(entry, allocator, member, name + ending);
+                draw_apart(soup, begins);
+            }
         }
         if (known) complete(context, report, whole, name, entry, allocator);
+    }
+
+    /// Moves fragments away from their common middle, so that breaks are seen.
+    static void draw_apart(TriangleSoup& soup, std::vector<std::size_t> begins) {
+        begins.push_back(soup.points.size());
+        const auto middle = [&](std::size_t begin, std::size_t end) {
+            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+            for (std::size_t i = begin; i < end; ++i)
+                sum += Eigen::Vector3d(soup.points[i][0], soup.points[i][1], soup.points[i][2]);
+            return Eigen::Vector3d(sum / static_cast<double>(std::max<std::size_t>(1, end - begin)));
+        };
+        constexpr double apart = 0.4;  // of the distance from the middle
+        const Eigen::Vector3d whole = middle(0, soup.points.size());
+        for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
+            const Eigen::Vector3d way = apart * (middle(begins[k], begins[k + 1]) - whole);
+            for (std::size_t i = begins[k]; i < begins[k + 1]; ++i)
+                for (int c = 0; c < 3; ++c) soup.points[i][static_cast<std::size_t>(c)] += way[c];
+        }
     }
 
     void complete(Context& context, Report& report, const Fragment& whole, const std::string& name, JsonValue& entry,
@@ -283,7 +375,7 @@ private:
     std::vector<std::string> facets_from;
     std::vector<std::pair<std::string, std::string>> unreadable;  ///< name, what is wrong
     std::map<std::size_t, std::string> left_out;                  ///< of copies
-    std::size_t recalled = 0;
+    std::size_t asked = 0, recalled = 0;                          ///< pairs
 };
 
 }  // namespace

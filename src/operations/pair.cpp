@@ -2,6 +2,7 @@
 #include "operations.h"
 
 #include "ostraka/fracture/break_pair.h"
+#include "ostraka/reassembly/odd_fragments.h"
 #include "ostraka/reconstruction/fragment_file.h"
 
 namespace ostraka {
@@ -27,7 +28,16 @@ struct PairFragments final : Operation {
         if (const Path folder = output.file(); is_folder(folder))
             context.check_outputs({folder / "first.ply", folder / "second.ply", folder / "pair.json"});
         const FragmentFile &a = read(first), &b = read(second);
-        const BreakPair pair = pair_breaks(a.fragment, b.fragment, options);
+        const auto prepared = [&](const FileInput& slot, const Fragment& fragment) {
+            return in_file(slot.file(), [&] { return PreparedBreak(fragment, options); });
+        };
+        BreakPair pair = pair_breaks(prepared(first, a.fragment), prepared(second, b.fragment), options);
+        for (const OddFragment& odd : odd_fragments({a.fragment, b.fragment})) {
+            report.note(printable((odd.fragment == 0 ? first : second).file()) + " " + odd.text);
+            if (!odd.left_out) continue;
+            pair.undecided = "the second " + odd.text;
+            pair.confidence = 0;
+        }
         const JsonValue result = pair_to_json(pair, first.file_name(), second.file_name(), report.allocator());
         report.values(result);
         output.write("pair.json", result);

@@ -39,7 +39,7 @@ struct TemplateTurn final : Operation {
                 SherdOnProfile& one = unreadable.emplace_back();
                 one.name = files.path(k).stem().string();
                 one.use = SherdUse::left_out;
-                one.reason = "cannot be read: " + printable(files.file(k)) + " " + error.problem();
+                one.reason = "cannot be read: " + printable(files.file(k)) + ": " + error.problem();
                 one.remedy = error.remedy();
             }
         output.open();

@@ -1,5 +1,6 @@
 #include "turned_groups.h"
 
+#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 
 #include <algorithm>
@@ -87,9 +88,18 @@ GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragmen
     return found;
 }
 
-void report_own_axis(const Fragment& fragment, JsonValue& entry, JsonAllocator& allocator) {
-    if (fragment.mesh.number_of_faces() == 0) return;
-    const GroupAxis found = axis_of_group({fragment}, {});
+std::vector<GroupAxis> own_axes(const std::vector<Fragment>& fragments, const Reassembly& result) {
+    std::vector<GroupAxis> axes(fragments.size());
+    parallel_for(
+        fragments.size(),
+        [&](std::size_t k) {
+            if (result.group[k] < 0 && fragments[k].mesh.number_of_faces() > 0) axes[k] = axis_of_group({fragments[k]}, {});
+        },
+        1);
+    return axes;
+}
+
+void report_own_axis(const GroupAxis& found, JsonValue& entry, JsonAllocator& allocator) {
     if (!found.axis.found) return;
     JsonValue axis = axis_to_json(found.axis, allocator);
     add_members(axis, allocator, "directionError", found.direction_error, "largestDiameter", found.diameter, "diameterError",

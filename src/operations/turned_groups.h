@@ -15,7 +15,10 @@ namespace ostraka {
 GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragments, const Reassembly& result, int g,
                             JsonValue& group, JsonValue& joins, JsonAllocator& allocator);
 
+/// Axes of revolution of the fragments that are alone; not found of the others.
+std::vector<GroupAxis> own_axes(const std::vector<Fragment>& fragments, const Reassembly& result);
+
 /// The axis of a fragment that is alone, added to its entry; nothing where it has none.
-void report_own_axis(const Fragment& fragment, JsonValue& entry, JsonAllocator& allocator);
+void report_own_axis(const GroupAxis& found, JsonValue& entry, JsonAllocator& allocator);
 
 }  // namespace ostraka

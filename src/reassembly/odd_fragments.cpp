@@ -16,10 +16,31 @@ namespace {
 
 struct Look {
     double area = 0, volume = 0;
+    double width = 0;  ///< of the break: of a sherd its wall; 0: not known
 };
 
-Look look_of(const Mesh& mesh) {
+/// Twice the area of the break by the length of its rim.
+double break_width(const Fragment& fragment) {
+    if (fragment.facets.empty()) return 0;
+    const auto broken = [&](Halfedge h) {
+        const Face f = fragment.mesh.face(h);
+        return f != Mesh::null_face() && fragment.facets[f] == Facet::fracture;
+    };
+    double area = 0, rim = 0;
+    for (const Face f : fragment.mesh.faces())
+        if (fragment.facets[f] == Facet::fracture) area += face_area(fragment.mesh, f);
+    for (const Edge e : fragment.mesh.edges()) {
+        const Halfedge h = fragment.mesh.halfedge(e);
+        if (broken(h) == broken(fragment.mesh.opposite(h))) continue;
+        rim += (eigen(fragment.mesh.point(fragment.mesh.source(h))) - eigen(fragment.mesh.point(fragment.mesh.target(h)))).norm();
+    }
+    return rim > 0 ? 2 * area / rim : 0;
+}
+
+Look look_of(const Fragment& fragment) {
+    const Mesh& mesh = fragment.mesh;
     Look look;
+    look.width = break_width(fragment);
     if (mesh.number_of_vertices() == 0) return look;
     const Eigen::Vector3d origin = eigen(mesh.point(Vertex(0)));
     for (const Face f : mesh.faces()) {
@@ -64,10 +85,11 @@ bool by_motion(const Mesh& a, const Mesh& b) {
 std::vector<OddFragment> odd_fragments(const std::vector<Fragment>& fragments) {
     std::vector<OddFragment> result;
     std::vector<Look> looks;
-    std::vector<double> sizes;
+    std::vector<double> sizes, widths;
     for (const Fragment& one : fragments) {
-        looks.push_back(look_of(one.mesh));
+        looks.push_back(look_of(one));
         if (looks.back().area > 0) sizes.push_back(std::sqrt(looks.back().area));
+        if (looks.back().width > 0) widths.push_back(looks.back().width);
     }
     std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> same;  // by vertices and faces
     for (std::size_t k = 0; k < fragments.size(); ++k) {
@@ -86,18 +108,21 @@ std::vector<OddFragment> odd_fragments(const std::vector<Fragment>& fragments) {
         }
         others.push_back(k);
     }
-    if (sizes.size() < 3) return result;
-    const double usual = upper_median(sizes);
+    if (sizes.size() < 2) return result;
+    const double usual = upper_median(sizes), usual_width = widths.empty() ? 0 : upper_median(widths);
     for (std::size_t k = 0; k < fragments.size(); ++k) {
-        const double ratio = std::sqrt(looks[k].area) / usual, times = ratio < 1 ? 1 / ratio : ratio;
-        if (!(looks[k].area > 0) || times < 8) continue;
+        const double ratio = std::sqrt(looks[k].area) / usual, times = ratio < 1 ? 1 / ratio : ratio,
+                     width_ratio = looks[k].width / usual_width;
+        // Fragments of one vessel may well differ by five, but then their walls do not.
+        const bool as_thick = !(ratio < 1 ? width_ratio < 0.2 : width_ratio > 5);
+        if (!(looks[k].area > 0) || times < (as_thick ? 8 : 5)) continue;
         constexpr double units[] = {10, 25.4, 100, 304.8, 1000};
         const bool unit =
             std::any_of(std::begin(units), std::end(units), [&](double u) { return std::abs(std::log(times / u)) < 0.7; });
         if (unit)
             result.push_back({k,
                               "is " + digits(times, 2) + (ratio < 1 ? " times smaller" : " times larger") +
-                                  " than most: is it in another unit?",
+                                  (sizes.size() > 2 ? " than most" : " than the other") + ": is it in another unit?",
                               false});
     }
     return result;

@@ -5,12 +5,15 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/plane_motion.h"
+#include "pair_choice.h"
 #include "refine_group.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <numeric>
+#include <queue>
 #include <set>
 
 namespace ostraka {
@@ -40,7 +43,7 @@ struct Edge {
 class Assembler {
 public:
     Assembler(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairMemory& memory)
-        : options_(options), memory_(memory), count_(given.size()) {
+        : options_(options), memory_(memory), count_(given.size()), effort_(effort_among(count_, options)) {
         result_.poses.resize(count_);
         result_.group.assign(count_, -1);
         result_.alone.resize(count_);
@@ -58,40 +61,40 @@ public:
     }
 
 private:
-    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
-
     void prepare(const std::vector<Fragment>& given) {
         Progress progress("prepare fragments", count_);
-        for (std::size_t k = 0; k < count_; ++k) {
-            progress.advance();
-            if (given[k].mesh.number_of_faces() < static_cast<std::size_t>(options_.min_faces)) {
-                result_.alone[k] =
-                    "it has " + std::to_string(given[k].mesh.number_of_faces()) + " faces, too few to show how it broke";
-                continue;
-            }
-            try {
-                prepared_[k] = std::make_unique<PreparedBreak>(given[k], options_.pairs);
-            } catch (const Error& error) {
-                if (error.kind() != ErrorKind::input) throw;
-                result_.alone[k] = "it " + error.problem();
-                continue;
-            }
-            result_.alone[k] = what_hides_the_break(*prepared_[k]);
-            if (!result_.alone[k].empty()) {
-                prepared_[k].reset();
-                continue;
-            }
-            Vector3d middle = Vector3d::Zero();
-            for (const Vertex v : given[k].mesh.vertices())
-                middle += eigen(given[k].mesh.point(v)) / static_cast<double>(given[k].mesh.number_of_vertices());
-            double radius = 0;
-            for (const Vertex v : given[k].mesh.vertices())
-                radius = std::max(radius, (eigen(given[k].mesh.point(v)) - middle).norm());
-            middle_.resize(count_);
-            radius_.resize(count_, 0);
-            middle_[k] = middle;
-            radius_[k] = radius;
+        middle_.resize(count_, Vector3d::Zero());
+        radius_.resize(count_, 0);
+        parallel_for(
+            count_,
+            [&](std::size_t k) {
+                prepare(given[k], k);
+                progress.advance();
+            },
+            1);
+    }
+
+    void prepare(const Fragment& given, std::size_t k) {
+        const Mesh& mesh = given.mesh;
+        if (mesh.number_of_faces() < static_cast<std::size_t>(options_.min_faces)) {
+            result_.alone[k] = "it has " + std::to_string(mesh.number_of_faces()) + " faces, too few to show how it broke";
+            return;
         }
+        try {
+            prepared_[k] = std::make_unique<PreparedBreak>(given, effort_.prepared);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;
+            result_.alone[k] = "it " + error.problem();
+            return;
+        }
+        result_.alone[k] = what_hides_the_break(*prepared_[k]);
+        if (!result_.alone[k].empty()) {
+            prepared_[k].reset();
+            return;
+        }
+        for (const Vertex v : mesh.vertices())
+            middle_[k] += eigen(mesh.point(v)) / static_cast<double>(mesh.number_of_vertices());
+        for (const Vertex v : mesh.vertices()) radius_[k] = std::max(radius_[k], (eigen(mesh.point(v)) - middle_[k]).norm());
     }
 
     /// Why a break cannot tell what it belongs to, before it is laid against any other; empty: it may.
@@ -100,76 +103,61 @@ private:
         if (one.fracture_faces() < little)
             return "its break has " + std::to_string(one.fracture_faces()) + " faces, too few to show how it broke";
         constexpr double smooth = 0.7;  // tolerances
-        if (many() && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
+        if (!effort_.all && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
             return "its break is so smooth that it fits too many of so many fragments";
         return "";
     }
-    /// So many fragments that not all pairs are tried.
-    [[nodiscard]] bool many() const { return count_ > static_cast<std::size_t>(options_.partners) + 1; }
 
     [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const {
         return options_.pairs.last_search_radius * join_scale(*prepared_[a], *prepared_[b]);
     }
 
     void try_pairs() {
-        const Pairs list = promising(alike_in_width());
-        Progress progress("lay breaks against each other", list.size());
-        for (const auto& [i, j] : list) {
-            check_cancelled();
-            std::optional<PairOfMany> pair;
-            if (memory_.recall) pair = memory_.recall(i, j);
-            if (!pair) {
-                BreakPair found = pair_breaks(*prepared_[i], *prepared_[j], options_.pairs);
-                pair = PairOfMany{i, j, std::move(found.candidates), found.confidence};
-                if (memory_.keep) memory_.keep(*pair);
-            }
-            ++result_.pairs_tried;
-            pairs_.push_back(std::move(*pair));
-            progress.advance();
-        }
+        const FragmentPairs list = promising_pairs(prepared_, effort_);
+        const auto takes_part = static_cast<std::size_t>(
+            std::count_if(prepared_.begin(), prepared_.end(), [](const auto& one) { return one != nullptr; }));
+        result_.pairs_tried = list.size();
+        result_.pairs_left = takes_part * (takes_part - 1) / 2 - list.size();
+        pairs_ = tried("lay breaks against each other", list, effort_.first);
+        if (effort_.all) return;
+        // Once more and thoroughly where the first look leaves it open.
+        constexpr double hopeless = 0.003, beyond_doubt = 0.98;
+        std::vector<std::size_t> open;
+        for (std::size_t p = 0; p < pairs_.size(); ++p)
+            if (pairs_[p].confidence > hopeless && pairs_[p].confidence < beyond_doubt) open.push_back(p);
+        std::stable_sort(open.begin(), open.end(),
+                         [&](std::size_t x, std::size_t y) { return pairs_[x].confidence > pairs_[y].confidence; });
+        if (open.size() > effort_.most_thorough) open.resize(effort_.most_thorough);
+        FragmentPairs again;
+        for (const std::size_t p : open) again.push_back(list[p]);
+        std::vector<PairOfMany> better = tried("lay the likely ones more thoroughly", again, effort_.thorough);
+        for (std::size_t k = 0; k < open.size(); ++k) pairs_[open[k]] = std::move(better[k]);
     }
 
-    /// All pairs; of many fragments each with those whose breaks are most nearly as wide as its own, four times as many as will
-    /// be tried.
-    [[nodiscard]] Pairs alike_in_width() const {
-        std::vector<std::size_t> order;
-        for (std::size_t k = 0; k < count_; ++k)
-            if (prepared_[k]) order.push_back(k);
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::size_t x, std::size_t y) { return prepared_[x]->width() < prepared_[y]->width(); });
-        const std::size_t reach = std::max<std::size_t>(60, 2 * static_cast<std::size_t>(options_.partners));
-        Pairs list;
-        for (std::size_t r = 0; r < order.size(); ++r)
-            for (std::size_t s = r + 1; s < std::min(order.size(), r + 1 + reach); ++s)
-                list.emplace_back(std::min(order[r], order[s]), std::max(order[r], order[s]));
-        std::sort(list.begin(), list.end());
-        return list;
-    }
-
-    /// Of many fragments those pairs of which one is among the partners that the other quickly fits best with.
-    [[nodiscard]] Pairs promising(const Pairs& list) const {
-        const auto partners = static_cast<std::size_t>(options_.partners);
-        if (!many()) return list;
-        // Of very many pairs each is looked at by fewer places.
-        constexpr std::size_t very_many = 5000;
-        const std::size_t places = list.size() > very_many ? 24 : 64;
-        std::vector<double> score(list.size());
-        Progress progress("compare breaks quickly", list.size());
-        for (std::size_t p = 0; p < list.size(); ++p) {
-            check_cancelled();
-            score[p] = quick_fit(*prepared_[list[p].first], *prepared_[list[p].second], options_.pairs, places);
-            progress.advance();
-        }
-        std::vector<std::vector<std::size_t>> of(count_);
-        for (std::size_t p = 0; p < list.size(); ++p) of[list[p].first].push_back(p), of[list[p].second].push_back(p);
-        std::vector<bool> keep(list.size(), false);
-        for (auto& own : of) {
-            std::stable_sort(own.begin(), own.end(), [&](std::size_t x, std::size_t y) { return score[x] > score[y]; });
-            for (std::size_t k = 0; k < std::min(partners, own.size()); ++k) keep[own[k]] = true;
-        }
-        Pairs result;
-        for (std::size_t p = 0; p < list.size(); ++p)
-            if (keep[p]) result.push_back(list[p]);
+    [[nodiscard]] std::vector<PairOfMany> tried(const std::string& phase, const FragmentPairs& list, const PairOptions& how) {
+        std::vector<PairOfMany> result(list.size());
+        std::mutex one_at_a_time;
+        Progress progress(phase, list.size());
+        parallel_for(
+            list.size(),
+            [&](std::size_t p) {
+                check_cancelled();
+                const auto [i, j] = list[p];
+                std::optional<PairOfMany> pair;
+                if (memory_.recall) {
+                    const std::lock_guard lock(one_at_a_time);
+                    pair = memory_.recall(i, j, how);
+                }
+                if (!pair) {
+                    BreakPair found = pair_breaks(*prepared_[i], *prepared_[j], how);
+                    pair = PairOfMany{i, j, std::move(found.candidates), found.confidence};
+                    const std::lock_guard lock(one_at_a_time);
+                    if (memory_.keep) memory_.keep(*pair, how);
+                }
+                result[p] = std::move(*pair);
+                progress.advance();
+            },
+            1);
         return result;
     }
 
@@ -244,8 +232,8 @@ private:
     };
 
     /// Pairs of fragments of two groups that may touch where `join` lays the second group.
-    [[nodiscard]] Pairs close_pairs(std::size_t a, std::size_t b, const Motion& join) const {
-        Pairs close;
+    [[nodiscard]] FragmentPairs close_pairs(std::size_t a, std::size_t b, const Motion& join) const {
+        FragmentPairs close;
         for (const std::size_t i : members_.at(a))
             for (const std::size_t j : members_.at(b))
                 if ((result_.poses[i](middle_[i]) - join.after(result_.poses[j])(middle_[j])).norm() < radius_[i] + radius_[j])
@@ -262,7 +250,7 @@ private:
         constexpr std::size_t samples = 300;
         for (int step = 0; step < steps; ++step) {
             const double wide = std::pow(widest, 1 - std::min(1.0, 1.5 * step / (steps - 1)));
-            const Pairs close = close_pairs(a, b, join);
+            const FragmentPairs close = close_pairs(a, b, join);
             std::vector<std::vector<ContactPoint>> contacts(2 * close.size());
             parallel_for(
                 close.size(),
@@ -325,7 +313,7 @@ private:
             return verdict;
         }
         double others = 0;
-        const Pairs close = close_pairs(edge.a, edge.b, join);
+        const FragmentPairs close = close_pairs(edge.a, edge.b, join);
         std::vector<JoinEvidence> seen(close.size());
         parallel_for(
             close.size(),
@@ -359,48 +347,96 @@ private:
         for (std::size_t k = 0; k < count_; ++k) {
             if (prepared_[k]) members_[k] = {k};
             version_.push_back(0);
+            refined_.push_back(0);
         }
+        seen_.resize(edges_.size());
+        needed_ = logit(std::clamp(options_.min_join, 1e-6, 1 - 1e-6));
         std::vector<std::size_t> order(edges_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(),
                          [&](std::size_t x, std::size_t y) { return edges_[x].boosted > edges_[y].boosted; });
-        const double needed = logit(std::clamp(options_.min_join, 1e-6, 1 - 1e-6));
-        struct Seen {
-            std::size_t a, b;
-            Verdict verdict;
-        };
-        std::vector<std::optional<Seen>> seen(edges_.size());
-        constexpr double hopeless = 4;  // below what is needed
-        while (true) {
-            check_cancelled();
-            std::size_t best = edges_.size();
-            double maximum = needed;
-            for (const std::size_t e : order) {
-                const Edge& edge = edges_[e];
-                if (edge.boosted < needed - hopeless) break;
-                if (members_.at(edge.a) == members_.at(edge.b)) continue;
-                if (!seen[e] || seen[e]->a != version_[edge.a] || seen[e]->b != version_[edge.b])
-                    seen[e] = Seen{version_[edge.a], version_[edge.b], examine(edge)};
-                if (seen[e]->verdict.log_odds > maximum) maximum = seen[e]->verdict.log_odds, best = e;
-                // None further down can overtake it: what others add is bounded in practice by how sure they are.
-                if (best < edges_.size() && edge.boosted < maximum - 12) break;
-            }
-            if (best == edges_.size()) break;
-            join(edges_[best], seen[best]->verdict.join);
-        }
+        if (effort_.all) join_the_surest(order);
+        else join_as_promised(order);
         for (const std::size_t e : order) {
             const Edge& edge = edges_[e];
-            if (edge.own < needed) continue;
+            if (edge.own < needed_) continue;
             const double likely = probability(edge.own);
             if (members_.at(edge.a) == members_.at(edge.b)) {
                 const Motion here = result_.poses[edge.a].inverse().after(result_.poses[edge.b]);
                 if (!agree(here, edge.pose, edge.b, loop_length(edge.a, edge.b, edge.b)))
                     result_.undone.push_back({edge.a, edge.b, likely, "surer joins put the two elsewhere"});
-            } else if (seen[e] && !seen[e]->verdict.against.empty()) {
-                result_.undone.push_back({edge.a, edge.b, likely, seen[e]->verdict.against});
+            } else if (seen_[e] && !seen_[e]->verdict.against.empty()) {
+                result_.undone.push_back({edge.a, edge.b, likely, seen_[e]->verdict.against});
             } else {
                 result_.undone.push_back({edge.a, edge.b, likely, "what else would touch does not fit"});
             }
+        }
+    }
+
+    /// What was seen of an edge still holds.
+    [[nodiscard]] bool up_to_date(std::size_t e) const {
+        return seen_[e] && seen_[e]->a == version_[edges_[e].a] && seen_[e]->b == version_[edges_[e].b];
+    }
+    void look_at(std::size_t e) { seen_[e] = Seen{version_[edges_[e].a], version_[edges_[e].b], examine(edges_[e])}; }
+
+    static constexpr double hopeless_edge = 4;  // below what is needed
+
+    /// Each time the best of all as they then are.
+    void join_the_surest(const std::vector<std::size_t>& order) {
+        while (true) {
+            check_cancelled();
+            std::size_t best = edges_.size();
+            double maximum = needed_;
+            for (const std::size_t e : order) {
+                const Edge& edge = edges_[e];
+                if (edge.boosted < needed_ - hopeless_edge) break;
+                if (members_.at(edge.a) == members_.at(edge.b)) continue;
+                if (!up_to_date(e)) look_at(e);
+                if (seen_[e]->verdict.log_odds > maximum) maximum = seen_[e]->verdict.log_odds, best = e;
+                // None further down can overtake it: what others add is bounded in practice by how sure they are.
+                if (best < edges_.size() && edge.boosted < maximum - 12) break;
+            }
+            if (best == edges_.size()) break;
+            join(edges_[best], seen_[best]->verdict.join);
+        }
+    }
+
+    /// Of many: what an edge promised when it was last looked at stands until it is the best of all promises; only then it is
+    /// looked at again. One that something speaks against is not looked at again, one that falls short twice more.
+    void join_as_promised(const std::vector<std::size_t>& order) {
+        using Promise = std::pair<double, std::size_t>;  // log odds, edge
+        const auto later = [](const Promise& x, const Promise& y) {
+            return std::pair(x.first, y.second) < std::pair(y.first, x.second);
+        };
+        std::priority_queue<Promise, std::vector<Promise>, decltype(later)> promises(later);
+        std::vector<std::size_t> short_of;
+        std::vector<int> fallen(edges_.size(), 0);
+        for (const std::size_t e : order)
+            if (edges_[e].boosted >= needed_ - hopeless_edge) promises.emplace(edges_[e].boosted, e);
+        Progress progress("join groups", members_.size());
+        while (!promises.empty()) {
+            check_cancelled();
+            const std::size_t e = promises.top().second;
+            promises.pop();
+            const Edge& edge = edges_[e];
+            if (members_.at(edge.a) == members_.at(edge.b)) continue;
+            if (up_to_date(e)) {
+                join(edge, seen_[e]->verdict.join);
+                progress.advance();
+                // More touches now.
+                std::erase_if(short_of, [&](std::size_t other) {
+                    if (up_to_date(other)) return false;
+                    promises.emplace(std::min(edges_[other].boosted, needed_), other);
+                    return true;
+                });
+                continue;
+            }
+            look_at(e);
+            const Verdict& verdict = seen_[e]->verdict;
+            if (!verdict.against.empty()) continue;
+            constexpr int chances = 3;
+            if (verdict.log_odds > needed_) promises.emplace(verdict.log_odds, e);
+            else if (++fallen[e] < chances) short_of.push_back(e);
         }
     }
 
@@ -415,7 +451,14 @@ private:
             members_[k] = all;
             version_[k] = versions_;
         }
+        constexpr std::size_t small = 25;
+        constexpr double grown = 1.2;
+        std::size_t refined = 0;
+        for (const std::size_t k : all) refined = std::max(refined, refined_[k]);
+        // Of large groups not at each join: the time would go with the square of their size.
+        if (all.size() > small && static_cast<double>(all.size()) < grown * static_cast<double>(refined)) return;
         refine(all, 3);
+        for (const std::size_t k : all) refined_[k] = all.size();
     }
 
     /// Pairs of a group that touch where they are.
@@ -555,15 +598,33 @@ private:
             best = &pair.candidates.front();
             other = pair.first == k ? pair.second : pair.first;
         }
-        if (best == nullptr) return "its break comes into contact with no other";
-        const int percent = static_cast<int>(std::lround(100 * maximum));
-        return "its most likely join, with " + prepared_[other]->name() + ", has a probability of " + std::to_string(percent) +
-               " %: " + weakest_evidence(best->evidence);
+        if (best == nullptr)
+            return std::count_if(prepared_.begin(), prepared_.end(), [](const auto& one) { return one != nullptr; }) > 1
+                       ? "its break comes into contact with no other"
+                       : "there is no other fragment with a break to lay it against";
+        const auto percent = [](double p) { return std::to_string(static_cast<int>(std::floor(100 * p))) + " %"; };
+        const double among = probable(maximum);
+        std::string text = "it fits best on " + prepared_[other]->name() + ", with a probability of " + percent(maximum);
+        if (percent(among) != percent(maximum))
+            text += " by the two alone and of " + percent(among) + " among so many fragments, of which some fit by chance";
+        if (among < options_.min_join)
+            return text + "; fragments are joined from " + percent(options_.min_join) +
+                   " on: " + weakest_evidence(best->evidence);
+        for (const UndoneJoin& one : result_.undone)
+            if (one.first == std::min(k, other) && one.second == std::max(k, other))
+                return text + "; not joined, since " + one.reason;
+        return text + "; not joined, since what else would touch does not fit";
     }
+
+    struct Seen {
+        std::size_t a, b;  ///< versions of the groups
+        Verdict verdict;
+    };
 
     const ReassemblyOptions& options_;
     const PairMemory& memory_;
     std::size_t count_;
+    PairEffort effort_;
     std::vector<std::unique_ptr<PreparedBreak>> prepared_;
     std::vector<Vector3d> middle_;
     std::vector<double> radius_;
@@ -572,7 +633,10 @@ private:
     std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> of_pair_;  ///< edges, the lower number first
     std::map<std::size_t, std::vector<std::size_t>> members_;                          ///< of each fragment: its group
     std::vector<std::size_t> version_;                                                 ///< of each fragment's group
+    std::vector<std::size_t> refined_;  ///< of each fragment: how large its group was when it was last refined
     std::size_t versions_ = 0;
+    std::vector<std::optional<Seen>> seen_;  ///< of each edge
+    double needed_ = 0;                      ///< log odds
     Reassembly result_;
 };
 

@@ -102,7 +102,8 @@ JsonValue reassembly_to_json(const Reassembly& result, const std::vector<std::st
                            "because", one.reason);
     };
     return json_object(allocator, "groups", std::move(groups), "joins", json_list(result.joins, allocator, of_join), "undone",
-                       json_list(result.undone, allocator, of_undone), "pairsTried", result.pairs_tried);
+                       json_list(result.undone, allocator, of_undone), "pairsTried", result.pairs_tried, "pairsLeft",
+                       result.pairs_left);
 }
 
 }  // namespace ostraka

@@ -6,6 +6,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
@@ -50,7 +51,8 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
         motion.translation = translations[k];
         return motion;
     };
-    constexpr std::size_t samples = 200;
+    // Of large groups fewer, each fragment being held by several neighbours.
+    const std::size_t samples = std::clamp<std::size_t>(200 * 25 / n, 40, 200);
     for (int round = 0; round < rounds; ++round) {
         const double wide = rounds > 1 ? 2 - static_cast<double>(round) / (rounds - 1) : 1;
         ceres::Problem::Options ownership;

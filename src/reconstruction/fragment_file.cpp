@@ -15,6 +15,17 @@ bool has_border(const Mesh& mesh) {
     return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Edge e) { return mesh.is_border(e); });
 }
 
+/// Names the file in errors of what is done with its contents.
+template <class Work>
+auto of_file(const Path& file, Work&& work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input) throw;
+        fail_input(file.string() + ", " + error.where(), error.problem(), error.remedy());
+    }
+}
+
 }  // namespace
 
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options) {
@@ -26,14 +37,9 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     if (const std::optional<PointCloud> cloud = read_point_cloud(file)) {
         result.points = true;
         result.notes = cloud->notes;
-        try {
-            CloudSurface surface = reconstruct_surface(*cloud, options.cloud);
-            result.notes.insert(result.notes.end(), surface.notes.begin(), surface.notes.end());
-            fragment.mesh = std::move(surface.mesh);
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::input) throw;
-            fail_input(file.string() + ", " + error.where(), error.problem(), error.remedy());
-        }
+        CloudSurface surface = of_file(file, [&] { return reconstruct_surface(*cloud, options.cloud); });
+        result.notes.insert(result.notes.end(), surface.notes.begin(), surface.notes.end());
+        fragment.mesh = std::move(surface.mesh);
     } else {
         MeshFile mesh = read_mesh(file);
         fragment.mesh = std::move(mesh.mesh);
@@ -60,7 +66,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
                          : by_shape            ? "shape"
                                                : "nowhere";
     if (by_shape) {
-        result.found = find_facets(fragment.mesh, options.finding);
+        result.found = of_file(file, [&] { return find_facets(fragment.mesh, options.finding); });
         fragment.facets = result.found.of_face;
         constexpr double even = 0.5;
         for (const FacetSegment& segment : result.found.segments)
@@ -69,11 +75,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     }
     if (annotated) {
         const auto from_file = [&](Facet other) {
-            try {
-                return facets_of(fragment.mesh, fragment.annotations, other);
-            } catch (const Error& error) {
-                fail_input(beside.string() + ", " + error.where(), error.problem(), error.remedy());
-            }
+            return of_file(beside, [&] { return facets_of(fragment.mesh, fragment.annotations, other); });
         };
         std::vector<Facet> stated = from_file(Facet::outer);
         if (by_shape) {

@@ -97,23 +97,47 @@ TEST(Reassembly, TwoObjectsInOneBox) {
     EXPECT_EQ(carried, (std::set<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 3}, {2, 4}}));
 }
 
+void same(const Reassembly& x, const Reassembly& y) {
+    EXPECT_EQ(x.group, y.group);
+    ASSERT_EQ(x.poses.size(), y.poses.size());
+    for (std::size_t k = 0; k < x.poses.size(); ++k) {
+        EXPECT_EQ(x.poses[k].rotation, y.poses[k].rotation);
+        EXPECT_EQ(x.poses[k].translation, y.poses[k].translation);
+    }
+    ASSERT_EQ(x.joins.size(), y.joins.size());
+    for (std::size_t k = 0; k < x.joins.size(); ++k) EXPECT_EQ(x.joins[k].confidence, y.joins[k].confidence);
+}
+
+TEST(Reassembly, OfManyFragmentsOnlyPromisingPairsAreTried) {
+    const Mixture box;
+    ReassemblyOptions options = quick();
+    options.partners = 2;
+    const int before = threads();
+    set_threads(1);
+    const Reassembly result = reassemble(box.fragments, options);
+    set_threads(3);
+    const Reassembly parallel = reassemble(box.fragments, options);
+    set_threads(before);
+    same(result, parallel);
+    EXPECT_GT(result.pairs_left, 0u);
+    EXPECT_EQ(result.pairs_tried + result.pairs_left, 10u);
+    ASSERT_EQ(result.groups(), 2);
+    EXPECT_EQ(result.group[0], result.group[2]);
+    EXPECT_EQ(result.group[0], result.group[4]);
+    EXPECT_EQ(result.group[1], result.group[3]);
+    EXPECT_NE(result.group[0], result.group[1]);
+    EXPECT_LT(box.off(result, 2, 0), 0.1) << "of a diagonal of 9";
+    EXPECT_LT(box.off(result, 2, 4), 0.1);
+    EXPECT_LT(box.off(result, 1, 3), 0.05);
+}
+
 TEST(Reassembly, ThreadsAndWhatWasTriedBeforeDoNotMatter) {
     std::vector<Fragment> three = Mixture().fragments;
     three = {three[1], three[2], three[3]};
-    const auto same = [](const Reassembly& x, const Reassembly& y) {
-        EXPECT_EQ(x.group, y.group);
-        ASSERT_EQ(x.poses.size(), y.poses.size());
-        for (std::size_t k = 0; k < x.poses.size(); ++k) {
-            EXPECT_EQ(x.poses[k].rotation, y.poses[k].rotation);
-            EXPECT_EQ(x.poses[k].translation, y.poses[k].translation);
-        }
-        ASSERT_EQ(x.joins.size(), y.joins.size());
-        for (std::size_t k = 0; k < x.joins.size(); ++k) EXPECT_EQ(x.joins[k].confidence, y.joins[k].confidence);
-    };
     std::vector<PairOfMany> known;
     std::size_t tried = 0;
     PairMemory memory;
-    memory.keep = [&](const PairOfMany& pair) { known.push_back(pair), ++tried; };
+    memory.keep = [&](const PairOfMany& pair, const PairOptions&) { known.push_back(pair), ++tried; };
     const int before = threads();
     set_threads(1);
     const Reassembly one = reassemble(three, quick(), memory);
@@ -122,7 +146,7 @@ TEST(Reassembly, ThreadsAndWhatWasTriedBeforeDoNotMatter) {
     set_threads(before);
     same(one, parallel);
     EXPECT_EQ(tried, 3u);
-    memory.recall = [&](std::size_t i, std::size_t j) -> std::optional<PairOfMany> {
+    memory.recall = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairOfMany> {
         for (const PairOfMany& pair : known)
             if (pair.first == i && pair.second == j) return pair;
         return {};
@@ -188,6 +212,25 @@ TEST(OddFragments, CopiesMirrorImagesUnitsAndInsideOut) {
     EXPECT_NE(odd[6].text.find("inside out"), std::string::npos) << odd[6].text;
 }
 
+TEST(OddFragments, AnotherUnitIsSeenByTheWallWhereSizesAreLessFarApart) {
+    std::vector<Fragment> two{fragment_of(synthetic_sherd(1, 2, 0, 1), "centimetres", {}),
+                              fragment_of(synthetic_sherd(2, 3, 1, 2), "other", {})};
+    const auto scaled = [&](double scale) {
+        Fragment one = two[1];
+        one.mesh = scaled_by(one.mesh, scale);
+        return odd_fragments({two[0], one});
+    };
+    EXPECT_TRUE(odd_fragments(two).empty());
+    EXPECT_TRUE(scaled(3).empty()) << "sherds differ";
+    const double equal = std::sqrt(surface_area(two[0].mesh) / surface_area(two[1].mesh));
+    const auto odd = scaled(6.5 * equal);
+    ASSERT_EQ(odd.size(), 1u);
+    EXPECT_NE(odd[0].text.find("in another unit"), std::string::npos) << odd[0].text;
+    // As much larger with a wall as thick: no other unit.
+    for (Facet& facet : two[0].facets) facet = Facet::outer;
+    EXPECT_TRUE(scaled(6.5 * equal).empty()) << "no wall to tell by";
+}
+
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
 TEST(AssembleCommand, ABoxAgainAndWithWhatCannotBeRead) {
@@ -209,9 +252,11 @@ TEST(AssembleCommand, ABoxAgainAndWithWhatCannotBeRead) {
         EXPECT_EQ(one["group"].GetInt(), name == "above" || name == "below" ? 1 : 0) << name;
         EXPECT_EQ(one.HasMember("alone"), name == "middle" || name == "broken") << name;
     }
-    for (const char* name : {"group-1.ply", "group-1.png", "above.placed.ply", "below.placed.ply"})
+    for (const char* name : {"group-1.ply", "group-1.png", "group-1.exploded.png", "above.placed.ply", "below.placed.ply"})
         EXPECT_TRUE(std::filesystem::exists(scratch / "out" / name)) << name;
     EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "middle.placed.ply"));
+    EXPECT_NE(run.err.find("broken.ply"), std::string::npos) << run.err;
+    EXPECT_NE(run.out.find("cannot be read: "), std::string::npos) << run.out;
     const Mesh above = read_mesh(scratch / "out" / "above.placed.ply").mesh;
     const Mesh below = read_mesh(scratch / "out" / "below.placed.ply").mesh;
     EXPECT_EQ(read_mesh(scratch / "out" / "group-1.ply").mesh.number_of_faces(),
@@ -223,6 +268,25 @@ TEST(AssembleCommand, ABoxAgainAndWithWhatCannotBeRead) {
     Json second = read_json(scratch / "out" / "assembly.json");
     EXPECT_EQ(to_text(second["joins"]), to_text(report["joins"]));
     EXPECT_EQ(to_text(second["fragments"]), to_text(report["fragments"]));
+}
+
+TEST(AssembleCommand, TheOrderOfTheNamesAndThreadsDoNotMatter) {
+    const test::Scratch scratch;
+    const Mixture box;
+    std::vector<std::string> files;
+    for (const std::size_t k : {1, 2, 3}) {
+        files.push_back(quoted(scratch / (box.fragments[k].name + ".ply")));
+        write_mesh(scratch / (box.fragments[k].name + ".ply"), box.fragments[k].mesh);
+    }
+    const auto joins = [&](const std::string& in_order, const std::string& folder, const std::string& further) {
+        const auto run = test::run_command("assemble " + in_order + " --output " + quoted(scratch / folder) +
+                                           " --frames 60 --samples 500 --starts 40 --refined 6 --no-pictures" + further);
+        EXPECT_EQ(run.code, 0) << run.err << run.out;
+        const Json report = read_json(scratch / folder / "assembly.json");
+        return to_text(report["fragments"]) + to_text(report["joins"]) + to_text(report["undone"]);
+    };
+    const std::string one = joins(files[0] + " " + files[1] + " " + files[2], "one", " --threads 1");
+    EXPECT_EQ(joins(files[2] + " " + files[0] + " " + files[1], "two", " --threads 2"), one);
 }
 
 TEST(AssembleCommand, WhatMakesNoSense) {
@@ -244,6 +308,10 @@ TEST(AssembleCommand, WhatMakesNoSense) {
                                           " --no-pictures");
     EXPECT_EQ(copies.code, 3) << copies.err << copies.out;
     EXPECT_NE((copies.out + copies.err).find("is a copy of"), std::string::npos) << copies.out << copies.err;
+    const auto itself = test::run_command("pair " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "copy.ply") + out +
+                                          " --frames 40 --samples 300 --starts 20 --refined 4");
+    EXPECT_EQ(itself.code, 3) << itself.err << itself.out;
+    EXPECT_NE(itself.out.find("because the second is a copy of bar"), std::string::npos) << itself.out;
     EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "gone.ply") + out).code, 1);
     EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " --least-join 7" + out).code, 2);
 }

@@ -52,13 +52,15 @@ struct Reassembly {
     std::vector<FragmentJoin> joins;  ///< by group, surest first
     std::vector<UndoneJoin> undone;
     std::size_t pairs_tried = 0;
+    std::size_t pairs_left = 0;  ///< of many fragments: pairs that were not tried, their breaks being unlike
     [[nodiscard]] int groups() const;
 };
 
-/// What was found of pairs before, by their numbers; nothing: they are tried. And what to do with one that was tried.
+/// What was found of pairs before, by their numbers and with these options; nothing: they are tried. And what to do with one that
+/// was tried. Called from several threads, one at a time.
 struct PairMemory {
-    std::function<std::optional<PairOfMany>(std::size_t, std::size_t)> recall;
-    std::function<void(const PairOfMany&)> keep;
+    std::function<std::optional<PairOfMany>(std::size_t, std::size_t, const PairOptions&)> recall;
+    std::function<void(const PairOfMany&, const PairOptions&)> keep;
 };
 
 /// All pairs give candidates, not only their best. Candidates that close a loop with those of a third fragment get surer: three
