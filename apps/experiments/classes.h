@@ -17,6 +17,13 @@ struct ClassMembershipOptions {
 };
 void class_membership(const ClassMembershipOptions& options);
 
+/// How many members it takes: eight classes made by rule, whose members differ in proportions, taper and bend.
+struct ClassSizeOptions {
+    std::string output = "experiments-output/class-size";
+    std::uint64_t vertices = 3000, seed = 1;
+};
+void class_size(const ClassSizeOptions& options);
+
 /// Objects whose correspondence is known: modes learnt from it, and what a fit finds of it.
 struct ClassCorrespondenceOptions {
     std::vector<std::string> faces;  ///< the neutral one first

@@ -213,6 +213,12 @@ void declare_class_membership(CLI::App& command, ClassMembershipOptions& options
         ->capture_default_str();
 }
 
+void declare_class_size(CLI::App& command, ClassSizeOptions& options) {
+    command.add_option("--output", options.output, "folder for tables")->capture_default_str();
+    command.add_option("--vertices", options.vertices, "of each object")->capture_default_str();
+    command.add_option("--seed", options.seed, "of what objects vary in")->capture_default_str();
+}
+
 void declare_class_correspondence(CLI::App& command, ClassCorrespondenceOptions& options) {
     command.add_option("--face", options.faces, "mesh files of faces with the same vertices, the neutral one first")->required();
     command.add_option("--landmarks", options.landmarks, "vertices of a face, an index a line")->required();
@@ -290,6 +296,7 @@ constexpr Experiment list[] = {
     {"fragments", "fragments of deformed copies of a template, fitted", declared<declare_fragments, fragments>},
     {"verdicts", "pairs of fragments that belong together, or do not", declared<declare_verdicts, verdicts>},
     {"classes", "which class an object belongs to, leave one out", declared<declare_class_membership, class_membership>},
+    {"class-size", "how many members a class needs, of made ones", declared<declare_class_size, class_size>},
     {"class-correspondence", "modes and fits of faces and bodies in correspondence",
      declared<declare_class_correspondence, class_correspondence>},
     {"same-level", "flowers of a stretched teapot (thesis, figures 5.3 and 5.4)", declared<declare_semantic, same_level>},

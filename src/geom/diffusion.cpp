@@ -1,5 +1,7 @@
 #include "ostraka/geom/diffusion.h"
 
+#include "cotangent.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/core/sparse.h"
 #include "ostraka/geom/eigen.h"
@@ -16,21 +18,6 @@ struct Diffusion::System {
     std::vector<int> row;                           ///< of each vertex; -1 if it stays
     std::size_t vertices = 0;
 };
-
-namespace {
-
-/// Cotangent of the angle opposite to the halfedge in its face, at least 0.
-double cotangent(const Mesh& mesh, Halfedge h) {
-    if (mesh.is_border(h)) return 0;
-    const Point& apex = mesh.point(mesh.target(mesh.next(h)));
-    const Vector a = mesh.point(mesh.source(h)) - apex, b = mesh.point(mesh.target(h)) - apex;
-    const double sine = std::sqrt(CGAL::cross_product(a, b).squared_length());
-    // A triangle without area pulls its corners together no stronger than a very thin one.
-    constexpr double maximum = 1e4;
-    return sine > 0 ? std::clamp(a * b / sine, 0.0, maximum) : 0;
-}
-
-}  // namespace
 
 Diffusion::Diffusion(const Mesh& mesh) : system_(std::make_unique<System>()) {
     System& s = *system_;
@@ -50,7 +37,7 @@ Diffusion::Diffusion(const Mesh& mesh) : system_(std::make_unique<System>()) {
     for (std::size_t i = 0; i < s.free.size(); ++i) s.mass[static_cast<Eigen::Index>(i)] = mass[s.free[i]];
     for (const Edge edge : mesh.edges()) {
         const Halfedge h = mesh.halfedge(edge);
-        const double weight = (cotangent(mesh, h) + cotangent(mesh, mesh.opposite(h))) / 2;
+        const double weight = cotangent_weight(mesh, edge);
         const Vertex ends[2] = {mesh.source(h), mesh.target(h)};
         for (int k = 0; k < 2; ++k) {
             const int i = s.row[ends[k]], j = s.row[ends[1 - k]];

@@ -5,7 +5,9 @@
 #include "ostraka/reconstruction/rigid_scale.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace ostraka {
 
@@ -34,12 +36,19 @@ double weight_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement
     return sum;
 }
 
-/// How many times as large the template is by the landmarks used that move rigidly together.
-double rigid_scale_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement) {
-    std::vector<Eigen::Vector3d> from, to;
+/// The landmarks used, on the template and on the fragment.
+std::array<std::vector<Eigen::Vector3d>, 2> used_landmarks(const std::vector<LandmarkPair>& pairs,
+                                                           const FragmentPlacement& placement) {
+    std::array<std::vector<Eigen::Vector3d>, 2> used;
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (i >= placement.landmarks.size() || placement.landmarks[i].used)
-            from.push_back(pairs[i].on_template), to.push_back(pairs[i].on_fragment);
+            used[0].push_back(pairs[i].on_template), used[1].push_back(pairs[i].on_fragment);
+    return used;
+}
+
+/// How many times as large the template is by the landmarks used that move rigidly together.
+double rigid_scale_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement) {
+    const auto [from, to] = used_landmarks(pairs, placement);
     return rigid_scale(from, to);
 }
 
@@ -87,8 +96,8 @@ public:
         } else if (result_.rotations && std::any_of(result_.rotations->notes.begin(), result_.rotations->notes.end(),
                                                     [](const std::string& note) { return !note.empty(); })) {
             result_.undecided = "the turns of some fragments about the axis are not decided";
-        } else if (!unsure_size_.empty()) {
-            result_.undecided = unsure_size_;
+        } else if (!unsure_.empty()) {
+            result_.undecided = unsure_;
         } else if (placed == 1 && !tested) {
             result_.undecided = "one fragment and no constraint: nothing can contradict it";
         } else {
@@ -106,7 +115,6 @@ private:
     /// A fragment's size against that of the others, and its landmarks against the template's.
     void judge_fragment(std::size_t k) {
         const FragmentPlacement& one = result_.placement.fragments[k];
-        const int number = static_cast<int>(k);
         double sum = 0, rigid_sum = 0, weights = 0;
         for (std::size_t j = 0; j < pairs_.size(); ++j) {
             const FragmentPlacement& other = result_.placement.fragments[j];
@@ -120,10 +128,25 @@ private:
         const double count = static_cast<double>(
             std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
         const double spread = count > 0 ? std::sqrt(weight_of(pairs_[k], one, true) / count) : 0;
-        if (spread > 0)
-            objection(ObjectionKind::landmarks, number, -1, one.residual / (std::max(options_.residual, 1e-9) * spread),
-                      "its landmarks are " + digits(one.residual, 3) + " off those of the template (root mean square), " +
-                          digits(100 * one.residual / spread, 3) + " % of their spread");
+        if (spread > 0) judge_landmarks(k, one.residual / spread);
+    }
+
+    /// How far landmarks are off the template's. Where distances between those that move rigidly together, which posture does not
+    /// change, differ by no more than sizes may, another posture explains it as well as another shape.
+    void judge_landmarks(std::size_t k, double off) {
+        const FragmentPlacement& one = result_.placement.fragments[k];
+        const double strain_of_all = off / std::max(options_.residual, 1e-9);
+        const auto [from, to] = used_landmarks(pairs_[k], one);
+        const std::optional<double> strain = rigid_strain(from, to);
+        const bool posture = strain && 100 * *strain <= options_.scale_tolerance;
+        const std::string text = digits(one.residual, 3) + " off those of the template (root mean square), " +
+                                 digits(100 * off, 3) + " % of their spread";
+        objection(ObjectionKind::landmarks, static_cast<int>(k), -1, posture ? std::min(strain_of_all, 1.0) : strain_of_all,
+                  "its landmarks are " + text);
+        if (posture && strain_of_all > 1 && unsure_.empty())
+            unsure_ = "the landmarks of fragment " + std::to_string(k + 1) + " are " + text + ", but distances of near ones by " +
+                      digits(100 * *strain, 3) +
+                      " % only, which a posture unlike the template's explains as well as another shape";
     }
 
     /// Two sizes are compared: that of all landmarks, and that of those that move rigidly together, which posture does not
@@ -136,11 +159,10 @@ private:
         const std::string text = "alone it would have the template " + digits(own, 4) + " times as large, and the others " +
                                  digits(others, 4) + " times: its size is off by " + digits(off, 3) + " %";
         objection(ObjectionKind::size, static_cast<int>(k), -1, std::min(off, rigid_off) / tolerance, text);
-        if (std::min(off, rigid_off) <= tolerance && std::max(off, rigid_off) > tolerance && unsure_size_.empty())
-            unsure_size_ =
-                "the size of fragment " + std::to_string(k + 1) + " is uncertain: it is off by " + digits(off, 3) +
-                " % by all landmarks and by " + digits(rigid_off, 3) +
-                " % by those that move together, which a posture unlike the template's explains as well as another size";
+        if (std::min(off, rigid_off) <= tolerance && std::max(off, rigid_off) > tolerance && unsure_.empty())
+            unsure_ = "the size of fragment " + std::to_string(k + 1) + " is uncertain: it is off by " + digits(off, 3) +
+                      " % by all landmarks and by " + digits(rigid_off, 3) +
+                      " % by those that move together, which a posture unlike the template's explains as well as another size";
     }
 
     /// Whether a fragment lies on the template, and where no other one does.
@@ -176,7 +198,7 @@ private:
     const std::vector<std::vector<LandmarkPair>>& pairs_;
     const std::vector<int>& placed_;
     const ReconstructOptions& options_;
-    std::string unsure_size_;  ///< why a size is neither right nor wrong
+    std::string unsure_;  ///< why sizes or landmarks are neither right nor wrong
 };
 
 }  // namespace

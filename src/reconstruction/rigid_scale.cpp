@@ -3,11 +3,20 @@
 #include "ostraka/core/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 
 namespace ostraka {
 
-double rigid_scale(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
+namespace {
+
+struct Weighted {
+    double value = 0, weight = 0;
+};
+
+/// How many times as long distances between near landmarks are, with how long they are in `from`.
+std::vector<Weighted> near_ratios(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
     constexpr std::size_t neighbours = 3;
     const std::size_t n = from.size();
     if (to.size() != n)
@@ -24,19 +33,39 @@ double rigid_scale(const std::vector<Eigen::Vector3d>& from, const std::vector<E
         order.resize(std::min<std::size_t>(order.size(), neighbours));
         for (const std::size_t j : order) near.emplace(std::min(i, j), std::max(i, j));
     }
-    std::vector<std::pair<double, double>> ratios;  // with weights
-    double all = 0;
+    std::vector<Weighted> ratios;
     for (const auto& [i, j] : near) {
         const double before = (from[i] - from[j]).norm(), after = (to[i] - to[j]).norm();
-        if (!(before > 0) || !(after > 0)) continue;
-        ratios.emplace_back(after / before, before);
-        all += before;
+        if (before > 0 && after > 0) ratios.push_back({after / before, before});
     }
-    std::sort(ratios.begin(), ratios.end());
-    double sum = 0;
-    for (const auto& [ratio, weight] : ratios)
-        if ((sum += weight) >= 0.5 * all) return ratio;
+    return ratios;
+}
+
+/// 0 of nothing.
+double weighted_median(std::vector<Weighted> list) {
+    std::sort(list.begin(), list.end(), [](const Weighted& a, const Weighted& b) {
+        return std::make_pair(a.value, a.weight) < std::make_pair(b.value, b.weight);
+    });
+    double all = 0, sum = 0;
+    for (const Weighted& one : list) all += one.weight;
+    for (const Weighted& one : list)
+        if ((sum += one.weight) >= 0.5 * all) return one.value;
     return 0;
+}
+
+}  // namespace
+
+double rigid_scale(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
+    return weighted_median(near_ratios(from, to));
+}
+
+std::optional<double> rigid_strain(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
+    constexpr std::size_t least_landmarks = 6;
+    std::vector<Weighted> list = near_ratios(from, to);
+    if (from.size() < least_landmarks || list.size() < least_landmarks) return {};
+    const double scale = weighted_median(list);
+    for (Weighted& one : list) one.value = std::abs(one.value / scale - 1);
+    return weighted_median(std::move(list));
 }
 
 }  // namespace ostraka

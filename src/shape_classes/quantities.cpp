@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace ostraka {
 
@@ -153,7 +154,8 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const 
 }
 
 bool is_share_of_surface(const ClassQuantity& quantity) {
-    return quantity.kind == QuantityKind::geometry && (quantity.name == "unmatched" || quantity.name == "unexplained");
+    static const std::set<std::string> shares{"unmatched", "unexplained", "share of the hull", "concave share"};
+    return quantity.kind == QuantityKind::geometry && shares.count(quantity.name) > 0;
 }
 
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals) {
@@ -176,7 +178,7 @@ std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>
 
 std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
     std::vector<ClassQuantity> list;
-    const auto add = [&](const char* name, const std::optional<double>& value) {
+    const auto add = [&](const std::string& name, const std::optional<double>& value) {
         list.emplace_back().name = name;
         list.back().value = value;
     };
@@ -190,6 +192,13 @@ std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
     add("thickness mean", shape.thickness_mean);
     add("thickness median", shape.thickness_median);
     add("thickness most", shape.thickness_most);
+    add("share of the hull", shape.hull_share);
+    add("compactness of the hull", shape.hull_compactness);
+    add("mean curvature", shape.curvature);
+    add("concave share", shape.concave);
+    add("saddles and peaks", shape.saddles);
+    for (std::size_t k = 0; k < WholeShape::spectrum_size; ++k)
+        add("tone " + std::to_string(k + 1), k < shape.spectrum.size() ? std::optional(shape.spectrum[k]) : std::nullopt);
     return list;
 }
 

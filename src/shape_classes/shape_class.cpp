@@ -180,12 +180,15 @@ std::vector<double> unlikeness_logs(const LearntRange& range) {
 }
 
 /// Less than one deviation refuses nobody, and half of one is recognised where strangers do not say otherwise.
-void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members, std::size_t asked) {
+void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members, const SampleMoments& strangers,
+                           std::size_t asked) {
     range.high = std::max(1.0, std::exp(predict(members, true, range.reject).high));
-    set_recognised(range, members, learnt.accept / static_cast<double>(asked), learnt.unsure);
+    set_recognised(range, members, strangers, learnt.accept / static_cast<double>(asked), learnt.unsure);
 }
 
-void set_thresholds(ShapeClass& learnt, const Moments& moderated, std::size_t asked = 1) {
+/// `strangers`: what they show of unlikeness to all classes that are asked together, instead of what they do to this one.
+void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::optional<SampleMoments>& strangers = {},
+                    std::size_t asked = 1) {
     std::map<QuantityKind, std::size_t> counts;
     for (const LearntRange& range : learnt.ranges)
         if (!only_together(range) && range.count >= ShapeClass::min_members) ++counts[range.quantity.kind];
@@ -200,7 +203,8 @@ void set_thresholds(ShapeClass& learnt, const Moments& moderated, std::size_t as
         const auto found = moderated.find(range.quantity.key());
         const bool own = found == moderated.end();
         if (is_unlikeness(range.quantity))
-            set_unlikeness_bounds(learnt, range, own ? moments_of(unlikeness_logs(range)) : found->second, asked);
+            set_unlikeness_bounds(learnt, range, own ? moments_of(unlikeness_logs(range)) : found->second,
+                                  strangers ? *strangers : moments_of(stranger_logs(range)), asked);
         else set_bounds(range, own ? range_moments(range) : found->second, learnt.resolution);
     }
 }
@@ -232,17 +236,22 @@ void moderate_thresholds(std::vector<ShapeClass>& classes) {
     std::map<std::string, VariancePrior> priors;
     for (const auto& [key, list] : samples)
         if (const auto prior = variance_prior(list)) priors.emplace(key, *prior);
-    // How unlike the others members are is counted in deviations: it is one sample for all classes.
-    std::vector<double> unlike;
+    // How unlike the others members are is counted in deviations: it is one sample for all classes, and so it is of strangers.
+    std::vector<double> unlike, strange;
     std::size_t several = 0;
+    std::optional<Dependence> dependence;
+    if (!priors.empty()) dependence = dependence_of(classes);
     for (ShapeClass& one : classes) {
         one.variances = priors;
+        one.dependence = dependence;
         measure_unlikeness(one);
         for (LearntRange& range : one.ranges) {
             if (!is_unlikeness(range.quantity)) continue;
             summarise_range(range);
             const std::vector<double> own = unlikeness_logs(range);
             unlike.insert(unlike.end(), own.begin(), own.end());
+            const std::vector<double> theirs = stranger_logs(range);
+            strange.insert(strange.end(), theirs.begin(), theirs.end());
             several += own.size() >= ShapeClass::min_members ? 1 : 0;
         }
     }
@@ -255,7 +264,8 @@ void moderate_thresholds(std::vector<ShapeClass>& classes) {
                 moderated[range.quantity.key()] = prior->second.moderate(range_moments(range));
             }
         }
-        set_thresholds(one, moderated, classes.size());
+        const bool strangers_shared = several >= 3 && one.strangers.size() >= ShapeClass::min_members;
+        set_thresholds(one, moderated, strangers_shared ? std::optional(moments_of(strange)) : std::nullopt, classes.size());
     }
 }
 

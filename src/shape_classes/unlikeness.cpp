@@ -1,5 +1,7 @@
 #include "ostraka/shape_classes/unlikeness.h"
 
+#include "ostraka/core/dense.h"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -40,48 +42,150 @@ SampleMoments unlikeness_moments(const LearntRange& range, std::optional<std::si
     return moments_of(values);
 }
 
+namespace {
+
+/// What the members of a class, or all but one, say of how far an object is off them.
+class Yardstick {
+public:
+    Yardstick(const ShapeClass& learnt, std::optional<std::size_t> without) {
+        for (std::size_t k = 0; k < learnt.ranges.size(); ++k) {
+            const LearntRange& range = learnt.ranges[k];
+            if (!counts_for_unlikeness(range.quantity)) continue;
+            SampleMoments known = unlikeness_moments(range, without);
+            if (known.count < 2) continue;
+            known.variance += learnt.resolution * learnt.resolution;
+            if (const auto prior = learnt.variances.find(range.quantity.key()); prior != learnt.variances.end())
+                known = prior->second.moderate(known);
+            const double deviation = std::sqrt(known.variance * (1 + 1 / static_cast<double>(known.count)));
+            if (deviation > 0) scales_.push_back({k, range.quantity, known.mean, deviation});
+        }
+        if (learnt.dependence && !scales_.empty()) decorrelate(learnt, without);
+    }
+
+    [[nodiscard]] std::optional<Unlikeness> measure(const std::vector<std::optional<double>>& values) const {
+        constexpr std::size_t least_quantities = 3;
+        Unlikeness result;
+        Eigen::VectorXd off = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scales_.size()));
+        for (std::size_t i = 0; i < scales_.size(); ++i) {
+            const Scale& scale = scales_[i];
+            if (!values[scale.range]) continue;
+            const double one = (normal_scale(scale.quantity, *values[scale.range]) - scale.mean) / scale.deviation,
+                         counted = scale.counted(one);
+            if (result.count == 0 || std::abs(counted) > std::abs(result.off)) result.off = counted, result.worst = scale.range;
+            off[static_cast<Eigen::Index>(i)] = one;
+            ++result.count;
+        }
+        if (result.count < least_quantities) return {};
+        if (root_.size() > 0) off = (root_ * off).eval();
+        for (std::size_t i = 0; i < scales_.size(); ++i)
+            if (values[scales_[i].range]) result.value += std::abs(scales_[i].counted(off[static_cast<Eigen::Index>(i)]));
+        result.value /= static_cast<double>(result.count);
+        return result;
+    }
+
+private:
+    struct Scale {
+        std::size_t range;
+        ClassQuantity quantity;
+        double mean, deviation;
+        [[nodiscard]] double counted(double off) const { return quantity.one_sided ? std::max(0.0, off) : off; }
+    };
+
+    /// R^-1/2, from the cross products less those of the member that is left out.
+    void decorrelate(const ShapeClass& learnt, std::optional<std::size_t> without) {
+        const Dependence& known = *learnt.dependence;
+        const auto n = static_cast<Eigen::Index>(scales_.size());
+        std::vector<Eigen::Index> rows;  // -1: not known
+        for (const Scale& scale : scales_) {
+            const auto row = known.rows.find(scale.quantity.key());
+            rows.push_back(row == known.rows.end() ? -1 : row->second);
+        }
+        Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n);
+        Eigen::VectorXd left_out = Eigen::VectorXd::Zero(n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const Scale& scale = scales_[static_cast<std::size_t>(i)];
+            const Eigen::Index row = rows[static_cast<std::size_t>(i)];
+            if (row < 0) continue;
+            for (Eigen::Index j = 0; j < n; ++j)
+                if (const Eigen::Index column = rows[static_cast<std::size_t>(j)]; column >= 0)
+                    products(i, j) = known.products(row, column);
+            // A member is n / (n - 1) times as far from the mean of all as from that of the others, n of these.
+            const LearntRange& range = learnt.ranges[scale.range];
+            if (without && range.values[*without]) {
+                const SampleMoments others = unlikeness_moments(range, without);
+                const auto count = static_cast<double>(others.count);
+                left_out[i] =
+                    (normal_scale(scale.quantity, *range.values[*without]) - others.mean) * std::sqrt(count / (count + 1));
+            }
+        }
+        products -= left_out * left_out.transpose();
+        const double freedom = std::max(0.0, known.freedom - (without ? 1 : 0)),
+                     weight = freedom / (freedom + static_cast<double>(n));
+        Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(n, n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            for (Eigen::Index j = 0; j < n; ++j)
+                if (i != j && products(i, i) > 0 && products(j, j) > 0)
+                    correlation(i, j) = weight * products(i, j) / std::sqrt(products(i, i) * products(j, j));
+        const SymmetricEigenX eigen(correlation);
+        if (!eigen.found()) return;
+        constexpr double least = 0.05;  // missing values can make it indefinite
+        const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse();
+        root_ = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();
+    }
+
+    std::vector<Scale> scales_;
+    Eigen::MatrixXd root_;  ///< empty where nothing is known of how they depend on each other
+};
+
+}  // namespace
+
+Dependence dependence_of(const std::vector<ShapeClass>& classes) {
+    Dependence result;
+    for (const ShapeClass& one : classes)
+        for (const LearntRange& range : one.ranges)
+            if (counts_for_unlikeness(range.quantity))
+                result.rows.try_emplace(range.quantity.key(), static_cast<Eigen::Index>(result.rows.size()));
+    const auto n = static_cast<Eigen::Index>(result.rows.size());
+    result.products = Eigen::MatrixXd::Zero(n, n);
+    for (const ShapeClass& one : classes) {
+        Eigen::MatrixXd off = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(one.members.size()));
+        for (const LearntRange& range : one.ranges) {
+            if (!counts_for_unlikeness(range.quantity)) continue;
+            const double mean = unlikeness_moments(range).mean;
+            for (std::size_t i = 0; i < range.values.size(); ++i)
+                if (range.values[i])
+                    off(result.rows.at(range.quantity.key()), static_cast<Eigen::Index>(i)) =
+                        normal_scale(range.quantity, *range.values[i]) - mean;
+        }
+        result.products += off * off.transpose();
+        result.freedom += std::max(0.0, static_cast<double>(one.members.size()) - 1);
+    }
+    return result;
+}
+
 std::optional<Unlikeness> unlikeness(const ShapeClass& learnt, const std::vector<std::optional<double>>& values,
                                      std::optional<std::size_t> without) {
-    constexpr std::size_t least_quantities = 3;
-    Unlikeness result;
-    for (std::size_t k = 0; k < learnt.ranges.size(); ++k) {
-        const LearntRange& range = learnt.ranges[k];
-        if (!counts_for_unlikeness(range.quantity) || !values[k]) continue;
-        SampleMoments known = unlikeness_moments(range, without);
-        if (known.count < 2) continue;
-        known.variance += learnt.resolution * learnt.resolution;
-        if (const auto prior = learnt.variances.find(range.quantity.key()); prior != learnt.variances.end())
-            known = prior->second.moderate(known);
-        const double deviation = std::sqrt(known.variance * (1 + 1 / static_cast<double>(known.count)));
-        if (!(deviation > 0)) continue;
-        double off = (normal_scale(range.quantity, *values[k]) - known.mean) / deviation;
-        if (range.quantity.one_sided) off = std::max(0.0, off);
-        if (result.count == 0 || std::abs(off) > std::abs(result.off)) result.off = off, result.worst = k;
-        result.value += std::abs(off);
-        ++result.count;
-    }
-    if (result.count < least_quantities) return {};
-    result.value /= static_cast<double>(result.count);
-    return result;
+    return Yardstick(learnt, without).measure(values);
 }
 
 void measure_unlikeness(ShapeClass& learnt) {
     if (!learnt.has_thresholds()) return;
-    const auto measured = [&](const std::vector<std::optional<double>>& values, std::optional<std::size_t> without) {
-        const auto found = unlikeness(learnt, values, without);
+    const auto measured = [](const Yardstick& yardstick, const std::vector<std::optional<double>>& values) {
+        const auto found = yardstick.measure(values);
         return found ? std::optional(found->value) : std::nullopt;
     };
     std::vector<std::optional<double>> own, theirs;
     for (std::size_t i = 0; i < learnt.members.size(); ++i) {
         std::vector<std::optional<double>> values;
         for (const LearntRange& range : learnt.ranges) values.push_back(range.values[i]);
-        own.push_back(measured(values, i));
+        own.push_back(measured(Yardstick(learnt, i), values));
     }
+    const Yardstick all(learnt, {});
     for (std::size_t i = 0; i < learnt.strangers.size(); ++i) {
         std::vector<std::optional<double>> values;
         for (const LearntRange& range : learnt.ranges)
             values.push_back(i < range.strangers.size() ? range.strangers[i] : std::nullopt);
-        theirs.push_back(measured(values, {}));
+        theirs.push_back(measured(all, values));
     }
     ClassQuantity quantity;
     quantity.name = unlike_the_members;
@@ -94,20 +198,24 @@ void measure_unlikeness(ShapeClass& learnt) {
     range.strangers = std::move(theirs);
 }
 
-void set_recognised(LearntRange& range, const SampleMoments& members, double accept, double unsure) {
-    range.recognised.reset();
-    if (!range.high) return;
+std::vector<double> stranger_logs(const LearntRange& range) {
     std::vector<double> logs;
     for (const auto& value : range.strangers)
         if (value && *value > 0) logs.push_back(std::log(*value));
-    if (logs.size() < ShapeClass::min_members) {
+    return logs;
+}
+
+void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& strangers, double accept,
+                    double unsure) {
+    range.recognised.reset();
+    if (!range.high) return;
+    if (strangers.count < ShapeClass::min_members) {
         constexpr double half = 0.5;
         range.recognised = std::min(*range.high, std::max(half, std::exp(predict(members, true, unsure).high)));
         return;
     }
-    const SampleMoments theirs = moments_of(logs);
-    range.recognised = std::min(*range.high, std::exp(2 * theirs.mean - predict(theirs, true, accept).high));
-    range.high = std::max(*range.recognised, std::min(*range.high, std::exp(theirs.mean)));
+    range.recognised = std::min(*range.high, std::exp(2 * strangers.mean - predict(strangers, true, accept).high));
+    range.high = std::max(*range.recognised, std::min(*range.high, std::exp(strangers.mean)));
 }
 
 }  // namespace ostraka

@@ -2,9 +2,12 @@
 #include "ostraka/core/angles.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/geodesic.h"
+#include "ostraka/geom/laplace_spectrum.h"
+#include "ostraka/measure/solid.h"
 #include "ostraka/remesh/simplify.h"
 
 #include <algorithm>
@@ -57,7 +60,10 @@ void measure_thickness(const Mesh& small, WholeShape& shape) {
     shape.thickness_most = area_quantile(known, area, 0.9) / mean;
 }
 
-std::optional<double> compactness_of(const Mesh& mesh, double area) {
+double compactness_of(double volume, double area) { return 6 * std::sqrt(pi) * volume / std::pow(area, 1.5); }
+
+/// None of an open surface, or one turned inside out.
+std::optional<double> volume_of(const Mesh& mesh) {
     for (const Halfedge h : mesh.halfedges())
         if (mesh.is_border(h)) return {};
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -70,7 +76,30 @@ std::optional<double> compactness_of(const Mesh& mesh, double area) {
         volume += x.dot(y.cross(z)) / 6;
     }
     if (!(volume > 0)) return {};
-    return 6 * std::sqrt(pi) * volume / std::pow(area, 1.5);
+    return volume;
+}
+
+void measure_solid(const Mesh& mesh, const Mesh& small, double area, WholeShape& shape) {
+    const std::optional<double> volume = volume_of(mesh);
+    if (!volume) return;
+    shape.compactness = compactness_of(*volume, area);
+    const HullSize hull = hull_size({mesh.points().begin(), mesh.points().end()});
+    if (hull.volume > 0) {
+        shape.hull_share = std::min(1.0, *volume / hull.volume);
+        shape.hull_compactness = compactness_of(hull.volume, hull.area);
+    }
+    const CurvatureIntegrals integrals = curvature_integrals(small);
+    double sum = 0, absolute = 0, concave = 0, gaussian = 0;
+    for (const Face face : small.faces()) {
+        const double mean = integrals.mean[face];
+        sum += mean;
+        absolute += std::abs(mean);
+        concave += std::max(0.0, -mean);
+        gaussian += std::abs(integrals.gaussian[face]);
+    }
+    shape.curvature = sum / std::sqrt(area);
+    if (absolute > 0) shape.concave = concave / absolute;
+    shape.saddles = gaussian / (4 * pi);
 }
 
 }  // namespace
@@ -79,8 +108,9 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
     const double area = surface_area(mesh);
     if (!(area > 0)) fail_input("mesh", "has no area", "is it the right file?");
     WholeShape shape;
-    shape.compactness = compactness_of(mesh, area);
     const Mesh small = simplified_to(mesh, vertices);
+    measure_solid(mesh, small, area, shape);
+    shape.spectrum = laplace_spectrum(small, WholeShape::spectrum_size);
     measure_thickness(simplified_to(small, thickness_vertices), shape);
     std::vector<double> weights(small.number_of_vertices(), 0);
     for (const Face face : small.faces())

@@ -56,6 +56,18 @@ TEST(RigidScale, PostureDoesNotChangeIt) {
     EXPECT_LT(procrustes(from, to, scaled).scale, 1.1);
 }
 
+TEST(RigidStrain, IsZeroInAnyPosture) {
+    const auto marks = arm();
+    for (const double bend : {0.0, 0.5, 2.5}) EXPECT_NEAR(rigid_strain(marks, turned(marks, 1.3, bend)).value(), 0, 1e-9) << bend;
+    EXPECT_FALSE(rigid_strain({marks.begin(), marks.begin() + 5}, {marks.begin(), marks.begin() + 5}));
+}
+
+TEST(RigidStrain, SeesAnotherShape) {
+    auto other = arm();
+    for (Vector3d& p : other) p = Vector3d(0.5, 2, 1).cwiseProduct(p);
+    EXPECT_NEAR(rigid_strain(arm(), other).value(), 0.2379, 1e-3);
+}
+
 TEST(RigidScale, OfFewOrCoincidingLandmarks) {
     EXPECT_EQ(rigid_scale({}, {}), 0);
     EXPECT_EQ(rigid_scale({Vector3d(1, 2, 3)}, {Vector3d(1, 2, 3)}), 0);

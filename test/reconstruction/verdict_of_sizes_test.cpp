@@ -1,4 +1,4 @@
-// What the sizes of fragments say where their landmarks depend on posture.
+// What the sizes and landmarks of fragments say where these depend on posture.
 #include "../../src/reconstruction/reconstruction_verdict.h"
 
 #include <gtest/gtest.h>
@@ -26,11 +26,11 @@ std::vector<LandmarkPair> bent(double angle, double scale) {
     return pairs;
 }
 
-Reconstruction judged(const std::vector<std::vector<LandmarkPair>>& pairs) {
+Reconstruction judged(const std::vector<std::vector<LandmarkPair>>& pairs, double residual = 10) {
     Reconstruction result;
     result.placement = place_by_landmarks(pairs);
     ReconstructOptions options;
-    options.residual = 10;  // sizes alone are asked
+    options.residual = residual;  // of 10: sizes alone are asked
     judge_reconstruction(result, pairs, {}, options);
     return result;
 }
@@ -52,6 +52,28 @@ TEST(VerdictOfSizes, AnotherSizeStaysOne) {
         ASSERT_FALSE(other.objections.empty());
         EXPECT_EQ(other.objections.front().kind, ObjectionKind::size);
     }
+}
+
+TEST(VerdictOfLandmarks, PostureIsNoOtherShape) {
+    const Reconstruction posture = judged({bent(0, 1), bent(1.2, 1)}, 0.1);
+    // A sixth of their spread of 4.2.
+    EXPECT_GT(posture.placement.fragments[1].residual, 0.15 * 4.2) << "by all landmarks it is another shape";
+    EXPECT_EQ(posture.verdict, Compatibility::undecided);
+    EXPECT_TRUE(posture.objections.empty());
+}
+
+TEST(VerdictOfLandmarks, AnotherShapeStaysOne) {
+    auto stretched = bent(0, 1);
+    for (LandmarkPair& pair : stretched) pair.on_fragment = Vector3d(0.6, 2.5, 1).cwiseProduct(pair.on_fragment);
+    const Reconstruction other = judged({bent(0, 1), stretched}, 0.1);
+    EXPECT_EQ(other.verdict, Compatibility::incompatible);
+    EXPECT_TRUE(std::any_of(other.objections.begin(), other.objections.end(),
+                            [](const Objection& one) { return one.kind == ObjectionKind::landmarks; }));
+    // Of three landmarks nothing says that they belong to parts that move against each other.
+    std::vector<LandmarkPair> few = bent(1.2, 1);
+    few.erase(few.begin() + 1, few.begin() + 5);
+    few.erase(few.begin() + 3, few.end());
+    EXPECT_TRUE(judged({bent(0, 1), few}, 0.01).verdict == Compatibility::incompatible);
 }
 
 }  // namespace

@@ -68,6 +68,29 @@ TEST(Unlikeness, AMemberIsMeasuredByTheOthers) {
               3U);
 }
 
+TEST(Unlikeness, WhatQuantitiesSayTogetherCountsOnce) {
+    // Three classes whose members' three quantities are one and the same thing.
+    std::vector<ShapeClass> classes(3, made());
+    for (ShapeClass& one : classes)
+        one.ranges.back().quantity = ClassQuantity(), one.ranges.back().quantity.name = "geodesic most";
+    const Dependence known = dependence_of(classes);
+    EXPECT_EQ(known.freedom, 6);
+    ASSERT_EQ(known.products.rows(), 3);
+    EXPECT_NEAR(known.products(0, 1), 3 * 0.02, 1e-12);
+    ShapeClass& learnt = classes.front();
+    const double before = unlikeness(learnt, logs(0.3, 0.3, 0.3))->value, against = unlikeness(learnt, logs(0.3, 0, -0.3))->value;
+    learnt.dependence = known;
+    // Six degrees of freedom against three quantities: correlations of 2/3; along (1, 1, 1) the eigenvalue is 1 + 2 * 2/3.
+    EXPECT_NEAR(unlikeness(learnt, logs(0.3, 0.3, 0.3))->value, before / std::sqrt(7.0 / 3), 1e-9);
+    // What members never do, one up and another down, is that much more unlike them: the eigenvalue is 1 - 2/3.
+    EXPECT_NEAR(unlikeness(learnt, logs(0.3, 0, -0.3))->value, against * std::sqrt(3.0), 1e-9);
+    // A member that is left out says nothing of how quantities depend on each other.
+    classes.resize(1);
+    learnt.dependence = dependence_of(classes);
+    learnt.dependence->products *= 0;
+    EXPECT_NEAR(unlikeness(learnt, logs(0.3, 0.3, 0.3))->value, before, 1e-9);
+}
+
 TEST(Unlikeness, SharesAreNeverFarFromAHundredPerCent) {
     ShapeClass learnt = made();
     learnt.ranges.back().quantity.name = "unexplained";
@@ -82,23 +105,26 @@ TEST(Unlikeness, StrangersSayWhatIsRecognised) {
     LearntRange range;
     range.high = 3;
     const std::vector<double> members{0.1, -0.2, 0.3, 0.0};
-    set_recognised(range, moments_of(members), 0.05, 0.15);
+    const auto set = [&](double accept) {
+        set_recognised(range, moments_of(members), moments_of(stranger_logs(range)), accept, 0.15);
+    };
+    set(0.05);
     EXPECT_NEAR(*range.recognised, std::exp(predict(moments_of(members), true, 0.15).high), 1e-9);
     std::vector<double> strangers{1.5, 1.0, 2.0, 1.2, 1.8};
     for (const double log : strangers) range.strangers.emplace_back(std::exp(log));
-    set_recognised(range, moments_of(members), 0.05, 0.15);
+    set(0.05);
     for (double& log : strangers) log = -log;
     EXPECT_NEAR(*range.recognised, std::exp(-predict(moments_of(strangers), true, 0.05).high), 1e-9)
         << "what one in twenty is below";
     EXPECT_NEAR(*range.high, 3, 1e-12) << "strangers are farther off on average";
     const double one_class = *range.recognised;
     range.high = 6;
-    set_recognised(range, moments_of(members), 0.05, 0.15);
+    set(0.05);
     EXPECT_NEAR(*range.high, std::exp(1.5), 1e-9) << "what is as unlike as strangers are on average is no member";
-    set_recognised(range, moments_of(members), 0.01, 0.15);
+    set(0.01);
     EXPECT_LT(*range.recognised, one_class) << "classes asked together share the rate";
     range.high = 0.1;
-    set_recognised(range, moments_of(members), 0.05, 0.15);
+    set(0.05);
     EXPECT_EQ(*range.recognised, 0.1) << "what is refused is not recognised";
 }
 

@@ -29,7 +29,10 @@ double closed_volume(const Mesh& mesh);
 /// faces.
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// Volume of the convex hull of some points; 0 if they lie in a plane.
-double hull_volume(const std::vector<Point>& points);
+/// Of the convex hull of some points; zeros if they lie in a plane.
+struct HullSize {
+    double volume = 0, area = 0;
+};
+HullSize hull_size(const std::vector<Point>& points);
 
 }  // namespace ostraka

@@ -45,6 +45,13 @@ struct ClassMember {
     std::vector<std::string> notes;
 };
 
+/// Cross products of deviations within classes, by the keys of the quantities.
+struct Dependence {
+    std::map<std::string, Eigen::Index> rows;
+    Eigen::MatrixXd products;
+    double freedom = 0;  ///< members less classes
+};
+
 struct ShapeClass {
     std::string name;
     std::string template_file;  ///< beside the class's file
@@ -59,6 +66,7 @@ struct ShapeClass {
     /// How off the template may be on an object (FitResiduals::off) as members are: none of members in correspondence.
     std::optional<double> most_off;
     std::map<std::string, VariancePrior> variances;  ///< by key, of the classes that are asked together; not kept in files
+    std::optional<Dependence> dependence;            ///< of those classes; as above
     double diversity = 0;                            ///< mean distance between two members, as a share of the mean size
     double reject = 0.05, resolution = 0.02;         ///< of LearnOptions
     std::vector<std::string> notes;                  ///< what could not be learnt, in words
@@ -104,7 +112,8 @@ void learn_thresholds(ShapeClass& learnt);
 
 /// The same for classes that are asked together: what a quantity of geometry or of parts together varies by is moderated by how
 /// much it varies in the other classes (`variance_prior`), where three classes or more have it. Unlikeness is measured anew with
-/// that, and what members show of it counts for all of them; they share the rate at which strangers are accepted.
+/// that, and with how quantities depend on each other in all of them; what members and strangers show of it counts for all of
+/// them, and they share the rate at which strangers are accepted.
 void moderate_thresholds(std::vector<ShapeClass>& classes);
 
 /// What is measured of single parts put together, as residuals of kind `part`: "sizes of the parts", "places of the parts";

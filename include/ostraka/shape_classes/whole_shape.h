@@ -4,6 +4,7 @@
 #include "ostraka/core/mesh.h"
 
 #include <optional>
+#include <vector>
 
 namespace ostraka {
 
@@ -20,11 +21,20 @@ struct WholeShape {
     /// exceeded on a tenth of the surface, over the mean. None where rays leave a tenth of the surface or more without meeting
     /// it.
     std::optional<double> thickness_mean, thickness_median, thickness_most;
+    /// Volume over that of the convex hull, and compactness of the hull; as above. Posture changes them.
+    std::optional<double> hull_share, hull_compactness;
+    /// Integrals over the surface, by face: of mean curvature, over the square root of the area (signed; 2 sqrt(pi) of a ball);
+    /// the part of its absolute value that is concave; of absolute Gaussian curvature, over 4 pi (1 of what is convex). None
+    /// without a volume.
+    std::optional<double> curvature, concave, saddles;
+    /// `laplace_spectrum`: twelve numbers, or none.
+    std::vector<double> spectrum;
+    static constexpr int spectrum_size = 12;
 };
 
-/// Geodesics run from 8 sources, each the farthest from those before it, over a copy simplified to 1500 vertices; pairs in
-/// different components do not count. Thickness is taken on a copy simplified to 600 vertices. Throws Error (input) for a mesh
-/// without area.
+/// Geodesics run from 8 sources, each the farthest from those before it, over a copy simplified to 1500 vertices, of which
+/// curvature and spectrum are, too; pairs in different components do not count. Thickness is taken on a copy simplified to 600
+/// vertices. Throws Error (input) for a mesh without area.
 WholeShape measure_whole_shape(const Mesh& mesh);
 
 }  // namespace ostraka

@@ -9,30 +9,34 @@
 
 namespace ostraka {
 
-double hull_volume(const std::vector<Point>& points) {
-    if (points.size() < 4) return 0;
+HullSize hull_size(const std::vector<Point>& points) {
+    if (points.size() < 4) return {};
     // Near the origin, so that nothing is lost; a plane hull has no inside.
     std::vector<Point> near;
     near.reserve(points.size());
     for (const Point& p : points) near.push_back(CGAL::ORIGIN + (p - points.front()));
     CGAL::Surface_mesh<Point> hull;
     CGAL::convex_hull_3(near.begin(), near.end(), hull);
-    if (hull.number_of_faces() < 4) return 0;
+    if (hull.number_of_faces() < 4) return {};
     // The order of the hull's faces, and where each begins, hangs on where its parts lie in memory: not that of the sum.
-    std::vector<double> parts;
+    std::vector<double> volumes, areas;
     for (const Face face : hull.faces()) {
         const Halfedge any = hull.halfedge(face);
         Halfedge first = any;
         for (Halfedge h = hull.next(any); h != any; h = hull.next(h))
             if (hull.point(hull.target(h)) < hull.point(hull.target(first))) first = h;
-        const Point& a = hull.point(hull.target(first));
-        for (Halfedge h = hull.next(first); hull.next(h) != first; h = hull.next(h))
-            parts.push_back(CGAL::cross_product(a - CGAL::ORIGIN, hull.point(hull.target(h)) - CGAL::ORIGIN) *
-                            (hull.point(hull.target(hull.next(h))) - CGAL::ORIGIN) / 6);
+        const Vector a = hull.point(hull.target(first)) - CGAL::ORIGIN;
+        for (Halfedge h = hull.next(first); hull.next(h) != first; h = hull.next(h)) {
+            const Vector b = hull.point(hull.target(h)) - CGAL::ORIGIN, c = hull.point(hull.target(hull.next(h))) - CGAL::ORIGIN;
+            volumes.push_back(CGAL::cross_product(a, b) * c / 6);
+            areas.push_back(std::sqrt(CGAL::cross_product(b - a, c - a).squared_length()) / 2);
+        }
     }
-    std::sort(parts.begin(), parts.end());
-    const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
-    return std::abs(sum);
+    const auto sum = [](std::vector<double>& parts) {
+        std::sort(parts.begin(), parts.end());
+        return std::accumulate(parts.begin(), parts.end(), 0.0);
+    };
+    return {std::abs(sum(volumes)), sum(areas)};
 }
 
 }  // namespace ostraka
