@@ -122,13 +122,15 @@ Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetCho
         const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // share of the diagonal
         breaking.noise = 0.002 * static_cast<double>(seed % 3) * piece;
         breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // of each side: up to 3 % between two pieces
-        // Mating faces have vertices and edges of their own, but in one box of five, as simulated breaks are published; of one
-        // box in four scans are simplified.
+        // Mating faces have vertices and edges of their own, and of one box in four scans are simplified; seeds from 300 to 399
+        // leave pieces as they are cut, as simulated breaks are published.
+        const bool as_cut = seed / 100 == 3;
         const double own_edge = 0.01 * std::pow(2, random.uniform()) * piece;
-        breaking.edge = seed % 5 == 4 ? 0 : own_edge;
-        const std::uint64_t few = seed % 4 == 3 ? 500 + random.below(1000) : 0;
+        const std::uint64_t few = seed % 4 == 3 && !as_cut ? 500 + random.below(1000) : 0;
+        if (as_cut) breaking.noise = breaking.erosion = 0;
+        else breaking.edge = own_edge;
         box.level = format(", noise %.1f %%, wear %.2f %%", 100 * breaking.noise / piece, 100 * breaking.erosion / piece);
-        if (!(breaking.edge > 0)) box.level += ", as cut";
+        if (as_cut) box.level += ", as cut";
         if (few > 0) box.level += format(", %llu vertices", static_cast<unsigned long long>(few));
         box.diagonal = box_diagonal(whole);
         box.gap = (0.004 + 2.2 * breaking.erosion + 4 * breaking.noise + (few > 0 ? 0.8 : 0.3) * own_edge) * box.diagonal;

@@ -8,6 +8,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/fracture/break_pair.h"
+#include "ostraka/stats/boosted_trees.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,20 +57,19 @@ Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const
 }
 
 /// Weights of a logistic regression, held to 0 by `ridge` (iteratively reweighted least squares). Each row begins with a 1.
-Eigen::VectorXd logistic(const std::vector<Eigen::VectorXd>& rows, const std::vector<bool>& truth, double ridge) {
-    const Eigen::Index n = rows.front().size();
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
+Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth, double ridge) {
+    Eigen::Vector3d weights = Eigen::Vector3d::Zero();
     for (int step = 0; step < 60; ++step) {
-        Eigen::MatrixXd hessian = ridge * Eigen::MatrixXd::Identity(n, n);
+        Eigen::Matrix3d hessian = ridge * Eigen::Matrix3d::Identity();
         hessian(0, 0) = 1e-9;
-        Eigen::VectorXd gradient = -ridge * weights;
+        Eigen::Vector3d gradient = -ridge * weights;
         gradient[0] = 0;
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const double p = 1 / (1 + std::exp(-weights.dot(rows[k])));
             hessian += std::max(1e-9, p * (1 - p)) * rows[k] * rows[k].transpose();
             gradient += ((truth[k] ? 1 : 0) - p) * rows[k];
         }
-        const Eigen::VectorXd move = solve_ldlt<Eigen::Dynamic>(hessian, gradient);
+        const Eigen::Vector3d move = solve_ldlt<3>(hessian, gradient);
         weights += move / std::max(1.0, move.norm());
         if (move.norm() < 1e-9) break;
     }
@@ -79,59 +79,66 @@ Eigen::VectorXd logistic(const std::vector<Eigen::VectorXd>& rows, const std::ve
 using Features = std::array<double, JoinEvidence::count>;
 
 struct Trained {
-    Eigen::VectorXd weights, pair;
-    Features usual{};   ///< mean of each feature over true joins
-    double joined = 0;  ///< share of the pairs whose first candidate is right
+    BoostedTrees trees;
+    Eigen::Vector3d pair;
+    Features usual{}, spread{};  ///< of each feature over true joins: mean, standard deviation
+    double joined = 0;           ///< share of the pairs whose first candidate is right
 };
 
-Eigen::VectorXd with_one(const Features& features) {
-    Eigen::VectorXd x(JoinEvidence::count + 1);
-    x[0] = 1;
-    for (std::size_t k = 0; k < features.size(); ++k) x[static_cast<Eigen::Index>(k + 1)] = features[k];
-    return x;
-}
+std::vector<float> row_of(const Features& features) { return {features.begin(), features.end()}; }
 
-Eigen::VectorXd learnt_from(const std::vector<Row>& rows, auto&& chosen) {
-    std::vector<Eigen::VectorXd> inputs;
+BoostedTrees learnt_from(const std::vector<Row>& rows, auto&& chosen) {
+    FeatureTable table;
     std::vector<bool> truth;
     for (const Row& row : rows)
         if (chosen(row))
             for (std::size_t c = 0; c < row.features.size(); ++c) {
-                inputs.push_back(with_one(row.features[c]));
+                table.add(row_of(row.features[c]));
                 truth.push_back(row.right[c]);
             }
-    constexpr double ridge = 3;
-    return logistic(inputs, truth, ridge);
+    BoostOptions how;
+    how.trees = 200;
+    how.depth = 3;
+    how.rate = 0.04;
+    how.leaf_weight = 15;
+    how.ridge = 1;
+    return boost(table, truth, {}, how);
 }
 
-/// Weights are learnt from all rows; what a pair's log odds mean, by weights that have not seen its object (five folds).
+/// Trees are learnt from all rows; what a pair's log odds mean, by trees that have not seen its object (five folds).
 Trained train(const std::vector<Row>& rows) {
     Trained model;
     std::map<std::string, std::size_t> fold;
     for (const Row& row : rows) fold.emplace(row.box, fold.size() % 5);
-    std::array<Eigen::VectorXd, 5> others;
+    std::array<BoostedTrees, 5> others;
     for (std::size_t f = 0; f < others.size(); ++f)
         others[f] = learnt_from(rows, [&](const Row& row) { return fold.at(row.box) != f; });
-    model.weights = learnt_from(rows, [](const Row&) { return true; });
+    model.trees = learnt_from(rows, [](const Row&) { return true; });
     double joins = 0;
-    std::vector<Eigen::VectorXd> inputs;
+    std::vector<Eigen::Vector3d> inputs;
     std::vector<bool> truth;
     for (const Row& row : rows) {
         std::vector<std::pair<double, bool>> scored;
         for (std::size_t c = 0; c < row.features.size(); ++c) {
-            scored.emplace_back(-others[fold.at(row.box)].dot(with_one(row.features[c])), row.right[c]);
+            scored.emplace_back(-others[fold.at(row.box)].log_odds(row_of(row.features[c])), row.right[c]);
             if (!row.right[c]) continue;
             ++joins;
-            for (std::size_t k = 0; k < model.usual.size(); ++k) model.usual[k] += row.features[c][k];
+            for (std::size_t k = 0; k < model.usual.size(); ++k) {
+                model.usual[k] += row.features[c][k];
+                model.spread[k] += row.features[c][k] * row.features[c][k];
+            }
         }
         if (scored.empty()) continue;
         std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
         const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 2;
-        inputs.emplace_back(Eigen::Vector3d(1, -scored[0].first, std::min(lead, 2.0)));
+        inputs.emplace_back(1, -scored[0].first, std::min(lead, 2.0));
         truth.push_back(scored[0].second);
         model.joined += scored[0].second ? 1 : 0;
     }
-    for (double& one : model.usual) one /= std::max(1.0, joins);
+    for (std::size_t k = 0; k < model.usual.size(); ++k) {
+        model.usual[k] /= std::max(1.0, joins);
+        model.spread[k] = std::sqrt(std::max(1e-6, model.spread[k] / std::max(1.0, joins) - model.usual[k] * model.usual[k]));
+    }
     model.joined /= static_cast<double>(rows.size());
     model.pair = logistic(inputs, truth, 0.01);
     return model;
@@ -141,10 +148,10 @@ void write_model(const Path& file, const Trained& model, const std::string& reci
     Json document;
     document.SetObject();
     auto& allocator = document.GetAllocator();
-    const std::vector<double> weights(model.weights.begin() + 1, model.weights.end()),
-        usual(model.usual.begin(), model.usual.end()), pair(model.pair.begin(), model.pair.end());
-    add_members(document, allocator, "recipe", recipe, "bias", model.weights[0], "joined", model.joined, "weights", weights,
-                "usual", usual, "pair", pair);
+    const std::vector<double> usual(model.usual.begin(), model.usual.end()), spread(model.spread.begin(), model.spread.end()),
+        pair(model.pair.begin(), model.pair.end());
+    add_members(document, allocator, "recipe", recipe, "joined", model.joined, "pair", pair, "usual", usual, "spread", spread,
+                "trees", model.trees.to_json(allocator));
     write_json(file, document);
 }
 

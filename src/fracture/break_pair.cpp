@@ -334,8 +334,8 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     const auto quickly = [&](const Motion& pose) { return rough.align(pose, few, 10); };
     std::vector<Scored> quick = scored(seen_candidates(a, b, poses, tolerance, few, quickly));
     // Where the best of them are hopeless, the others are too; one is told all the same, to say why.
-    constexpr double least = 0.0005;
-    const bool hopeless = quick.empty() || join_probability(quick.front().score, std::numeric_limits<double>::infinity()) < least;
+    constexpr double least = -5.5;  // log odds
+    const bool hopeless = quick.empty() || quick.front().score < least;
     if (!hopeless) {
         const std::vector<Scored> more = scored(seen_candidates(a, b, others, tolerance, few, quickly));
         quick.insert(quick.end(), more.begin(), more.end());

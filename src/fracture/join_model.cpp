@@ -2,20 +2,22 @@
 
 #include "ostraka/core/file.h"
 #include "ostraka/core/json.h"
+#include "ostraka/stats/boosted_trees.h"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace ostraka {
 
 namespace {
 
-/// Logistic regression. Of a candidate: weights of what is seen. Of a pair: of a candidate's log odds and its lead.
+/// Of a candidate: boosted trees over what is seen. Of a pair: logistic regression over a candidate's log odds and its lead.
 struct JoinModel {
-    std::array<double, JoinEvidence::count> weights{}, usual{};  ///< usual: mean of each feature over true joins
-    double bias = 0;
-    std::array<double, 3> pair{};  ///< bias, weight of the log odds, weight of the lead
-    double joined = 0.5;           ///< share of the pairs learnt from that were joined as their first candidate says
+    BoostedTrees trees;
+    std::array<double, JoinEvidence::count> usual{}, spread{};  ///< of each feature over true joins: mean, standard deviation
+    std::array<double, 3> pair{};                               ///< bias, weight of the log odds, weight of the lead
+    double joined = 0.5;  ///< share of the pairs learnt from that were joined as their first candidate says
 };
 constexpr double max_lead = 2;
 
@@ -28,10 +30,10 @@ const JoinModel& join_model() {
             const JsonValue& list = document[name];
             for (std::size_t k = 0; k < to.size(); ++k) to[k] = list[static_cast<rapidjson::SizeType>(k)].GetDouble();
         };
-        result.bias = document["bias"].GetDouble();
+        result.trees = BoostedTrees::from_json(document["trees"], JoinEvidence::count);
         result.joined = document["joined"].GetDouble();
-        read("weights", result.weights);
         read("usual", result.usual);
+        read("spread", result.spread);
         read("pair", result.pair);
         return result;
     }();
@@ -41,11 +43,9 @@ const JoinModel& join_model() {
 }  // namespace
 
 double join_log_odds(const JoinEvidence& seen) {
-    const JoinModel& model = join_model();
     const auto features = seen.features();
-    double sum = model.bias;
-    for (std::size_t k = 0; k < features.size(); ++k) sum += model.weights[k] * features[k];
-    return sum;
+    const std::vector<float> row(features.begin(), features.end());
+    return join_model().trees.log_odds(row);
 }
 
 double join_probability(double log_odds, double lead) {
@@ -70,9 +70,9 @@ std::string weakest_evidence(const JoinEvidence& seen) {
     const JoinModel& model = join_model();
     const auto features = seen.features();
     std::size_t worst = 0;
-    const auto against = [&](std::size_t k) { return model.weights[k] * (features[k] - model.usual[k]); };
+    const auto below = [&](std::size_t k) { return (model.usual[k] - features[k]) / model.spread[k]; };
     for (std::size_t k = 1; k < features.size(); ++k)
-        if (JoinEvidence::of_the_join(k) && against(k) < against(worst)) worst = k;
+        if (JoinEvidence::of_the_join(k) && below(k) > below(worst)) worst = k;
     return "there is too little of \"" + JoinEvidence::names()[worst] + '"';
 }
 
