@@ -14,7 +14,6 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <map>
 #include <sstream>
 
@@ -147,8 +146,12 @@ std::vector<std::string> own_sources(const FacetExperiment& options) {
 /// Less is a chip that shows nothing of its object.
 constexpr std::size_t least_faces = 100;
 
-/// `most`: of one made object; many objects tell more than many fragments of one.
-std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std::size_t folds, std::size_t most) {
+/// How many fragments of a made object the model learns from: many objects tell more than many fragments of one, but a vessel
+/// shows little fracture on each.
+std::size_t most_learnt(const std::string& source) { return source.starts_with("pot:") || source.starts_with("thin:") ? 6 : 2; }
+
+/// `few`: no more of made objects than is learnt from.
+std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std::size_t folds, bool few) {
     std::vector<SeenFragment> all;
     std::map<std::string, std::size_t> fold_of;  // all of one object are left out together
     for (const std::string& source : sources) {
@@ -156,7 +159,7 @@ std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std:
             const std::size_t fold = fold_of.emplace(object_of_source(source), fold_of.size() % folds).first->second;
             std::size_t taken = 0;
             for (FacetCase& one : facet_cases(source)) {
-                if (one.mesh.number_of_faces() < least_faces || (!one.scanned && taken == most)) continue;
+                if (one.mesh.number_of_faces() < least_faces || (few && !one.scanned && taken == most_learnt(source))) continue;
                 ++taken;
                 all.push_back(seen_fragment(std::move(one)));
                 all.back().fold = fold;
@@ -202,7 +205,7 @@ void facets(const FacetExperiment& options) {
         const Stopwatch watch;
         std::vector<std::string> sources = own_sources(options);
         sources.insert(sources.end(), options.scanned.begin(), options.scanned.end());
-        const std::vector<SeenFragment> all = all_seen(sources, folds, 2);
+        const std::vector<SeenFragment> all = all_seen(sources, folds, true);
         std::cout << format("%zu fragments in %.0f s\n", all.size(), watch.seconds().wall) << std::flush;
         // Calibrated and judged by trees that have not seen the object.
         const LearntFacets learnt = learn_facets(all, folds, options.boosting);
@@ -222,7 +225,7 @@ void facets(const FacetExperiment& options) {
     std::vector<SeenFragment> all;
     std::vector<Score> scores;
     for (const std::string& source : options.judged)
-        for (SeenFragment& one : all_seen({source}, 1, std::numeric_limits<std::size_t>::max())) {
+        for (SeenFragment& one : all_seen({source}, 1, false)) {
             const std::vector<double> log_odds = model.log_odds(one.evidence);
             scores.push_back(score(one, log_odds));
             if (!options.pictures.empty()) pictures(one, log_odds, options.pictures);
