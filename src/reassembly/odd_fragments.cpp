@@ -114,7 +114,8 @@ std::vector<OddFragment> odd_fragments(const std::vector<Fragment>& fragments) {
         const double ratio = std::sqrt(looks[k].area) / usual, times = ratio < 1 ? 1 / ratio : ratio,
                      width_ratio = looks[k].width / usual_width;
         // Fragments of one vessel may well differ by five, but then their walls do not.
-        const bool as_thick = !(ratio < 1 ? width_ratio < 0.2 : width_ratio > 5);
+        const bool known = looks[k].width > 0 && widths.size() > 1,
+                   as_thick = !known || !(ratio < 1 ? width_ratio < 0.2 : width_ratio > 5);
         if (!(looks[k].area > 0) || times < (as_thick ? 8 : 5)) continue;
         constexpr double units[] = {10, 25.4, 100, 304.8, 1000};
         const bool unit =
