@@ -39,7 +39,7 @@ struct JoinEvidence {
 
     static constexpr std::size_t numbers = 21;  ///< above
     static constexpr std::size_t count = 22;    ///< features
-    /// What the model adds up: each between about -3 and 3.
+    /// What the model is told: logarithms and shares, each of the order of 1.
     [[nodiscard]] std::array<double, count> features() const;
     static const std::array<std::string, count>& names();
     /// Whether a feature speaks for or against a join, not only of how well anything is seen.
