@@ -194,6 +194,7 @@ struct FacetExperiment {
     std::uint64_t seed = 1;            ///< of objects and breaks
     BoostOptions boosting;             ///< see stats/boosted_trees.h
     std::string model;                 ///< to make and write
+    std::vector<std::string> meshes;   ///< folders of mesh files of whole objects that the model is made from, too
     std::vector<std::string> scanned;  ///< folders of broken objects that the model is made from, too
     std::vector<std::string> judged;   ///< see facet_cases
     std::string pictures;              ///< folder for coloured meshes of what is judged

@@ -4,17 +4,14 @@
 #include "ostraka/core/file.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
-#include "ostraka/io/mesh_file.h"
 #include "ostraka/point_cloud/point_cloud.h"
-#include "ostraka/reconstruction/fragment_file.h"
 #include "ostraka/remesh/simplify.h"
 #include "ostraka/stats/random.h"
-#include "ostraka/synthetic/heads.h"
-#include "ostraka/synthetic/make_mesh.h"
 #include "shatter.h"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -24,76 +21,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-Mesh stretched(const Mesh& mesh, const Vector3d& factors) {
-    Mesh result = mesh;
-    for (const Vertex v : result.vertices()) result.point(v) = point_of(eigen(mesh.point(v)).cwiseProduct(factors));
-    return result;
-}
-
-/// A skin that is not smooth: carved or worn in the large, grainy in the small, or left as it is.
-Mesh skinned(const Mesh& mesh, Random& random, double most) {
-    Mesh result = mesh;
-    const double coarse = random.uniform(0.1, 1) * most, fine = 0.15 * random.uniform(0.1, 1) * most;
-    const double far = random.uniform(0.25, 0.7), near = random.uniform(0.04, 0.12);
-    if (random.uniform() < 0.4) result = with_relief(result, coarse, far, random.bits() >> 12);
-    if (random.uniform() < 0.4) result = with_relief(result, fine, near, random.bits() >> 12);
-    return result;
-}
-
-/// Edges rounded all over, as by long use.
-Mesh rounded(const Mesh& mesh, int steps) {
-    Mesh result = mesh;
-    std::vector<Vector3d> next(mesh.number_of_vertices());
-    for (int step = 0; step < steps; ++step) {
-        for (const Vertex v : result.vertices()) {
-            Vector3d mean = Vector3d::Zero();
-            double count = 0;
-            for (const Halfedge h : result.halfedges_around_target(result.halfedge(v)))
-                mean += eigen(result.point(result.source(h))), ++count;
-            next[v] = 0.5 * eigen(result.point(v)) + 0.5 * mean / count;
-        }
-        for (const Vertex v : result.vertices()) result.point(v) = point_of(next[v]);
-    }
-    return result;
-}
-
-Mesh whole_object(const std::string& kind, const std::string& name, std::uint64_t seed, bool bare) {
-    Random random(seed, 177);
-    if (kind == "pot" || kind == "thin") {
-        PotOptions options;
-        options.shape = seed;
-        options.height = random.uniform(8, 25);
-        options.radius = random.uniform(4, 10);
-        options.wall = kind == "thin" ? random.uniform(0.1, 0.35) : random.uniform(0.3, 1.2);
-        options.edge = random.uniform(0.25, 0.45);
-        const Mesh pot = make_pot(options);
-        return bare ? pot : skinned(pot, random, 0.1 * options.wall / options.height);
-    }
-    MakeOptions options;
-    options.vertices = 4000 + random.below(16000);
-    options.seed = 1 + random.below(1000);
-    if (kind == "made") {
-        Mesh mesh = make_mesh(synthetic_object(name), options).mesh;
-        if (random.uniform() < 0.5) mesh = rounded(mesh, 1 + static_cast<int>(random.below(12)));
-        return bare ? mesh : skinned(mesh, random, 0.002);
-    }
-    if (kind != "stone") fail_usage("'" + kind + "' is no source of fragments", "write pot, thin, stone or made");
-    const std::array<const char*, 8> bodies{"box", "cylinder", "sphere", "capsule", "statuette", "box", "head", "head"};
-    const std::string body = bodies[random.below(bodies.size())];
-    ArchetypeOptions head;
-    head.long_hair = random.uniform() < 0.5;
-    head.seed = seed;
-    const Mesh mesh = body == "head" ? make_mesh(*head_object(head_archetype(head)), options).mesh
-                                     : make_mesh(synthetic_object(body), options).mesh;
-    const Vector3d factors(random.uniform(0.4, 1), random.uniform(0.5, 1.2), random.uniform(0.6, 1.5));
-    const int steps = static_cast<int>(random.uniform() < 0.6 ? 1 + random.below(25) : 0);
-    return skinned(rounded(stretched(mesh, factors), steps), random, 0.01);
-}
-
 /// What a scanner's cloud of it gives: a surface through points of about even spacing, a little off.
 void as_cloud(FacetCase& sherd, Random& random) {
     PointCloud cloud;
-    const auto wanted = static_cast<double>(800 + random.below(6000));
+    const double wanted = std::round(300 * std::pow(23, random.uniform()));
     const double spacing = std::sqrt(surface_area(sherd.mesh) / wanted), off = 0.06 * spacing;
     const SurfaceSearch skin(sherd.mesh);
     std::vector<double> areas;
@@ -144,45 +75,81 @@ void as_simplified(FacetCase& sherd, Random& random) {
     sherd.broken = std::move(broken);
 }
 
-std::vector<FacetCase> made_cases(const std::string& source) {
+/// Rough all over, grainy, smooth and arched as of flint or glass, or facetted as simulated on coarse cells.
+void choose_break(ShatterOptions& breaking, bool shell, Random& random) {
+    const double kind = random.uniform();
+    // Shells show their breaks by the wall, solids by roughness only.
+    breaking.roughness = shell ? 0.04 * std::pow(0.025, random.uniform()) : random.uniform(0.006, 0.04);
+    breaking.hurst = random.uniform(0.3, 1);
+    breaking.finest = random.uniform(0.02, 0.08);
+    if (kind < 0.15) {
+        breaking.hurst = random.uniform(0, 0.3);
+        breaking.finest = random.uniform(0.015, 0.04);
+        breaking.roughness *= 0.5;
+    } else if (kind < 0.35) {
+        breaking.hurst = random.uniform(0.9, 1.6);
+        breaking.roughness *= 0.4;
+        breaking.bow = random.uniform(0.05, 0.35);
+    } else if (kind < 0.6) {
+        breaking.sheet = random.uniform(0.05, 0.2);
+        breaking.hurst = random.uniform(0, 0.8);
+        if (!shell) breaking.roughness = random.uniform(0.01, 0.08);
+    }
+    if (random.uniform() < 0.35) breaking.streak = random.uniform(0.6, 0.95);
+    if (kind > 0.35 && random.uniform() < 0.3) breaking.bow = random.uniform(0, 0.2);
+}
+
+struct Source {
+    std::string kind, name;
+    std::uint64_t seed = 0;
+    bool whole = false;
+};
+
+Source read_source(const std::string& source) {
     std::vector<std::string> words;
     for (std::size_t from = 0; from <= source.size();) {
         const std::size_t to = std::min(source.find(':', from), source.size());
         words.push_back(source.substr(from, to - from));
         from = to + 1;
     }
-    const bool whole = words.back() == "whole";
-    if (whole) words.pop_back();
-    if (words.size() < 2 || (words[0] == "made") != (words.size() == 3))
-        fail_usage("'" + source + "' is no source of fragments", "write pot:SEED, thin:SEED, stone:SEED or made:NAME:SEED");
-    const std::uint64_t seed = std::stoull(words.back());
-    const Mesh object = whole_object(words[0], words[1], seed, whole);
+    Source result;
+    result.whole = words.back() == "whole";
+    if (result.whole) words.pop_back();
+    if (words.size() < 2 || (words[0] == "made" || words[0] == "mesh") != (words.size() == 3))
+        fail_usage("'" + source + "' is no source of fragments",
+                   "write pot:SEED, thin:SEED, stone:SEED, made:NAME:SEED or mesh:FILE:SEED");
+    result.kind = words[0];
+    result.name = words[1];
+    result.seed = std::stoull(words.back());
+    return result;
+}
+
+std::vector<FacetCase> made_cases(const std::string& source) {
+    const auto [kind, name, seed, whole] = read_source(source);
+    const Mesh object = whole_object(kind, name, seed, whole && seed % 2 == 0);
     Random random(seed, 178);
     ShatterOptions breaking;
-    breaking.pieces = 2 + static_cast<int>(random.below(9));
+    breaking.pieces = 2 + static_cast<int>(random.below(11));
     breaking.seed = seed;
     // Shares of a piece's extent and of the diagonal.
     const double piece = std::sqrt(surface_area(object) / breaking.pieces) / box_diagonal(object);
-    // Shells show their breaks by the wall, solids by roughness only.
-    breaking.roughness = words[0] == "stone" ? random.uniform(0.006, 0.04) : 0.04 * std::pow(0.025, random.uniform());
-    breaking.hurst = random.uniform(0.3, 1);
-    breaking.finest = random.uniform(0.02, 0.08);
-    if (words[0] == "made" && random.uniform() < 0.4) breaking.sheet = random.uniform(0.05, 0.25);
+    choose_break(breaking, kind == "pot" || kind == "thin", random);
     const bool worn = random.uniform() < 0.5, noisy = random.uniform() < 0.5, anew = random.uniform() < 0.5;
     if (worn) breaking.erosion = piece * random.uniform(0.001, 0.015);
+    if (worn && random.uniform() < 0.5) breaking.patchiness = random.uniform();
     if (noisy) breaking.noise = piece * random.uniform(0.0002, 0.003);
     if (anew) breaking.edge = piece * random.uniform(0.012, 0.06);
+    const int filtered = random.uniform() < 0.3 ? 1 + static_cast<int>(random.below(3)) : 0;
+    if (whole) breaking.pieces = 1;
     std::vector<FacetCase> cases;
-    if (whole) {
-        cases.push_back({source, "whole", object, std::vector<bool>(object.number_of_faces(), false), false, {}});
-    } else {
-        for (Sherd& sherd : shatter(object, breaking))
-            cases.push_back({source, std::to_string(cases.size()), std::move(sherd.mesh), std::move(sherd.broken), false, {}});
-    }
+    for (Sherd& sherd : shatter(object, breaking))
+        cases.push_back(
+            {source, whole ? "whole" : std::to_string(cases.size()), std::move(sherd.mesh), std::move(sherd.broken), false, {}});
     for (FacetCase& one : cases) {
-        const double kind = random.uniform();
-        if (kind > 0.65) as_simplified(one, random);
-        if (kind < 0.25) {
+        if (filtered > 0) one.mesh = rounded(one.mesh, filtered);
+        const double sampling = random.uniform();
+        if (sampling > 0.65) as_simplified(one, random);
+        if (sampling < 0.25) {
             one.name += " cloud";
             try {
                 as_cloud(one, random);
@@ -194,81 +161,20 @@ std::vector<FacetCase> made_cases(const std::string& source) {
     return cases;
 }
 
-/// What lies close to another fragment, faces it and has it in front, or a little behind where scans overlap.
-std::vector<bool> facing(const Mesh& mesh, const std::vector<const SurfaceSearch*>& others, double gap, double overlap) {
-    std::vector<bool> result(mesh.number_of_faces(), false);
-    for (const Face f : mesh.faces()) {
-        const Vector area = area_vector(mesh, f);
-        const double length = std::sqrt(area.squared_length());
-        if (!(length > 0)) continue;
-        const Vector normal = area / length;
-        const Point place = centroid(mesh, f);
-        for (const SurfaceSearch* other : others) {
-            const auto hit = other->closest_compatible(place, -normal, 0.5, std::max(gap, overlap));
-            if (!hit) continue;
-            const double front = (hit->point - place) * normal;
-            if (front > gap || front < -overlap) continue;
-            if (std::abs(front) >= 0.6 * hit->distance || hit->distance < 0.15 * gap) result[f] = true;
-        }
-    }
-    return result;
-}
-
-std::vector<FacetCase> scanned_cases(const std::string& folder) {
-    std::vector<Path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
-        // The vessel's folder holds two clouds of other vessels too.
-        if ((ending == ".obj" || ending == ".ply") && stem.rfind("AL_", 0) != 0 && stem.rfind("CC_", 0) != 0)
-            files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
-    FragmentFileOptions reading;
-    reading.facets = FragmentFileOptions::FacetSource::none;
-    const std::string name = Path(folder).filename().string();
-    std::vector<FacetCase> cases;
-    CGAL::Bbox_3 bounds;
-    double edge = 0;
-    for (const Path& file : files) {
-        cases.push_back({name, file.stem().string(), read_fragment(file, reading).fragment.mesh, {}, true, {}});
-        const Mesh& mesh = cases.back().mesh;
-        bounds += bounding_box(mesh);
-        edge = std::max(edge, mean_edge_length(mesh));
-    }
-    const double diagonal = std::sqrt(std::pow(bounds.xmax() - bounds.xmin(), 2) + std::pow(bounds.ymax() - bounds.ymin(), 2) +
-                                      std::pow(bounds.zmax() - bounds.zmin(), 2));
-    // Simulated pieces coincide, scanned ones lie apart, and the scanned vessel's far apart.
-    const bool copied = name.rfind("bb_", 0) == 0, vessel = name.find("vessel") != std::string::npos;
-    const double gap = copied   ? 1e-4 * diagonal
-                       : vessel ? 0.05 * diagonal
-                                : std::max(2 * edge, 0.015 * diagonal),
-                 overlap = copied   ? gap
-                           : vessel ? 0
-                                    : 0.015 * diagonal;
-    std::vector<SurfaceSearch> searches;
-    for (const FacetCase& one : cases) searches.emplace_back(one.mesh);
-    for (std::size_t k = 0; k < cases.size(); ++k) {
-        std::vector<const SurfaceSearch*> others;
-        for (std::size_t q = 0; q < cases.size(); ++q)
-            if (q != k) others.push_back(&searches[q]);
-        cases[k].broken = facing(cases[k].mesh, others, gap, overlap);
-        if (copied || vessel) continue;
-        // Layouts of scans are about right: what is near another fragment, but not as near as breaks are, may be of one.
-        const std::vector<bool> perhaps = facing(cases[k].mesh, others, 3 * gap, 3 * overlap);
-        for (std::size_t f = 0; f < perhaps.size(); ++f) cases[k].known.push_back(cases[k].broken[f] || !perhaps[f]);
-    }
-    if (!copied) return cases;
-    // Coinciding vertices give nothing away here, but edges that are too sharp would.
-    for (std::size_t k = 0; k < cases.size(); ++k) {
-        Random random(k, 179);
-        const double noise = 0.03 * mean_edge_length(cases[k].mesh);
-        for (const Vertex v : cases[k].mesh.vertices())
-            cases[k].mesh.point(v) = cases[k].mesh.point(v) + noise * Vector(random.normal(), random.normal(), random.normal());
-    }
-    return cases;
-}
-
 }  // namespace
+
+std::string object_of_source(const std::string& source) {
+    const Path path(source);
+    std::string name = path.filename().string();
+    if (std::filesystem::is_directory(source)) return name.rfind("tuw_", 0) == 0 ? name.substr(4) : name;
+    const Source what = read_source(source);
+    if (what.kind == "made") return what.name;
+    // Vessels of one seed have one profile. Files that are numbered are variants of what their folder names.
+    if (what.kind != "mesh") return (what.kind == "stone" ? "stone " : "vessel ") + std::to_string(what.seed);
+    const Path file(what.name);
+    name = file.stem().string();
+    return std::isdigit(static_cast<unsigned char>(name[0])) ? file.parent_path().filename().string() : name;
+}
 
 std::vector<FacetCase> facet_cases(const std::string& source) {
     return std::filesystem::is_directory(source) ? scanned_cases(source) : made_cases(source);

@@ -2,6 +2,7 @@
 #include "coloured_mesh.h"
 #include "experiments.h"
 #include "facet_cases.h"
+#include "facet_learning.h"
 #include "report.h"
 
 #include "ostraka/core/error.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -18,76 +20,6 @@
 namespace ostraka::experiments {
 
 namespace {
-
-/// A fragment with what it shows.
-struct Seen {
-    FacetCase given;
-    FacetEvidence evidence;
-    std::vector<double> broken;        ///< of each patch: share of its area
-    std::vector<std::size_t> sampled;  ///< patches that the model learns from, drawn by area
-    double seconds = 0;
-    std::size_t fold = 0;
-};
-
-bool is_known(const FacetCase& one, Face f) { return one.known.empty() || one.known[f]; }
-
-Seen seen(FacetCase given) {
-    Seen result;
-    const std::clock_t begin = std::clock();
-    result.evidence = facet_evidence(given.mesh);
-    result.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    const FacetGraph& graph = result.evidence.graph;
-    result.broken.assign(graph.count(), 0);
-    for (const Face f : given.mesh.faces())
-        if (given.broken[f]) result.broken[graph.patch_of_face[f]] += face_area(given.mesh, f);
-    for (std::size_t p = 0; p < graph.count(); ++p) result.broken[p] /= graph.areas[p] > 0 ? graph.areas[p] : 1;
-    std::vector<double> known(graph.count(), 0);
-    for (const Face f : given.mesh.faces())
-        if (is_known(given, f)) known[graph.patch_of_face[f]] += face_area(given.mesh, f);
-    constexpr std::size_t samples = 600;
-    double sum = 0;
-    std::size_t k = 0;
-    for (std::size_t p = 0; p < graph.count(); ++p)
-        for (sum += graph.areas[p]; (static_cast<double>(k) + 0.5) * graph.area < samples * sum && k < samples; ++k)
-            if (known[p] > 0.5 * graph.areas[p]) result.sampled.push_back(p);
-    result.given = std::move(given);
-    return result;
-}
-
-/// Trees from the fragments that are not in the fold; of all of them where `fold` is none.
-BoostedTrees learnt(const std::vector<Seen>& all, std::size_t fold, const BoostOptions& options) {
-    FeatureTable rows;
-    std::vector<bool> truth;
-    std::vector<double> weights;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        if (all[k].fold == fold) continue;
-        const FeatureTable& features = all[k].evidence.features;
-        for (const std::size_t p : all[k].sampled) {
-            rows.add(features.row(p));
-            truth.push_back(all[k].broken[p] > 0.5);
-            // Scanned objects are few, but they are what is asked about.
-            weights.push_back(all[k].given.scanned ? 3 : 1);
-        }
-    }
-    return boost(rows, truth, weights, options);
-}
-
-/// Log odds shift + slope x that fit the truth best (Platt 1999).
-std::pair<double, double> calibrated(const std::vector<double>& odds, const std::vector<bool>& truth) {
-    double shift = 0, slope = 1;
-    for (int step = 0; step < 50; ++step) {
-        double a = 1e-6, b = 0, c = 1e-6, g = 0, h = 0;
-        for (std::size_t k = 0; k < odds.size(); ++k) {
-            const double p = 1 / (1 + std::exp(-(shift + slope * odds[k]))), w = p * (1 - p), off = (truth[k] ? 1 : 0) - p;
-            a += w, b += w * odds[k], c += w * odds[k] * odds[k];
-            g += off, h += off * odds[k];
-        }
-        const double det = a * c - b * b;
-        shift += (c * g - b * h) / det;
-        slope += (a * h - b * g) / det;
-    }
-    return {shift, slope};
-}
 
 /// Areas by what they are and what they are called, and how probabilities fare.
 struct Score {
@@ -104,6 +36,13 @@ struct Score {
         seconds += other.seconds, faces += other.faces, alike += other.alike, fragments += other.fragments;
         unclear += other.unclear, whole += other.whole, passed += other.passed;
     }
+    void scale(double by) {
+        for (auto& row : area)
+            for (double& one : row) one *= by;
+        for (auto& bin : bins)
+            for (double& one : bin) one *= by;
+        alike *= by;
+    }
     [[nodiscard]] double all() const { return area[0][0] + area[0][1] + area[1][0] + area[1][1]; }
     [[nodiscard]] double agreement() const { return (area[0][0] + area[1][1]) / all(); }
     [[nodiscard]] double recall() const { return area[1][1] / std::max(1e-300, area[1][0] + area[1][1]); }
@@ -116,17 +55,15 @@ struct Score {
 };
 
 /// Of one fragment.
-Score score(const Seen& one, const std::vector<double>& log_odds) {
+Score score(const SeenFragment& one, const std::vector<double>& log_odds) {
     Score result;
     const std::clock_t begin = std::clock();
     const Facets found = find_facets(one.given.mesh, one.evidence, log_odds);
     result.seconds = one.seconds + static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     const Mesh& mesh = one.given.mesh;
-    double known = 0;  // fragments count alike, whatever their size and unit
-    for (const Face f : mesh.faces()) known += is_known(one.given, f) ? face_area(mesh, f) : 0;
     for (const Face f : mesh.faces()) {
         if (!is_known(one.given, f)) continue;
-        const double area = face_area(mesh, f) / known, p = found.probability[f];
+        const double area = face_area(mesh, f), p = found.probability[f];
         result.alike += (p > 0.5) == one.given.broken[f] ? area : 0;
         result.area[one.given.broken[f] ? 1 : 0][found.of_face[f] == Facet::fracture ? 1 : 0] += area;
         auto& bin = result.bins[static_cast<std::size_t>(std::min(9.0, 10 * p))];
@@ -158,14 +95,15 @@ void write_model(const Path& file, const FacetModel& model, const std::string& r
     Json document;
     document.SetObject();
     auto& allocator = document.GetAllocator();
-    add_members(document, allocator, "recipe", recipe, "features", facet_feature_names(), "shift",
-                std::round(1e4 * model.shift) / 1e4, "slope", std::round(1e4 * model.slope) / 1e4);
+    add_members(document, allocator, "recipe", recipe, "features", facet_feature_names(), "context", facet_context_names(),
+                "shift", std::round(1e4 * model.shift) / 1e4, "slope", std::round(1e4 * model.slope) / 1e4);
+    document.AddMember("alone", model.alone.to_json(allocator), allocator);
     document.AddMember("trees", model.trees.to_json(allocator), allocator);
     write_file(file, to_compact_text(document) + "\n");
 }
 
 /// As it is known, as it is likely, as it is found.
-void pictures(const Seen& one, const std::vector<double>& log_odds, const Path& folder) {
+void pictures(const SeenFragment& one, const std::vector<double>& log_odds, const Path& folder) {
     const Mesh& mesh = one.given.mesh;
     const Facets found = find_facets(mesh, one.evidence, log_odds);
     const auto write = [&](const std::string& what, auto&& value) {
@@ -197,39 +135,65 @@ std::vector<std::string> own_sources(const FacetExperiment& options) {
         if (k % 3 == 1) add("stone" + seed + ":whole");
         add("made:" + name + seed + ":whole");
     }
+    std::vector<std::string> files;
+    for (const std::string& folder : options.meshes)
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+            if (entry.is_regular_file()) files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        const std::string source = "mesh:" + files[k] + ":" + std::to_string(options.seed * 1000 + k);
+        add(source);
+        if (k % 2 == 0) add(source + ":whole");
+    }
     return sources;
 }
 
 /// Less is a chip that shows nothing of its object.
 constexpr std::size_t least_faces = 100;
 
-std::vector<Seen> all_seen(const std::vector<std::string>& sources, std::size_t folds) {
-    std::vector<Seen> all;
-    for (std::size_t k = 0; k < sources.size(); ++k) {
+/// How many fragments of a made object the model learns from: many objects tell more than many fragments of one, but a vessel
+/// shows little fracture on each.
+std::size_t most_learnt(const std::string& source) { return source.starts_with("pot:") || source.starts_with("thin:") ? 10 : 2; }
+
+/// `few`: no more of made objects than is learnt from.
+std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std::size_t folds, bool few) {
+    std::vector<SeenFragment> all;
+    std::map<std::string, std::size_t> fold_of;  // all of one object are left out together
+    for (const std::string& source : sources) {
         try {
-            for (FacetCase& one : facet_cases(sources[k])) {
-                if (one.mesh.number_of_faces() < least_faces) continue;
-                all.push_back(seen(std::move(one)));
-                all.back().fold = k % folds;
+            const std::size_t fold = fold_of.emplace(object_of_source(source), fold_of.size() % folds).first->second;
+            std::size_t taken = 0;
+            for (FacetCase& one : facet_cases(source)) {
+                if (one.mesh.number_of_faces() < least_faces || (few && !one.scanned && taken == most_learnt(source))) continue;
+                ++taken;
+                all.push_back(seen_fragment(std::move(one)));
+                all.back().fold = fold;
             }
         } catch (const std::exception& error) {
             // Also where the cut itself cannot be computed.
-            std::cerr << sources[k] << " is left out: " << error.what() << '\n';
+            std::cerr << source << " is left out: " << error.what() << '\n';
         }
     }
     return all;
 }
 
-void by_object(const std::vector<Seen>& all, const std::vector<Score>& scores, bool grouped) {
+void by_object(const std::vector<SeenFragment>& all, const std::vector<Score>& scores, bool grouped) {
     print_head();
+    std::map<std::string, double> known;  // objects of a group count alike, whatever their size and unit
+    for (std::size_t k = 0; k < all.size(); ++k) known[all[k].given.object] += scores[k].all();
     std::map<std::string, Score> groups;
     Score total;
     for (std::size_t k = 0; k < all.size(); ++k) {
         const std::string& object = all[k].given.object;
-        std::string group = grouped ? object.substr(0, object.find_last_of(':')) : object;
-        if (grouped && object.ends_with(":whole")) group = "not broken";
-        groups[group].add(scores[k]);
-        total.add(scores[k]);
+        std::string group = object;
+        if (grouped && !all[k].given.scanned) {
+            group = object.starts_with("mesh:") ? "mesh " + object_of_source(object) : object.substr(0, object.find_last_of(':'));
+            if (object.ends_with(":whole")) group = "not broken";
+        }
+        Score share = scores[k];
+        share.scale(1 / known[object]);
+        groups[group].add(share);
+        total.add(share);
     }
     for (const auto& [name, one] : groups) print(name, one);
     print("all", total);
@@ -250,43 +214,27 @@ void facets(const FacetExperiment& options) {
         const Stopwatch watch;
         std::vector<std::string> sources = own_sources(options);
         sources.insert(sources.end(), options.scanned.begin(), options.scanned.end());
-        const std::vector<Seen> all = all_seen(sources, folds);
+        const std::vector<SeenFragment> all = all_seen(sources, folds, true);
         std::cout << format("%zu fragments in %.0f s\n", all.size(), watch.seconds().wall) << std::flush;
         // Calibrated and judged by trees that have not seen the object.
-        std::vector<std::vector<double>> odds(all.size());
-        std::vector<double> sampled;
-        std::vector<bool> truth;
-        for (std::size_t fold = 0; fold < folds; ++fold) {
-            const BoostedTrees trees = learnt(all, fold, options.boosting);
-            for (std::size_t k = 0; k < all.size(); ++k) {
-                if (all[k].fold != fold) continue;
-                odds[k] = FacetModel{trees, 0, 1}.log_odds(all[k].evidence);
-                for (const std::size_t p : all[k].sampled) {
-                    sampled.push_back(odds[k][p]);
-                    truth.push_back(all[k].broken[p] > 0.5);
-                }
-            }
-        }
-        std::tie(model.shift, model.slope) = calibrated(sampled, truth);
+        const LearntFacets learnt = learn_facets(all, folds, options.boosting);
+        model = learnt.model;
         std::vector<Score> scores;
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            for (double& one : odds[k]) one = model.shift + model.slope * one;
-            scores.push_back(score(all[k], odds[k]));
-        }
+        for (std::size_t k = 0; k < all.size(); ++k) scores.push_back(score(all[k], learnt.log_odds[k]));
         std::cout << format("left out, calibrated by %.3f + %.3f x; %.0f s\n", model.shift, model.slope, watch.seconds().wall);
         by_object(all, scores, true);
-        model.trees = learnt(all, folds, options.boosting);
         std::string recipe =
             format("ostraka_experiments facets --objects %d --seed %llu --trees %d --depth %d", options.objects,
                    static_cast<unsigned long long>(options.seed), options.boosting.trees, options.boosting.depth);
+        for (std::size_t k = 0; k < options.meshes.size(); ++k) recipe += (k == 0 ? " --meshes " : ",") + options.meshes[k];
         for (std::size_t k = 0; k < options.scanned.size(); ++k) recipe += (k == 0 ? " --scanned " : ",") + options.scanned[k];
         write_model(options.model, model, recipe + " --model FILE");
     }
     if (options.judged.empty()) return;
-    std::vector<Seen> all;
+    std::vector<SeenFragment> all;
     std::vector<Score> scores;
     for (const std::string& source : options.judged)
-        for (Seen& one : all_seen({source}, 1)) {
+        for (SeenFragment& one : all_seen({source}, 1, false)) {
             const std::vector<double> log_odds = model.log_odds(one.evidence);
             scores.push_back(score(one, log_odds));
             if (!options.pictures.empty()) pictures(one, log_odds, options.pictures);

@@ -163,11 +163,13 @@ void declare_facets(CLI::App& command, FacetExperiment& options) {
     ranged(command, "--depth", options.boosting.depth, "of its trees", 1, 16);
     command.add_option("--model", options.model,
                        "model to make and write (data/facets.model.json); else the built-in one judges");
+    command.add_option("--meshes", options.meshes, "folders of meshes of whole objects that are broken for it, too")
+        ->delimiter(',');
     command.add_option("--scanned", options.scanned, "folders of fragments in assembled layout that it is made from, too")
         ->delimiter(',');
     command
         .add_option("--judge", options.judged,
-                    "pot:SEED, stone:SEED, made:NAME:SEED or a folder of fragments in assembled layout")
+                    "pot:SEED, stone:SEED, made:NAME:SEED, mesh:FILE:SEED or a folder of fragments in assembled layout")
         ->delimiter(',');
     command.add_option("--pictures", options.pictures, "folder for coloured meshes of what is judged");
     command.add_flag("--each", options.each, "a row a fragment");

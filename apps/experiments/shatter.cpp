@@ -56,6 +56,7 @@ struct Sheet {
         double phase, height;
     };
     std::vector<Wave> waves;
+    Vector2d arch = Vector2d::Zero();  ///< heights at the extent, along u and v
 
     Sheet(const Vector3d& place, const Vector3d& across, double size, const ShatterOptions& options, Random& random)
         : middle(place), normal(across), extent(size) {
@@ -63,13 +64,15 @@ struct Sheet {
         v = normal.cross(u);
         const int count = std::max(2, static_cast<int>(std::lround(14 * std::log(options.finest) / std::log(0.06))));
         for (int k = 0; k < count; ++k) {
-            const double share = std::pow(options.finest, k / (count - 1.0)), angle = random.uniform(0, 2 * pi);
+            const double share = std::pow(options.finest, k / (count - 1.0)),
+                         angle = random.uniform(0, 2 * pi) * (1 - options.streak);
             waves.push_back({2 * pi / (share * extent) * Vector2d(std::cos(angle), std::sin(angle)), random.uniform(0, 2 * pi),
                              options.roughness * extent * std::pow(share, options.hurst) * std::sqrt(2.0 / count)});
         }
+        if (options.bow > 0) arch = options.bow * extent * Vector2d(random.uniform(-1, 1), random.uniform(-1, 1));
     }
     [[nodiscard]] double height(const Vector2d& p) const {
-        double sum = 0;
+        double sum = arch.dot((p / extent).cwiseAbs2());
         for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
         return sum;
     }
@@ -160,10 +163,14 @@ bool intersected(Mesh body, Mesh half, Mesh& result) {
     }
 }
 
-/// What is worn off: faces of breaks move in, and vertices near their edges to the mean of their neighbours.
-void wear(Sherd& sherd, double depth) {
+/// What is worn off: faces of breaks move in, and vertices near their edges to the mean of their neighbours. `share`: how much
+/// of it, at each place.
+template <class Share>
+void wear(Sherd& sherd, double depth, const Share& share) {
     Mesh& mesh = sherd.mesh;
     const std::size_t n = mesh.number_of_vertices();
+    std::vector<double> shares;
+    for (const Vertex v : mesh.vertices()) shares.push_back(share(mesh.point(v)));
     std::vector<Vector3d> in(n, Vector3d::Zero());
     std::vector<double> distance(n, 1e300);
     std::vector<Vertex> rim;
@@ -173,7 +180,7 @@ void wear(Sherd& sherd, double depth) {
             if (sherd.broken[f]) in[v] += eigen(area_vector(mesh, f));
             (sherd.broken[f] ? some : all) = sherd.broken[f];
         }
-        if (some && in[v].norm() > 0) in[v] = depth * in[v].normalized();
+        if (some && in[v].norm() > 0) in[v] = shares[v] * depth * in[v].normalized();
         if (some && !all) distance[v] = 0, rim.push_back(v);
     }
     for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(eigen(mesh.point(v)) - in[v]);
@@ -200,7 +207,7 @@ void wear(Sherd& sherd, double depth) {
             double count = 0;
             for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v)))
                 mean += eigen(mesh.point(mesh.source(h))), ++count;
-            const double weight = distance[v] < reach ? 0.6 * (1 - distance[v] / reach) : 0;
+            const double weight = distance[v] < reach ? 0.6 * std::min(1.0, shares[v]) * (1 - distance[v] / reach) : 0;
             moved[v] = point_of((1 - weight) * eigen(mesh.point(v)) + weight * mean / count);
         }
         for (const Vertex v : mesh.vertices()) mesh.point(v) = moved[v];
@@ -349,7 +356,13 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
             Random own(options.seed, 10000 + sherds.size());
             sherd = meshed_anew(sherd, options.edge * diagonal, own);
         }
-        if (options.erosion > 0) wear(sherd, options.erosion * diagonal);
+        if (options.erosion > 0) {
+            Random own(options.seed, 20000 + sherds.size());
+            const Vector3d along = Vector3d(own.normal(), own.normal(), own.normal()).normalized();
+            const double phase = own.uniform(0, 2 * pi), turns = 2 * pi * own.uniform(1, 4) / diagonal;
+            wear(sherd, options.erosion * diagonal,
+                 [&](const Point& p) { return 1 + options.patchiness * std::sin(turns * along.dot(eigen(p)) + phase); });
+        }
         if (options.noise > 0) {
             Random own(options.seed, 100 + sherds.size());
             std::vector<Vector3d> normals(sherd.mesh.number_of_vertices(), Vector3d::Zero());
@@ -389,9 +402,12 @@ void ShatterOptions::describe(OptionList& visit) {
     visit("roughness", roughness, "height of the breaks' waves", Range{0, 0.2}, "share of the piece's extent");
     visit("hurst", hurst, "power of a wave's length that its height goes with", Range{0, 2});
     visit("finest", finest, "shortest wave of a break", Range{0.002, 0.5}, "share of the piece's extent");
+    visit("streak", streak, "how far breaks' waves run one way", Range{0, 1});
+    visit("bow", bow, "height by which breaks arch", Range{0, 1}, "share of the piece's extent");
     visit("sheet", sheet, "edge of the breaks' facets; 0: as fine as the mesh", Range{0, 1}, "share of the piece's extent");
     visit("remesh-edge", edge, "edges of each sherd, meshed by itself; 0: as cut", Range{0, 0.2}, "share of the diagonal");
     visit("erosion", erosion, "what is worn off breaks and their edges", Range{0, 0.1}, "share of the diagonal");
+    visit("patchiness", patchiness, "how far erosion differs over the surface", Range{0, 1});
     visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the diagonal");
     visit("seed", seed, "of cuts and noise", Range{0, 9007199254740992.0});
 }

@@ -32,10 +32,13 @@ struct ShatterOptions {
     double roughness = 0.02;  ///< height of the breaks' waves, as a share of the piece's extent
     double hurst = 0.5;       ///< a wave's height goes with its length to this power: low is grainy, high is shell-like
     double finest = 0.06;     ///< shortest wave of a break, as a share of the piece's extent
-    double sheet = 0;         ///< edge of the breaks' facets, as a share of the piece's extent; 0: as fine as the mesh
-    double edge = 0;          ///< of each sherd's triangles, meshed by itself, as a share of the whole's diagonal; 0: as cut
-    double erosion = 0;       ///< what is worn off breaks, and rounded at their edges, as a share of the whole's diagonal
-    double noise = 0;         ///< standard deviation of each vertex along its normal, as a share of the whole's diagonal
+    double streak = 0;   ///< how far a break's waves run one way: 0 every way, 1 all the same, as in what is layered or fibrous
+    double bow = 0;      ///< how far a break arches or dishes at a piece's extent from its middle, at most, as a share of it
+    double sheet = 0;    ///< edge of the breaks' facets, as a share of the piece's extent; 0: as fine as the mesh
+    double edge = 0;     ///< of each sherd's triangles, meshed by itself, as a share of the whole's diagonal; 0: as cut
+    double erosion = 0;  ///< what is worn off breaks, and rounded at their edges, as a share of the whole's diagonal
+    double patchiness = 0;  ///< how far erosion differs over the surface: 0 not at all, 1 from none to twice as much
+    double noise = 0;       ///< standard deviation of each vertex along its normal, as a share of the whole's diagonal
     std::uint64_t seed = 1;
     void describe(OptionList& visit);
 };

@@ -49,6 +49,28 @@ Neighbourhoods neighbourhoods(const FacetGraph& graph, const PatchSamples& sampl
 /// Radii as shares of the fragment's size, or what its mesh resolves.
 std::array<Neighbourhoods, scale_count> neighbourhoods(const FacetGraph& graph, const PatchSamples& samples);
 
+/// What parts are told by, of each patch; `jagged` of each contact.
+struct PatchValues {
+    std::vector<double> rough, bent, side;  ///< in the middle scale
+    std::vector<double> grain;   ///< how much of the roughness is fine: that of the smallest scale against the middle one
+    std::vector<double> ruffle;  ///< how far the mesh's faces turn from the filtered normal, as a logarithm
+    std::vector<bool> over_wall;
+    std::vector<double> jagged;  ///< how far the sharp edge about a contact is from a line, 0 to 1
+};
+/// Columns that tell of each patch what its part is like. `part`: see convex_parts.
+void add_part_columns(FeatureColumns& columns, const std::string& name, const FacetEvidence& evidence, const PatchValues& values,
+                      const std::vector<std::size_t>& part);
+
+/// What log odds of the patches say of the surroundings of each.
+FeatureColumns context_columns(const FacetEvidence& evidence, const std::vector<double>& log_odds);
+
+/// The share of the area below each value.
+std::vector<double> area_ranks(const std::vector<double>& values, const std::vector<double>& areas);
+/// The value below which `share` of the area lies.
+double area_quantile(const std::vector<double>& values, const std::vector<double>& areas, double share);
+/// Logarithm of a share that may vanish.
+inline double feature_level(double x) { return std::log10(1e-4 + x); }
+
 /// Means of values of patches over the samples about each that face about the same way.
 std::vector<double> mean_about(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values);
 

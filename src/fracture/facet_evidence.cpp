@@ -66,40 +66,6 @@ Shape shape_about(const Vector3d& place, const Vector3d& normal, double radius, 
     return shape;
 }
 
-/// The share of the area below each value.
-std::vector<double> ranks(const std::vector<double>& values, const std::vector<double>& areas) {
-    std::vector<std::size_t> order(values.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return std::pair(values[a], a) < std::pair(values[b], b); });
-    double all = 0, below = 0;
-    for (const double a : areas) all += a;
-    std::vector<double> result(values.size());
-    for (const std::size_t k : order) {
-        result[k] = (below + areas[k] / 2) / all;
-        below += areas[k];
-    }
-    return result;
-}
-
-/// The value below which `share` of the area lies.
-double quantile(const std::vector<double>& values, const std::vector<double>& areas, double share) {
-    std::vector<std::pair<double, double>> sorted;
-    double all = 0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        sorted.emplace_back(values[k], areas[k]);
-        all += areas[k];
-    }
-    std::sort(sorted.begin(), sorted.end());
-    double below = 0;
-    for (const auto& [value, area] : sorted)
-        if ((below += area) >= share * all) return value;
-    return 0;
-}
-
-/// Roots of logarithms: of a share that may vanish.
-double level(double x) { return std::log10(1e-4 + x); }
-
 class Measurer {
 public:
     explicit Measurer(FacetEvidence& evidence)
@@ -111,11 +77,12 @@ public:
 
     FeatureColumns run() {
         shapes();
+        ruffle();
         walls();
         edges();
-        segments("part", evidence_.parts[0]);
-        segments("small part", evidence_.parts[1]);
-        columns_.add("edge of the mesh", [&](std::size_t) { return level(graph_.edge / graph_.size); });
+        add_part_columns(columns_, "part", evidence_, values_, evidence_.parts[0]);
+        add_part_columns(columns_, "small part", evidence_, values_, evidence_.parts[1]);
+        columns_.add("edge of the mesh", [&](std::size_t) { return feature_level(graph_.edge / graph_.size); });
         return std::move(columns_);
     }
 
@@ -146,12 +113,13 @@ private:
         for (std::size_t s = 0; s < scale_count; ++s) {
             const std::string at = " at " + std::to_string(s);
             const auto& here = shapes[s];
-            columns_.add("plane" + at, [&](std::size_t p) { return level(here[p].plane); });
-            columns_.add("quadric" + at, [&](std::size_t p) { return level(here[p].quadric); });
+            columns_.add("plane" + at, [&](std::size_t p) { return feature_level(here[p].plane); });
+            columns_.add("quadric" + at, [&](std::size_t p) { return feature_level(here[p].quadric); });
             columns_.add("bend" + at, [&](std::size_t p) { return here[p].bend; });
             columns_.add("side" + at, [&](std::size_t p) { return here[p].side; });
         }
         const std::vector<double>& areas = graph_.areas;
+        std::array<std::vector<double>, 3> roughs;
         for (std::size_t s = 0; s < 3; ++s) {
             const std::string at = " at " + std::to_string(s);
             const auto& here = shapes[s];
@@ -161,22 +129,42 @@ private:
                 for (std::size_t p = 0; p < n; ++p) values[p] = shapes[s][p].quadric;
                 return averaged(values, s);
             }();
-            for (std::size_t p = 0; p < n; ++p) rough[p] = level(mean_rough[p]), bent[p] = shapes[s][p].bend;
+            for (std::size_t p = 0; p < n; ++p) rough[p] = feature_level(mean_rough[p]), bent[p] = shapes[s][p].bend;
             bent = averaged(bent, s);
-            const double low = quantile(rough, areas, 0.2), middle = quantile(rough, areas, 0.5);
-            const std::vector<double> rank = ranks(rough, areas), bend_rank = ranks(bent, areas);
+            const double low = area_quantile(rough, areas, 0.2), middle = area_quantile(rough, areas, 0.5);
+            const std::vector<double> rank = area_ranks(rough, areas), bend_rank = area_ranks(bent, areas);
             columns_.add("roughness" + at, [&](std::size_t p) { return rough[p]; });
             columns_.add("roughness over the smooth" + at, [&](std::size_t p) { return rough[p] - low; });
             columns_.add("roughness over the usual" + at, [&](std::size_t p) { return rough[p] - middle; });
             columns_.add("rank of roughness" + at, [&](std::size_t p) { return rank[p]; });
             columns_.add("mean bend" + at, [&](std::size_t p) { return bent[p]; });
             columns_.add("rank of bend" + at, [&](std::size_t p) { return bend_rank[p]; });
-            if (s == 1) rough_ = rough, bent_ = bent;
+            roughs[s] = rough;
+            if (s == 1) {
+                values_.rough = rough, values_.bent = bent;
+                const double spread = area_quantile(rough, areas, 0.9) - area_quantile(rough, areas, 0.1);
+                columns_.add("spread of roughness in the fragment", [&](std::size_t) { return spread; });
+            }
             if (s == 2)
-                for (std::size_t p = 0; p < n; ++p) side_.push_back(here[p].side);
+                for (std::size_t p = 0; p < n; ++p) values_.side.push_back(here[p].side);
             if (s == 0)
                 for (std::size_t p = 0; p < n; ++p) evidence_.convexity.push_back(std::max(0.0, -here[p].side));
         }
+        for (std::size_t s = 0; s < 2; ++s)
+            columns_.add("grain at " + std::to_string(s), [&](std::size_t p) { return roughs[s][p] - roughs[s + 1][p]; });
+        for (std::size_t p = 0; p < n; ++p) values_.grain.push_back(roughs[0][p] - roughs[1][p]);
+    }
+
+    /// What is finer than the patches, or the noise of the scan.
+    void ruffle() {
+        std::vector<double> ruffle = mean_about(evidence_, 1, graph_.ruffle);
+        for (double& one : ruffle) one = feature_level(one);
+        const double usual = area_quantile(ruffle, graph_.areas, 0.5);
+        const std::vector<double> rank = area_ranks(ruffle, graph_.areas);
+        columns_.add("ruffle", [&](std::size_t p) { return ruffle[p]; });
+        columns_.add("ruffle over the usual", [&](std::size_t p) { return ruffle[p] - usual; });
+        columns_.add("rank of ruffle", [&](std::size_t p) { return rank[p]; });
+        values_.ruffle = std::move(ruffle);
     }
 
     [[nodiscard]] std::vector<double> averaged(const std::vector<double>& values, std::size_t s) const {
@@ -223,6 +211,7 @@ private:
             },
             64);
         columns_.add("along the wall's normal", [&](std::size_t p) { return along[p]; });
+        for (std::size_t p = 0; p < n; ++p) values_.over_wall.push_back(over_wall(p));
         columns_.add("share of sides nearby", [&](std::size_t p) { return sides[p]; });
         columns_.add("distance to a side", [&](std::size_t p) { return reach[p]; });
     }
@@ -244,16 +233,50 @@ private:
         });
     }
 
-    /// Distance from sharp edges, and how many there are, outward and inward.
+    /// How far the edge through each place is from a line: what lies across it, over what lies along it.
+    [[nodiscard]] std::vector<double> jaggedness(const PointTree& tree, const std::vector<Point>& places) const {
+        const double radius = std::min(std::max(0.05 * graph_.size, 3 * graph_.edge), 0.3 * graph_.size);
+        std::vector<double> result(places.size(), 1);
+        parallel_for(
+            places.size(),
+            [&](std::size_t k) {
+                std::vector<Index> found;
+                tree.within(places[k], radius, found);
+                if (found.size() < 4) return;
+                Vector3d mean = Vector3d::Zero();
+                for (const Index q : found) mean += eigen(places[q]);
+                mean /= static_cast<double>(found.size());
+                Matrix3d spread = Matrix3d::Zero();
+                for (const Index q : found) spread += (eigen(places[q]) - mean) * (eigen(places[q]) - mean).transpose();
+                const Vector3d main = SymmetricEigen<3>(spread).eigenvalues();
+                if (main[2] > 0) result[k] = std::sqrt(std::max(0.0, main[0] + main[1]) / main[2]);
+            },
+            64);
+        return result;
+    }
+
+    /// Distance from sharp edges, and how many there are, outward and inward; how straight those are that turn outward.
     void edges() {
         const std::size_t n = graph_.count();
+        values_.jagged.assign(graph_.contacts.size(), 1);
         for (const bool outward : {true, false}) {
             std::vector<Point> places;
             std::vector<double> lengths;
-            for (const auto& c : graph_.contacts)
-                if ((outward ? c.turn : -c.turn) > 35 * degree) places.push_back(c.middle), lengths.push_back(c.length);
+            std::vector<std::size_t> contacts;
+            for (std::size_t k = 0; k < graph_.contacts.size(); ++k) {
+                const FacetGraph::Contact& c = graph_.contacts[k];
+                if ((outward ? c.turn : -c.turn) <= 35 * degree) continue;
+                places.push_back(c.middle);
+                lengths.push_back(c.length);
+                contacts.push_back(k);
+            }
             const PointTree tree(places);
-            std::vector<double> nearest(n, 1), density(n, 0);
+            std::vector<double> nearest(n, 1), density(n, 0), jagged(n, 1), sharp(n, 0);
+            std::vector<double> jagged_here;
+            if (outward) {
+                jagged_here = jaggedness(tree, places);
+                for (std::size_t k = 0; k < contacts.size(); ++k) values_.jagged[contacts[k]] = jagged_here[k];
+            }
             const double radius = 0.1 * graph_.size;
             parallel_for(
                 n,
@@ -261,6 +284,7 @@ private:
                     const PointTree::Near near = tree.nearest(graph_.places[p], graph_.size);
                     if (near.index == no_index) return;
                     nearest[p] = std::sqrt(near.squared) / graph_.size;
+                    if (outward) jagged[p] = jagged_here[near.index], sharp[p] = graph_.contacts[contacts[near.index]].turn;
                     if (nearest[p] > 0.1) return;
                     std::vector<Index> found;
                     tree.within(graph_.places[p], radius, found);
@@ -270,102 +294,12 @@ private:
             const std::string name = outward ? "outward edges" : "inward edges";
             columns_.add("distance to " + name, [&](std::size_t p) { return nearest[p]; });
             columns_.add("density of " + name, [&](std::size_t p) { return density[p]; });
-        }
-    }
-
-    /// What the part of the surface that a patch lies in is like, and how it compares.
-    void segments(const std::string& name, const std::vector<std::size_t>& part) {
-        std::size_t count = 0;
-        for (const std::size_t p : part) count = std::max(count, p + 1);
-        struct Segment {
-            double area = 0, rough = 0, bent = 0, wall = 0, length = 0, turn = 0, uneven = 0, bumpy = 0, thin = 0, side = 0,
-                   bulge = 0, spread = 0;
-            Vector3d normal = Vector3d::Zero(), middle = Vector3d::Zero();
-        };
-        std::vector<Segment> list(count);
-        for (std::size_t p = 0; p < part.size(); ++p) {
-            Segment& s = list[part[p]];
-            const double a = graph_.areas[p];
-            s.area += a;
-            s.rough += a * rough_[p];
-            s.bent += a * bent_[p];
-            s.side += a * side_[p];
-            s.bulge += a * std::abs(side_[p]);
-            s.spread += a * rough_[p] * rough_[p];
-            s.wall += over_wall(p) ? a : 0;
-            s.normal += a * eigen(graph_.normals[p]);
-            s.middle += a * eigen(graph_.places[p]);
-        }
-        for (const auto& c : graph_.contacts)
-            if (part[c.a] != part[c.b])
-                for (const Index p : {c.a, c.b}) list[part[p]].length += c.length, list[part[p]].turn += c.length * c.turn;
-        std::vector<double> roughs, areas;
-        for (Segment& s : list) {
-            const double a = s.area > 0 ? s.area : 1;
-            s.side /= a, s.bulge /= a, s.rough /= a, s.bent /= a,
-                s.spread = std::sqrt(std::max(0.0, s.spread / a - s.rough * s.rough)), s.wall /= a, s.normal /= a, s.middle /= a;
-            s.turn /= s.length > 0 ? s.length : 1;
-            s.thin = s.length > 0 ? s.area / (s.length * graph_.size) : 1;
-            roughs.push_back(s.rough);
-            areas.push_back(s.area);
-        }
-        uneven(part, list);
-        std::vector<double> unevens;
-        for (const Segment& one : list) unevens.push_back(level(one.uneven));
-        const std::vector<double> rank = ranks(roughs, areas), uneven_rank = ranks(unevens, areas);
-        const double even = quantile(unevens, areas, 0.1);
-        const double low = quantile(roughs, areas, 0.1), middle = quantile(roughs, areas, 0.5);
-        const auto of = [&](std::size_t p) -> const Segment& { return list[part[p]]; };
-        columns_.add(name + ": area", [&](std::size_t p) { return of(p).area / graph_.area; });
-        columns_.add(name + ": roughness", [&](std::size_t p) { return of(p).rough; });
-        columns_.add(name + ": roughness over the smoothest", [&](std::size_t p) { return of(p).rough - low; });
-        columns_.add(name + ": roughness over the usual", [&](std::size_t p) { return of(p).rough - middle; });
-        columns_.add(name + ": rank of roughness", [&](std::size_t p) { return rank[part[p]]; });
-        columns_.add(name + ": bend", [&](std::size_t p) { return of(p).bent; });
-        columns_.add(name + ": one way", [&](std::size_t p) { return of(p).normal.norm(); });
-        columns_.add(name + ": unevenness", [&](std::size_t p) { return level(of(p).uneven); });
-        columns_.add(name + ": side", [&](std::size_t p) { return of(p).side; });
-        columns_.add(name + ": bulges", [&](std::size_t p) { return of(p).bulge; });
-        columns_.add(name + ": spread of roughness", [&](std::size_t p) { return of(p).spread; });
-        columns_.add(name + ": off its plane", [&](std::size_t p) { return level(of(p).bumpy); });
-        columns_.add(name + ": rank of unevenness", [&](std::size_t p) { return uneven_rank[part[p]]; });
-        columns_.add(name + ": unevenness over the most even", [&](std::size_t p) { return level(of(p).uneven) - even; });
-        columns_.add(name + ": over walls", [&](std::size_t p) { return of(p).wall; });
-        columns_.add(name + ": turn at its boundary", [&](std::size_t p) { return of(p).turn; });
-        columns_.add(name + ": width", [&](std::size_t p) { return of(p).thin; });
-    }
-
-    /// Root mean square distance of each part from the quadric over its mean plane, over the square root of its area; 1 where it
-    /// does not lie over a plane.
-    template <class Segment>
-    void uneven(const std::vector<std::size_t>& part, std::vector<Segment>& list) const {
-        struct Fit {
-            Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-            Row6 right = Row6::Zero();
-            double square = 0;
-        };
-        std::vector<Fit> fits(list.size());
-        for (std::size_t p = 0; p < part.size(); ++p) {
-            const Segment& s = list[part[p]];
-            if (!(s.area > 0) || s.normal.norm() < 0.5) continue;
-            const Vector3d normal = s.normal.normalized(), u = normal.unitOrthogonal(), w = normal.cross(u),
-                           d = (eigen(graph_.places[p]) - s.middle) / std::sqrt(s.area);
-            const double x = u.dot(d), y = w.dot(d), z = normal.dot(d), share = graph_.areas[p] / s.area;
-            Row6 row;
-            row << 1, x, y, x * x, x * y, y * y;
-            fits[part[p]].matrix += share * row * row.transpose();
-            fits[part[p]].right += share * z * row;
-            fits[part[p]].square += share * z * z;
-        }
-        for (std::size_t k = 0; k < list.size(); ++k) {
-            list[k].uneven = list[k].bumpy = 1;
-            if (!(list[k].area > 0) || list[k].normal.norm() < 0.5) continue;
-            Fit& fit = fits[k];
-            fit.matrix.diagonal().array() += 1e-9;
-            list[k].uneven = std::sqrt(std::max(0.0, fit.square - fit.right.dot(solve_ldlt<6>(fit.matrix, fit.right))));
-            const Eigen::Matrix3d flat = fit.matrix.topLeftCorner(3, 3);
-            const Vector3d right = fit.right.head(3);
-            list[k].bumpy = std::sqrt(std::max(0.0, fit.square - right.dot(solve_ldlt<3>(flat, right))));
+            double length = 0;
+            for (const double one : lengths) length += one / graph_.size;
+            columns_.add("length of " + name, [&](std::size_t) { return length; });
+            if (!outward) continue;
+            columns_.add("jaggedness of the edge", [&](std::size_t p) { return jagged[p]; });
+            columns_.add("turn over the edge", [&](std::size_t p) { return sharp[p]; });
         }
     }
 
@@ -374,7 +308,7 @@ private:
     const Walls& walls_;
     const PatchSamples& samples_;
     FeatureColumns columns_;
-    std::vector<double> rough_, bent_, side_;  ///< of each patch, in the middle scale
+    PatchValues values_;
 };
 
 FeatureColumns measure(const Mesh& mesh, FacetEvidence& evidence) {
@@ -388,19 +322,65 @@ FeatureColumns measure(const Mesh& mesh, FacetEvidence& evidence) {
 
 }  // namespace
 
+std::vector<double> area_ranks(const std::vector<double>& values, const std::vector<double>& areas) {
+    std::vector<std::size_t> order(values.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return std::pair(values[a], a) < std::pair(values[b], b); });
+    double all = 0, below = 0;
+    for (const double a : areas) all += a;
+    std::vector<double> result(values.size());
+    for (const std::size_t k : order) {
+        result[k] = (below + areas[k] / 2) / all;
+        below += areas[k];
+    }
+    return result;
+}
+
+double area_quantile(const std::vector<double>& values, const std::vector<double>& areas, double share) {
+    std::vector<std::pair<double, double>> sorted;
+    double all = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        sorted.emplace_back(values[k], areas[k]);
+        all += areas[k];
+    }
+    std::sort(sorted.begin(), sorted.end());
+    double below = 0;
+    for (const auto& [value, area] : sorted)
+        if ((below += area) >= share * all) return value;
+    return 0;
+}
+
 FacetEvidence facet_evidence(const Mesh& mesh) {
     FacetEvidence evidence;
     evidence.features = measure(mesh, evidence).table();
     return evidence;
 }
 
+namespace {
+
+/// What is measured has its names from what is measured of a tetrahedron.
+Mesh tetrahedron() {
+    TriangleSoup soup;
+    soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    soup.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    return build_mesh(soup);
+}
+
+}  // namespace
+
 const std::vector<std::string>& facet_feature_names() {
     static const std::vector<std::string> names = [] {
-        TriangleSoup soup;
-        soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        soup.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
         FacetEvidence evidence;
-        return measure(build_mesh(soup), evidence).names;
+        return measure(tetrahedron(), evidence).names;
+    }();
+    return names;
+}
+
+const std::vector<std::string>& facet_context_names() {
+    static const std::vector<std::string> names = [] {
+        const FacetEvidence evidence = facet_evidence(tetrahedron());
+        return context_columns(evidence, std::vector<double>(evidence.graph.count(), 0)).names;
     }();
     return names;
 }

@@ -112,6 +112,8 @@ FacetGraph facet_graph(const Mesh& mesh, std::size_t most) {
     for (const auto& c : graph.contacts) neighbours.emplace_back(c.a, c.b);
     const double spacing = 1.5 * graph.size / std::sqrt(static_cast<double>(count));
     graph.normals = filtered_normals(sum, neighbours, filter_steps(0.02 * graph.size, spacing));
+    for (std::size_t p = 0; p < count; ++p)
+        graph.ruffle.push_back(graph.areas[p] > 0 ? std::max(0.0, 1 - sum[p] * graph.normals[p] / graph.areas[p]) : 0);
     for (auto& c : graph.contacts) {
         const Vector &m = graph.normals[c.a], &n = graph.normals[c.b];
         const double angle = std::atan2(std::sqrt(CGAL::cross_product(m, n).squared_length()), m * n);

@@ -5,9 +5,15 @@
 
 namespace ostraka {
 
+std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& rows) {
+    std::vector<double> result(rows.rows());
+    parallel_for(result.size(), [&](std::size_t r) { result[r] = trees.log_odds(rows.row(r)); });
+    return result;
+}
+
 std::vector<double> FacetModel::log_odds(const FacetEvidence& evidence) const {
-    std::vector<double> result(evidence.features.rows());
-    parallel_for(result.size(), [&](std::size_t r) { result[r] = shift + slope * trees.log_odds(evidence.features.row(r)); });
+    std::vector<double> result = log_odds_of(trees, with_context(evidence, log_odds_of(alone, evidence.features)));
+    for (double& one : result) one = shift + slope * one;
     return result;
 }
 
@@ -15,7 +21,9 @@ const FacetModel& facet_model() {
     static const FacetModel model = [] {
         const Json document = built_in_document("facets.model");
         FacetModel result;
-        result.trees = BoostedTrees::from_json(document["trees"], facet_feature_names().size());
+        const std::size_t own = facet_feature_names().size();
+        result.alone = BoostedTrees::from_json(document["alone"], own);
+        result.trees = BoostedTrees::from_json(document["trees"], own + facet_context_names().size());
         result.shift = document["shift"].GetDouble();
         result.slope = document["slope"].GetDouble();
         return result;

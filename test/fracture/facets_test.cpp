@@ -91,6 +91,51 @@ TEST(Facets, WhatIsWholeHasNoBreak) {
     }
 }
 
+TEST(Facets, AFormedFlatEndIsNoBreakForSure) {
+    for (const double top : {0.5, 2.0}) {
+        TriangleSoup ball = test::octahedron_sphere(5);
+        for (auto& p : ball.points) p = {p[0], 1.2 * p[1], std::clamp(p[2], -0.4, top)};
+        EXPECT_NE(find_facets(build_mesh(ball)).answer, Facets::Answer::broken) << top;
+    }
+}
+
+TEST(Facets, ContextTellsOfSurroundings) {
+    const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
+    const FacetEvidence evidence = facet_evidence(sherd.mesh);
+    const std::vector<std::string>& names = facet_context_names();
+    const std::size_t own = facet_feature_names().size();
+    ASSERT_EQ(evidence.features.columns, own);
+    const auto column = [&](const FeatureTable& table, const std::string& name) {
+        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        std::vector<double> values;
+        for (std::size_t r = 0; r < table.rows(); ++r) values.push_back(static_cast<double>(table.row(r)[own + at]));
+        return values;
+    };
+    std::vector<double> odds(evidence.graph.count(), 0);
+    const FeatureTable even = with_context(evidence, odds);
+    ASSERT_EQ(even.columns, own + names.size());
+    for (const char* name : {"likely in the fragment", "part: likely", "likely about, at 3"})
+        for (const double value : column(even, name)) EXPECT_NEAR(value, 0.5, 1e-6) << name;
+    // Faces are patches here. Where the breaks are known, sides lie over sides, and parts are of one kind.
+    ASSERT_EQ(odds.size(), sherd.facets.size());
+    for (std::size_t p = 0; p < odds.size(); ++p) odds[p] = sherd.facets[p] == Facet::fracture ? 8 : -8;
+    const FeatureTable known = with_context(evidence, odds);
+    const std::vector<double> part = column(known, "part: likely"), across = column(known, "part: likely across its boundary"),
+                              behind = column(known, "likely behind");
+    double right = 0, beside = 0, over = 0, sides = 0;
+    for (std::size_t p = 0; p < odds.size(); ++p) {
+        const double area = evidence.graph.areas[p] / evidence.graph.area;
+        right += (part[p] > 0.5) == (odds[p] > 0) ? area : 0;
+        if (odds[p] > 0) continue;
+        sides += area;
+        beside += across[p] > 0.5 ? area : 0;
+        over += behind[p] < 0.5 ? area : 0;
+    }
+    EXPECT_GT(right, 0.95);
+    EXPECT_GT(beside, 0.9 * sides) << "breaks lie between the sides";
+    EXPECT_GT(over, 0.9 * sides);
+}
+
 TEST(Facets, WhatCannotBeToldIsSaid) {
     EXPECT_THROW(find_facets(Mesh()), Error);
     TriangleSoup flat;

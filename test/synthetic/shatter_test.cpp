@@ -2,6 +2,7 @@
 
 #include "meshes.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
@@ -79,6 +80,45 @@ TEST(Shatter, SameSeedSamePieces) {
     double worn = 0;
     for (const Sherd& one : a) worn += volume(one.mesh);
     EXPECT_LT(worn, volume(pot));
+}
+
+TEST(Shatter, BreaksArchAndWearDiffersOverThem) {
+    const Mesh ball = build_mesh(test::octahedron_sphere(5));
+    ShatterOptions options;
+    options.pieces = 2;
+    options.roughness = 0;
+    const auto flat = shatter(ball, options);
+    options.bow = 0.3;
+    const auto arched = shatter(ball, options);
+    // A plane through the middles of the break's faces, by the spread across it.
+    const auto off_plane = [](const Sherd& one) {
+        Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+        double count = 0;
+        for (const Face f : one.mesh.faces())
+            if (one.broken[f]) mean += eigen(centroid(one.mesh, f)), ++count;
+        mean /= count;
+        Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+        for (const Face f : one.mesh.faces()) {
+            const Eigen::Vector3d d = eigen(centroid(one.mesh, f)) - mean;
+            if (one.broken[f]) spread += d * d.transpose() / count;
+        }
+        return std::sqrt(std::max(0.0, symmetric_eigenvalues(spread)[0]));
+    };
+    EXPECT_NEAR(off_plane(flat[0]), 0, 1e-6);
+    EXPECT_GT(off_plane(arched[0]), 0.01);
+    options.bow = 0;
+    options.erosion = 0.02;
+    options.patchiness = 1;
+    const auto worn = shatter(ball, options);
+    ASSERT_EQ(worn[0].mesh.number_of_vertices(), flat[0].mesh.number_of_vertices());
+    const SurfaceSearch cut(flat[0].mesh);
+    double least = 1, most = 0;
+    for (const Face f : worn[0].mesh.faces()) {
+        const double depth = cut.closest(centroid(worn[0].mesh, f)).distance;
+        if (worn[0].broken[f]) least = std::min(least, depth), most = std::max(most, depth);
+    }
+    EXPECT_GT(most, 5 * least);
+    EXPECT_LT(most, 2.1 * options.erosion * box_diagonal(ball));
 }
 
 TEST(Shatter, SherdsMeshedAnewShareNothingButTheirShape) {

@@ -39,9 +39,15 @@ FacetEvidence facet_evidence(const Mesh& mesh);
 /// In the order of the features.
 const std::vector<std::string>& facet_feature_names();
 
+/// The features, and what log odds of the patches say of their neighbourhoods, parts and the whole fragment.
+FeatureTable with_context(const FacetEvidence& evidence, const std::vector<double>& log_odds);
+/// In the order of those that context adds.
+const std::vector<std::string>& facet_context_names();
+
 /// What tells a break by these features. Its log odds are calibrated on objects that the trees were not made from.
 struct FacetModel {
-    BoostedTrees trees;
+    BoostedTrees alone;           ///< by what a patch shows itself
+    BoostedTrees trees;           ///< by that, and by what `alone` says of its surroundings (Tu and Bai 2010)
     double shift = 0, slope = 1;  ///< calibrated log odds: shift + slope * those of the trees
 
     [[nodiscard]] std::vector<double> log_odds(const FacetEvidence& evidence) const;
@@ -50,5 +56,8 @@ struct FacetModel {
 /// The model that is built in (data/facets.model.json), and its SHA-256.
 const FacetModel& facet_model();
 std::string facet_model_version();
+
+/// Of each row.
+std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& rows);
 
 }  // namespace ostraka

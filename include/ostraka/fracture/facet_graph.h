@@ -14,6 +14,7 @@ struct FacetGraph {
     std::vector<Point> places;    ///< centroids
     std::vector<Vector> normals;  ///< unit vectors, averaged with neighbours that look alike; null where there is no area
     std::vector<double> areas;
+    std::vector<double> ruffle;  ///< 1 less the mean cosine between the faces' own normals and the patch's
     /// Where two patches touch, a < b.
     struct Contact {
         Index a = 0, b = 0;

@@ -1,0 +1,116 @@
+// What a patch's surroundings are told to be, as features: a break is told beside what is intact.
+#include "facet_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+class Context {
+public:
+    Context(const FacetEvidence& evidence, const std::vector<double>& log_odds)
+        : evidence_(evidence), graph_(evidence.graph), columns_(graph_.count()), odds_(log_odds) {
+        for (const double odds : log_odds) likely_.push_back(1 / (1 + std::exp(-std::clamp(odds, -20.0, 20.0))));
+    }
+
+    FeatureColumns run() {
+        const std::size_t n = graph_.count();
+        const std::vector<double> rank = area_ranks(odds_, graph_.areas);
+        columns_.add("log odds", [&](std::size_t p) { return odds_[p]; });
+        columns_.add("rank of log odds", [&](std::size_t p) { return rank[p]; });
+        for (const std::size_t s : {std::size_t{0}, std::size_t{2}}) {
+            const std::vector<double> mean = mean_about(evidence_, s + 1, likely_);
+            columns_.add("likely about, at " + std::to_string(s + 1), [&](std::size_t p) { return mean[p]; });
+        }
+        const double mean = std::inner_product(likely_.begin(), likely_.end(), graph_.areas.begin(), 0.0) / graph_.area;
+        const double low = area_quantile(likely_, graph_.areas, 0.1), high = area_quantile(likely_, graph_.areas, 0.9);
+        columns_.add("likely in the fragment", [&](std::size_t) { return mean; });
+        columns_.add("least likely in the fragment", [&](std::size_t) { return low; });
+        columns_.add("most likely in the fragment", [&](std::size_t) { return high; });
+        std::vector<double> behind(n, -1);
+        for (std::size_t p = 0; p < n; ++p)
+            if (evidence_.walls.behind[p] != no_index) behind[p] = likely_[evidence_.walls.behind[p]];
+        const std::vector<double> behind_about = mean_about(evidence_, 1, behind);
+        columns_.add("likely behind", [&](std::size_t p) { return behind_about[p]; });
+        parts("part", evidence_.parts[0]);
+        parts("small part", evidence_.parts[1]);
+        return std::move(columns_);
+    }
+
+private:
+    void parts(const std::string& name, const std::vector<std::size_t>& part) {
+        struct Part {
+            double area = 0, likely = 0, spread = 0, length = 0, across = 0, rim = 0;
+        };
+        std::size_t count = 0;
+        for (const std::size_t p : part) count = std::max(count, p + 1);
+        std::vector<Part> list(count);
+        for (std::size_t p = 0; p < part.size(); ++p) {
+            Part& one = list[part[p]];
+            one.area += graph_.areas[p];
+            one.likely += graph_.areas[p] * likely_[p];
+            one.spread += graph_.areas[p] * likely_[p] * likely_[p];
+        }
+        for (Part& one : list) {
+            const double area = one.area > 0 ? one.area : 1;
+            one.likely /= area;
+            one.spread = std::sqrt(std::max(0.0, one.spread / area - one.likely * one.likely));
+        }
+        for (const auto& c : graph_.contacts) {
+            if (part[c.a] == part[c.b]) continue;
+            for (const auto& [here, there] : {std::pair(c.a, c.b), std::pair(c.b, c.a)}) {
+                Part& one = list[part[here]];
+                one.length += c.length;
+                one.rim += c.length * likely_[here];
+                one.across += c.length * list[part[there]].likely;
+            }
+        }
+        std::vector<double> likely, areas;
+        for (const Part& one : list) {
+            likely.push_back(one.likely);
+            areas.push_back(one.area);
+        }
+        const std::vector<double> rank = area_ranks(likely, areas);
+        const double low = area_quantile(likely, areas, 0.05), high = area_quantile(likely, areas, 0.95);
+        const auto add = [&](const std::string& what, auto&& value) {
+            columns_.add(name + ": " + what, [&](std::size_t p) { return value(list[part[p]]); });
+        };
+        add("likely", [](const Part& one) { return one.likely; });
+        columns_.add(name + ": rank of likely", [&](std::size_t p) { return rank[part[p]]; });
+        add("over the least likely", [&](const Part& one) { return one.likely - low; });
+        add("under the most likely", [&](const Part& one) { return high - one.likely; });
+        add("spread of likely", [](const Part& one) { return one.spread; });
+        add("likely across its boundary", [](const Part& one) { return one.length > 0 ? one.across / one.length : -1; });
+        add("likely at its boundary", [](const Part& one) { return one.length > 0 ? one.rim / one.length : -1; });
+    }
+
+    const FacetEvidence& evidence_;
+    const FacetGraph& graph_;
+    FeatureColumns columns_;
+    const std::vector<double>& odds_;
+    std::vector<double> likely_;  ///< of each patch, by itself
+};
+
+}  // namespace
+
+FeatureColumns context_columns(const FacetEvidence& evidence, const std::vector<double>& log_odds) {
+    return Context(evidence, log_odds).run();
+}
+
+FeatureTable with_context(const FacetEvidence& evidence, const std::vector<double>& log_odds) {
+    const FeatureTable context = context_columns(evidence, log_odds).table();
+    FeatureTable result;
+    result.columns = evidence.features.columns + context.columns;
+    result.values.reserve(context.rows() * result.columns);
+    for (std::size_t r = 0; r < context.rows(); ++r) {
+        const auto own = evidence.features.row(r), more = context.row(r);
+        result.values.insert(result.values.end(), own.begin(), own.end());
+        result.values.insert(result.values.end(), more.begin(), more.end());
+    }
+    return result;
+}
+
+}  // namespace ostraka
