@@ -24,7 +24,7 @@ namespace {
 
 /// A pair as it was found.
 struct Row {
-    std::string box;
+    std::string box, other;  ///< of the first and of the second fragment
     std::size_t first = 0, second = 0;
     double contact = 0;  ///< truth: share of the smaller break; 0 for strangers
     bool stranger = false;
@@ -39,6 +39,7 @@ Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const
              const Motion& motion) {
     Row row;
     row.box = of.name;
+    row.other = with.name;
     row.first = i, row.second = j;
     row.stranger = &of != &with;
     if (!row.stranger) row.contact = of.contact[std::min(i, j)][std::max(i, j)];
@@ -56,8 +57,12 @@ Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const
     return row;
 }
 
+/// Scanned and published objects are few, but they are what is asked about.
+double weight_of(const Row& row) { return row.box.find(':') == std::string::npos ? 2 : 1; }
+
 /// Weights of a logistic regression, held to 0 by `ridge` (iteratively reweighted least squares). Each row begins with a 1.
-Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth, double ridge) {
+Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth,
+                         const std::vector<double>& counted, double ridge) {
     Eigen::Vector3d weights = Eigen::Vector3d::Zero();
     for (int step = 0; step < 60; ++step) {
         Eigen::Matrix3d hessian = ridge * Eigen::Matrix3d::Identity();
@@ -66,8 +71,8 @@ Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::ve
         gradient[0] = 0;
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const double p = 1 / (1 + std::exp(-weights.dot(rows[k])));
-            hessian += std::max(1e-9, p * (1 - p)) * rows[k] * rows[k].transpose();
-            gradient += ((truth[k] ? 1 : 0) - p) * rows[k];
+            hessian += counted[k] * std::max(1e-9, p * (1 - p)) * rows[k] * rows[k].transpose();
+            gradient += counted[k] * ((truth[k] ? 1 : 0) - p) * rows[k];
         }
         const Eigen::Vector3d move = solve_ldlt<3>(hessian, gradient);
         weights += move / std::max(1.0, move.norm());
@@ -90,11 +95,13 @@ std::vector<float> row_of(const Features& features) { return {features.begin(), 
 BoostedTrees learnt_from(const std::vector<Row>& rows, auto&& chosen) {
     FeatureTable table;
     std::vector<bool> truth;
+    std::vector<double> weights;
     for (const Row& row : rows)
         if (chosen(row))
             for (std::size_t c = 0; c < row.features.size(); ++c) {
                 table.add(row_of(row.features[c]));
                 truth.push_back(row.right[c]);
+                weights.push_back(weight_of(row));
             }
     BoostOptions how;
     how.trees = 200;
@@ -102,7 +109,7 @@ BoostedTrees learnt_from(const std::vector<Row>& rows, auto&& chosen) {
     how.rate = 0.04;
     how.leaf_weight = 15;
     how.ridge = 1;
-    return boost(table, truth, {}, how);
+    return boost(table, truth, weights, how);
 }
 
 /// Trees are learnt from all rows; what a pair's log odds mean, by trees that have not seen its object (five folds).
@@ -112,11 +119,15 @@ Trained train(const std::vector<Row>& rows) {
     for (const Row& row : rows) fold.emplace(row.box, fold.size() % 5);
     std::array<BoostedTrees, 5> others;
     for (std::size_t f = 0; f < others.size(); ++f)
-        others[f] = learnt_from(rows, [&](const Row& row) { return fold.at(row.box) != f; });
+        others[f] = learnt_from(rows, [&](const Row& row) {
+            const auto other = fold.find(row.other);
+            return fold.at(row.box) != f && (other == fold.end() || other->second != f);
+        });
     model.trees = learnt_from(rows, [](const Row&) { return true; });
     double joins = 0;
     std::vector<Eigen::Vector3d> inputs;
     std::vector<bool> truth;
+    std::vector<double> weights;
     for (const Row& row : rows) {
         std::vector<std::pair<double, bool>> scored;
         for (std::size_t c = 0; c < row.features.size(); ++c) {
@@ -133,6 +144,7 @@ Trained train(const std::vector<Row>& rows) {
         const double lead = scored.size() > 1 ? scored[1].first - scored[0].first : 2;
         inputs.emplace_back(1, -scored[0].first, std::min(lead, 2.0));
         truth.push_back(scored[0].second);
+        weights.push_back(weight_of(row));
         model.joined += scored[0].second ? 1 : 0;
     }
     for (std::size_t k = 0; k < model.usual.size(); ++k) {
@@ -140,8 +152,20 @@ Trained train(const std::vector<Row>& rows) {
         model.spread[k] = std::sqrt(std::max(1e-6, model.spread[k] / std::max(1.0, joins) - model.usual[k] * model.usual[k]));
     }
     model.joined /= static_cast<double>(rows.size());
-    model.pair = logistic(inputs, truth, 0.01);
+    model.pair = logistic(inputs, truth, weights, 0.01);
     return model;
+}
+
+/// As a model says that has not seen its object.
+Row judged(Row row, const Trained& model) {
+    std::vector<std::pair<double, bool>> scored;
+    for (std::size_t c = 0; c < row.features.size(); ++c)
+        scored.emplace_back(-model.trees.log_odds(row_of(row.features[c])), row.right[c]);
+    std::stable_sort(scored.begin(), scored.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    const double lead = scored.size() > 1 ? std::min(2.0, scored[1].first - scored[0].first) : 2;
+    row.confidence = scored.empty() ? 0 : 1 / (1 + std::exp(-model.pair.dot(Eigen::Vector3d(1, -scored[0].first, lead))));
+    for (std::size_t c = 0; c < scored.size(); ++c) row.right[c] = scored[c].second;
+    return row;
 }
 
 void write_model(const Path& file, const Trained& model, const std::string& recipe) {
@@ -161,7 +185,7 @@ std::vector<Row> read_rows(const std::string& file) {
     std::string line;
     std::vector<Row> rows;
     if (!std::getline(in, line)) fail_input(file, "cannot be read", "write it by 'ostraka_experiments joins'");
-    constexpr std::size_t before = 9;  // columns
+    constexpr std::size_t before = 10;  // columns
     while (std::getline(in, line)) {
         std::vector<std::string> words;
         std::istringstream text(line);
@@ -169,16 +193,17 @@ std::vector<Row> read_rows(const std::string& file) {
         if (words.size() != before + JoinEvidence::count)
             fail_input(file, "has rows of another length than features are told of today", "make it anew");
         const auto number = [&](std::size_t k) { return std::stod(words[k]); };
-        if (number(5) == 0) {
+        if (number(6) == 0) {
             Row& row = rows.emplace_back();
             row.box = words[0];
             row.first = static_cast<std::size_t>(number(1)), row.second = static_cast<std::size_t>(number(2));
-            row.contact = number(3);
-            row.stranger = number(4) != 0;
-            row.confidence = number(8);
+            row.other = words[3];
+            row.contact = number(4);
+            row.stranger = number(5) != 0;
+            row.confidence = number(9);
         }
-        rows.back().right.push_back(number(6) != 0);
-        rows.back().log_odds.push_back(number(7));
+        rows.back().right.push_back(number(7) != 0);
+        rows.back().log_odds.push_back(number(8));
         Features features;
         for (std::size_t k = 0; k < features.size(); ++k) features[k] = number(before + k);
         rows.back().features.push_back(features);
@@ -220,6 +245,34 @@ void report(const std::vector<Row>& rows, const std::string& what, std::ostream&
         << std::flush;
 }
 
+/// Each scanned or published object judged by a model learnt without it, made ones by models without a fifth of them.
+void report_left_out(const std::vector<Row>& rows) {
+    std::map<std::string, std::size_t> fold;
+    std::size_t made = 0, folds = 5;
+    for (const Row& row : rows)
+        if (!fold.contains(row.box)) fold[row.box] = weight_of(row) > 1 ? folds++ : made++ % 5;
+    std::vector<Row> all_made, all_real;
+    std::map<std::string, std::vector<Row>> boxes;
+    for (std::size_t f = 0; f < folds; ++f) {
+        std::vector<Row> others;
+        const auto of_fold = [&](const std::string& name) {
+            const auto found = fold.find(name);
+            return found != fold.end() && found->second == f;
+        };
+        for (const Row& row : rows)
+            if (!of_fold(row.box) && !of_fold(row.other)) others.push_back(row);
+        const Trained model = train(others);
+        for (const Row& row : rows)
+            if (of_fold(row.box)) {
+                boxes[row.box].push_back(judged(row, model));
+                (f < 5 ? all_made : all_real).push_back(boxes[row.box].back());
+            }
+    }
+    for (const auto& [name, those] : boxes) report(those, name, std::cout);
+    report(all_made, "made, left out", std::cout);
+    report(all_real, "scanned and published, left out", std::cout);
+}
+
 }  // namespace
 
 void joins(const JoinExperiment& options) {
@@ -230,7 +283,7 @@ void joins(const JoinExperiment& options) {
     Box before;
     std::vector<PreparedBreak> prepared_before;
     std::ostringstream csv;
-    csv << "box,first,second,contact,stranger,candidate,right,log_odds,confidence";
+    csv << "box,first,second,other,contact,stranger,candidate,right,log_odds,confidence";
     for (const std::string& name : JoinEvidence::names()) csv << ',' << name;
     csv << '\n';
     std::uint64_t seed = options.seed;
@@ -277,8 +330,8 @@ void joins(const JoinExperiment& options) {
         report(rows, box.name + box.level, std::cout);
         for (const Row& row : rows)
             for (std::size_t c = 0; c < row.right.size(); ++c) {
-                csv << row.box << ',' << row.first << ',' << row.second << ',' << row.contact << ',' << row.stranger << ',' << c
-                    << ',' << row.right[c] << ',' << row.log_odds[c] << ',' << row.confidence;
+                csv << row.box << ',' << row.first << ',' << row.second << ',' << row.other << ',' << row.contact << ','
+                    << row.stranger << ',' << c << ',' << row.right[c] << ',' << row.log_odds[c] << ',' << row.confidence;
                 for (const double x : row.features[c]) csv << ',' << x;
                 csv << '\n';
             }
@@ -293,7 +346,9 @@ void joins(const JoinExperiment& options) {
     }
     for (const std::string& file : options.rows)
         for (Row& row : read_rows(file)) all.push_back(std::move(row));
-    if (!options.model.empty()) write_model(options.model, train(all), options.recipe);
+    if (options.model.empty()) return;
+    if (!options.rows.empty()) report_left_out(all);
+    write_model(options.model, train(all), options.recipe);
 }
 
 }  // namespace ostraka::experiments

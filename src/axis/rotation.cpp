@@ -4,6 +4,7 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
+#include "ostraka/geom/line_complex.h"
 #include "ostraka/stats/summary.h"
 
 #include <random>
@@ -19,28 +20,10 @@ using Line = AxisLine;
 using Profile = TurnedProfile;
 using Refinement = AxisRefinement;
 
-/// Normal equations of the line complex: n . m + (p x n) . a = 0 for the axis with direction a and moment m.
-struct Complex {
-    Matrix3d N = Matrix3d::Zero(), B = Matrix3d::Zero(), D = Matrix3d::Zero();
-    void add(const Sample& s, double weight) {
-        const Vector3d q = s.p.cross(s.n);
-        N += weight * s.n * s.n.transpose();
-        B += weight * s.n * q.transpose();
-        D += weight * q * q.transpose();
-    }
-    /// The axis of least error with |a| = 1, its pitch dropped; `second` is the next eigenvalue: how well other axes would do.
-    [[nodiscard]] Line solve(double* second = nullptr) const {
-        const SymmetricEigen3 of_n(N);
-        Matrix3d inverse = Matrix3d::Zero();
-        for (int k = 0; k < 3; ++k)
-            if (of_n.eigenvalues()[k] > 1e-6 * N.trace())
-                inverse += of_n.eigenvectors().col(k) * of_n.eigenvectors().col(k).transpose() / of_n.eigenvalues()[k];
-        const SymmetricEigen3 solver(D - B.transpose() * inverse * B);
-        const Vector3d a = solver.eigenvectors().col(0);
-        if (second != nullptr) *second = solver.eigenvalues()[1];
-        return {a.cross(-inverse * B * a), a};
-    }
-};
+Line line_of(const LineComplex& complex) {
+    const LineComplex::Axis axis = complex.solve();
+    return {axis.place, axis.direction};
+}
 
 double score(const std::vector<Sample>& samples, std::size_t step, const Line& axis) {
     double sum = 0;
@@ -55,10 +38,10 @@ Line reweighted(const std::vector<Sample>& samples, Line axis, int rounds) {
         std::vector<double> sines(samples.size());
         for (std::size_t i = 0; i < samples.size(); ++i) sines[i] = std::abs(sine(samples[i], axis));
         const double sigma = std::max(1.4826 * upper_median(sines), 0.01);
-        Complex complex;
+        LineComplex complex;
         for (std::size_t i = 0; i < samples.size(); ++i)
-            complex.add(samples[i], samples[i].weight / (1 + std::pow(sines[i] / sigma, 2)));
-        axis = complex.solve();
+            complex.add(samples[i].p, samples[i].n, samples[i].weight / (1 + std::pow(sines[i] / sigma, 2)));
+        axis = line_of(complex);
     }
     return axis;
 }
@@ -68,9 +51,9 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     Line best = reweighted(
         samples,
         [&] {
-            Complex all;
-            for (const auto& s : samples) all.add(s, s.weight);
-            return all.solve();
+            LineComplex all;
+            for (const auto& s : samples) all.add(s.p, s.n, s.weight);
+            return line_of(all);
         }(),
         10);
     double maximum = score(samples, step, best);
@@ -81,9 +64,12 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     for (const auto& d : moments.directions) consider({Vector3d::Zero(), eigen(d)});
     std::mt19937_64 random(options.seed);
     for (int trial = 0; trial < options.trials; ++trial) {
-        Complex some;
-        for (int k = 0; k < 6; ++k) some.add(samples[random() % samples.size()], 1);
-        const Line line = some.solve();
+        LineComplex some;
+        for (int k = 0; k < 6; ++k) {
+            const Sample& s = samples[random() % samples.size()];
+            some.add(s.p, s.n);
+        }
+        const Line line = line_of(some);
         if (line.direction.allFinite() && line.point.allFinite()) consider(line);
     }
     return reweighted(samples, best, 15);

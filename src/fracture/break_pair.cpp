@@ -64,15 +64,16 @@ std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const 
 /// Scores poses quickly, by a few places of the second side.
 class QuickScore {
 public:
-    QuickScore(const PreparedBreak::Parts& on, const BreakSide& of, double search_radius)
+    QuickScore(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius)
         : on_(on),
+          from_(from),
           fractures_on_(on.side.fracture.places.size()),
-          of_(of),
+          of_(from.side),
           search_radius_(search_radius),
-          fractures_(thinned(of.fracture.places.size(), 160)),
-          others_(thinned(of.intact.places.size(), 120)),
-          each_fracture_(fractures_.empty() ? 0 : of.fracture.area / static_cast<double>(fractures_.size())),
-          each_other_(others_.empty() ? 0 : of.intact.area / static_cast<double>(others_.size())) {}
+          fractures_(thinned(of_.fracture.places.size(), 160)),
+          others_(thinned(of_.intact.places.size(), 120)),
+          each_fracture_(fractures_.empty() ? 0 : of_.fracture.area / static_cast<double>(fractures_.size())),
+          each_other_(others_.empty() ? 0 : of_.intact.area / static_cast<double>(others_.size())) {}
 
     [[nodiscard]] double operator()(const Motion& pose) const {
         const auto [touching, inside] = look_at(pose);
@@ -135,7 +136,8 @@ public:
             if (std::abs(off) < 1 && against > 0.3 && (on_.places[k] - p).squaredNorm() < search_radius_ * search_radius_)
                 touching += each_fracture_ * (1 - off * off) * against;
         }
-        return {pose, touching - look_at(pose).second};
+        const double score = touching - look_at(pose).second;
+        return {pose, score > 0 ? score * shares_axis(pose) : score};
     }
 
 private:
@@ -160,7 +162,13 @@ private:
         return {touching, inside};
     }
 
-    const PreparedBreak::Parts& on_;
+    /// 1 where the normals of both fragments meet one axis as well as those of each alone, less where they do not.
+    [[nodiscard]] double shares_axis(const Motion& pose) const {
+        const double off = off_common_axis(on_, from_, pose) / std::min(on_.size, from_.size);
+        return std::sqrt(0.02 / (0.02 + off));
+    }
+
+    const PreparedBreak::Parts &on_, &from_;
     std::size_t fractures_on_;  ///< the first of its places
     const BreakSide& of_;
     double search_radius_;
@@ -169,10 +177,10 @@ private:
 };
 
 /// The best of all poses that lay a frame onto a frame; `tried` counts them.
-std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const BreakSide& b, double search_radius, std::size_t count,
-                                   std::size_t& tried) {
-    const QuickScore quick_score(on, b, search_radius);
-    const BreakSide& a = on.side;
+std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius,
+                                   std::size_t count, std::size_t& tried) {
+    const QuickScore quick_score(on, from, search_radius);
+    const BreakSide &a = on.side, &b = from.side;
     const std::size_t columns = b.frames.size();
     std::vector<double> scores(a.frames.size() * columns);
     const double none = -std::numeric_limits<double>::infinity();
@@ -231,6 +239,10 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     parts.relief = deviations(parts.side.fracture.places).second;
     parts.noise = surface_noise(parts.side.intact);
     parts.edge = mean_edge_length(parts.mesh);
+    const SurfaceSamples& intact = parts.side.intact;
+    for (std::size_t k = 0; k < intact.places.size(); ++k)
+        parts.lines.add(intact.places[k], intact.normals[k], 1 / static_cast<double>(intact.places.size()));
+    parts.off_axis = parts.lines.off_axis();
     parts.fracture = PointTree(points_of(parts.side.fracture.places));
     parts.frames = PointTree(places_of(parts.side.frames));
     parts.places = parts.side.fracture.places;
@@ -256,7 +268,8 @@ double PreparedBreak::relief() const { return parts_->relief; }
 std::size_t PreparedBreak::fracture_faces() const { return parts_->faces; }
 
 double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
-    return std::min({a.size(), b.size(), 6 * a.width(), 6 * b.width()});
+    const double smaller = std::min(a.size(), b.size()), noise = std::hypot(a.parts().noise, b.parts().noise);
+    return std::min(smaller, std::max(std::min(6 * a.width(), 6 * b.width()), 240 * noise));
 }
 
 namespace {
@@ -311,10 +324,10 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     // The best of each kind, settled cheaply, and of these the best.
     std::vector<Scored> by_stretches = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6),
                         by_frames =
-                            unlike(best_of_frames(first, second.side, search_radius, 40 * starts, result.tried), 6 * starts, 6);
+                            unlike(best_of_frames(first, second, search_radius, 40 * starts, result.tried), 6 * starts, 6);
     std::vector<Scored> settled = by_stretches;
     settled.insert(settled.end(), by_frames.begin(), by_frames.end());
-    const QuickScore quick_score(first, second.side, search_radius);
+    const QuickScore quick_score(first, second, search_radius);
     parallel_for(
         settled.size(),
         [&](std::size_t k) {
@@ -334,7 +347,7 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     const auto quickly = [&](const Motion& pose) { return rough.align(pose, few, 10); };
     std::vector<Scored> quick = scored(seen_candidates(a, b, poses, tolerance, few, quickly));
     // Where the best of them are hopeless, the others are too; one is told all the same, to say why.
-    constexpr double least = -5.5;  // log odds
+    constexpr double least = -7;  // log odds
     const bool hopeless = quick.empty() || quick.front().score < least;
     if (!hopeless) {
         const std::vector<Scored> more = scored(seen_candidates(a, b, others, tolerance, few, quickly));
@@ -374,7 +387,7 @@ double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     if (goes_first(b, a)) return quick_fit(b, a, options, places);
     const PreparedBreak::Parts &first = a.parts(), &second = b.parts();
     const double size = std::min(first.size, second.size);
-    const QuickScore quick_score(first, second.side, options.search_radius * size);
+    const QuickScore quick_score(first, second, options.search_radius * size);
     const auto rows = thinned(first.side.frames.size(), places), columns = thinned(second.side.frames.size(), places);
     std::vector<double> best(rows.size(), 0);
     parallel_for(

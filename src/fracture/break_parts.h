@@ -3,6 +3,7 @@
 
 #include "break_side.h"
 #include "ostraka/fracture/break_pair.h"
+#include "ostraka/geom/line_complex.h"
 #include "ostraka/geom/surface_search.h"
 
 namespace ostraka {
@@ -16,12 +17,18 @@ struct PreparedBreak::Parts {
     double relief = 0;      ///< root mean square deviation of the fracture from its quadric
     double noise = 0;       ///< of the intact surface, a length: see surface_noise
     double edge = 0;        ///< mean length of the mesh's edges
+    LineComplex lines;      ///< of the intact surface's normals
+    double off_axis = 0;    ///< root mean square distance of these from their best axis
     BreakSide side;
     PointTree fracture, frames;
     std::vector<Eigen::Vector3d> places, normals;  ///< fracture first, then intact surface
     std::unique_ptr<SampleGrid> grid;              ///< of places
     std::unique_ptr<SurfaceSearch> surface;
 };
+
+/// How much farther the normals of two intact surfaces are off the best axis of both, b moved by `pose`, than off an axis each:
+/// root of the difference of mean squares, so that noise does not count.
+double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts& b, const Motion& pose);
 
 /// How far an intact surface deviates from quadrics over small neighbourhoods: what scanner, grain and coarse triangles leave.
 /// Median of root mean squares; 0 of fewer than ten samples.

@@ -120,6 +120,13 @@ double surface_noise(const SurfaceSamples& intact) {
     return found.empty() ? 0 : upper_median(std::move(found));
 }
 
+double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts& b, const Motion& pose) {
+    LineComplex together = b.lines.moved(pose);
+    together.add(a.lines);
+    const double both = together.off_axis(), alone = (a.off_axis * a.off_axis + b.off_axis * b.off_axis) / 2;
+    return std::sqrt(std::max(0.0, both * both - alone));
+}
+
 JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance,
                           std::size_t samples) {
     const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
@@ -197,6 +204,8 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
     seen.noise = std::hypot(a.noise, b.noise) / tolerance;
     seen.edge = std::max(a.edge, b.edge) / tolerance;
     seen.breaks = std::min(a.relief, b.relief) / tolerance;
+    seen.axis = off_common_axis(a, b, pose) / std::min(a.size, b.size);
+    seen.own_axis = std::hypot(a.off_axis, b.off_axis) / std::min(a.size, b.size);
     return seen;
 }
 
@@ -260,7 +269,9 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             logarithm(noise, 0.003, 3) + 3,
             logarithm(edge, 0.1, 20),
             logarithm(breaks, 0.1, 30),
-            -logarithm(std::max(residual, 0.02) / std::hypot(0.1, noise, 0.1 * edge), 0.1, 10)};
+            -logarithm(std::max(residual, 0.02) / std::hypot(0.1, noise, 0.1 * edge), 0.1, 10),
+            -logarithm(0.003 + axis, 0.003, 1) - 4,
+            -logarithm(0.003 + own_axis, 0.003, 1) - 3};
 }
 
 const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
@@ -285,7 +296,9 @@ const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
                                                       "noise of the surfaces",
                                                       "coarseness of the meshes",
                                                       "relief of the breaks",
-                                                      "contact as close as noise allows"};
+                                                      "contact as close as noise allows",
+                                                      "sides that share an axis",
+                                                      "roundness of the sides"};
     return names;
 }
 

@@ -17,7 +17,7 @@ constexpr double JoinEvidence::*evidence_members[] = {
     &JoinEvidence::rim,         &JoinEvidence::rim_share,   &JoinEvidence::rim_coverage, &JoinEvidence::rim_step,
     &JoinEvidence::penetration, &JoinEvidence::depth,       &JoinEvidence::widths,       &JoinEvidence::side_turn,
     &JoinEvidence::side_step,   &JoinEvidence::side_length, &JoinEvidence::noise,        &JoinEvidence::edge,
-    &JoinEvidence::breaks};
+    &JoinEvidence::breaks,      &JoinEvidence::axis,        &JoinEvidence::own_axis};
 static_assert(std::size(evidence_members) == JoinEvidence::numbers, "what is not kept would be lost in a run that goes on");
 
 double number_of(const JsonValue& value) {

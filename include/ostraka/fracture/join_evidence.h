@@ -37,13 +37,18 @@ struct JoinEvidence {
     double edge = 0;    ///< mean length of the edges of the coarser mesh
     double breaks = 0;  ///< root mean square deviation of the smoother one's break from a quadric
 
-    static constexpr std::size_t numbers = 21;  ///< above
-    static constexpr std::size_t count = 22;    ///< features
+    // Of a vessel the normals of the intact surfaces meet its axis, whatever wear took from the breaks: root mean square
+    // distances from the best axis, shares of the smaller fragment's size.
+    double axis = 0;      ///< of both together, beyond that of each from its own
+    double own_axis = 0;  ///< of both, each from its own
+
+    static constexpr std::size_t numbers = 23;  ///< above
+    static constexpr std::size_t count = 24;    ///< features
     /// What the model is told: logarithms and shares, each of the order of 1.
     [[nodiscard]] std::array<double, count> features() const;
     static const std::array<std::string, count>& names();
     /// Whether a feature speaks for or against a join, not only of how well anything is seen.
-    static bool of_the_join(std::size_t feature) { return feature != 18 && feature != 19; }
+    static bool of_the_join(std::size_t feature) { return feature != 18 && feature != 19 && feature != 23; }
 };
 
 /// Of the evidence alone: that two fragments were joined so, against what is seen by chance, as learnt from breaks whose truth is

@@ -1,0 +1,69 @@
+// The axis that normals meet.
+#pragma once
+
+#include "ostraka/core/dense.h"
+#include "ostraka/geom/rigid_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka {
+
+/// Normal equations of the linear line complex of normals (Pottmann and Wallner, Computational Line Geometry, 2001): every normal
+/// of a surface of revolution meets its axis, n . m + (p x n) . a = 0 for the axis with direction a and moment m.
+class LineComplex {
+public:
+    /// A place with its unit normal.
+    void add(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double weight = 1) {
+        const Eigen::Vector3d q = place.cross(normal);
+        weight_ += weight;
+        n_ += weight * normal * normal.transpose();
+        b_ += weight * normal * q.transpose();
+        d_ += weight * q * q.transpose();
+    }
+    void add(const LineComplex& other, double weight = 1) {
+        weight_ += weight * other.weight_;
+        n_ += weight * other.n_;
+        b_ += weight * other.b_;
+        d_ += weight * other.d_;
+    }
+    /// Of the places after a rigid motion.
+    [[nodiscard]] LineComplex moved(const Motion& motion) const {
+        const Eigen::Matrix3d &r = motion.rotation, n = r * n_ * r.transpose(), b = r * b_ * r.transpose();
+        Eigen::Matrix3d t;
+        t << 0, -motion.translation[2], motion.translation[1], motion.translation[2], 0, -motion.translation[0],
+            -motion.translation[1], motion.translation[0], 0;
+        LineComplex result;
+        result.weight_ = weight_;
+        result.n_ = n;
+        result.b_ = b + n * t.transpose();
+        result.d_ = r * d_ * r.transpose() + t * b + (t * b).transpose() + t * n * t.transpose();
+        return result;
+    }
+    [[nodiscard]] double weight() const { return weight_; }
+
+    /// The axis of least error with |a| = 1, its pitch dropped.
+    struct Axis {
+        Eigen::Vector3d place, direction;
+        double error = 0;   ///< weighted sum of the squares of the normals' distances times the sines of their angles
+        double second = 0;  ///< the same of the next eigenvector: how well other axes would do
+    };
+    [[nodiscard]] Axis solve() const {
+        const SymmetricEigen3 of_n(n_);
+        Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+        for (int k = 0; k < 3; ++k)
+            if (of_n.eigenvalues()[k] > 1e-6 * n_.trace())
+                inverse += of_n.eigenvectors().col(k) * of_n.eigenvectors().col(k).transpose() / of_n.eigenvalues()[k];
+        const SymmetricEigen3 solver(d_ - b_.transpose() * inverse * b_);
+        const Eigen::Vector3d a = solver.eigenvectors().col(0);
+        return {a.cross(-inverse * b_ * a), a, std::max(0.0, solver.eigenvalues()[0]), std::max(0.0, solver.eigenvalues()[1])};
+    }
+    /// Root mean square distance between the axis and the normals (times the sine of the angle between them).
+    [[nodiscard]] double off_axis() const { return weight_ > 0 ? std::sqrt(solve().error / weight_) : 0; }
+
+private:
+    double weight_ = 0;
+    Eigen::Matrix3d n_ = Eigen::Matrix3d::Zero(), b_ = Eigen::Matrix3d::Zero(), d_ = Eigen::Matrix3d::Zero();
+};
+
+}  // namespace ostraka

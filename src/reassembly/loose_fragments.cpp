@@ -1,0 +1,83 @@
+#include "loose_fragments.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/geom/eigen.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+using Eigen::Vector3d;
+
+LooseFragments::LooseFragments(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairEffort& effort,
+                               std::vector<std::string>& alone)
+    : options_(options),
+      effort_(effort),
+      prepared_(given.size()),
+      middle_(given.size(), Vector3d::Zero()),
+      radius_(given.size(), 0) {
+    Progress progress("prepare fragments", given.size());
+    parallel_for(
+        given.size(),
+        [&](std::size_t k) {
+            prepare(given[k], k, alone[k]);
+            progress.advance();
+        },
+        1);
+}
+
+std::size_t LooseFragments::taking_part() const {
+    return static_cast<std::size_t>(
+        std::count_if(prepared_.begin(), prepared_.end(), [](const auto& one) { return one != nullptr; }));
+}
+
+void LooseFragments::prepare(const Fragment& given, std::size_t k, std::string& alone) {
+    const Mesh& mesh = given.mesh;
+    if (mesh.number_of_faces() < static_cast<std::size_t>(options_.min_faces)) {
+        alone = "it has " + std::to_string(mesh.number_of_faces()) + " faces, too few to show how it broke";
+        return;
+    }
+    try {
+        prepared_[k] = std::make_unique<PreparedBreak>(given, effort_.prepared);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input) throw;
+        alone = "it " + error.problem();
+        return;
+    }
+    alone = what_hides_the_break(*prepared_[k]);
+    if (!alone.empty()) {
+        prepared_[k].reset();
+        return;
+    }
+    for (const Vertex v : mesh.vertices()) middle_[k] += eigen(mesh.point(v)) / static_cast<double>(mesh.number_of_vertices());
+    for (const Vertex v : mesh.vertices()) radius_[k] = std::max(radius_[k], (eigen(mesh.point(v)) - middle_[k]).norm());
+}
+
+/// Why a break cannot tell what it belongs to, before it is laid against any other; empty: it may.
+std::string LooseFragments::what_hides_the_break(const PreparedBreak& one) const {
+    constexpr std::size_t little = 30;  // coarse sherds of a thousand faces have breaks of about a hundred
+    if (one.fracture_faces() < little)
+        return "its break has " + std::to_string(one.fracture_faces()) + " faces, too few to show how it broke";
+    constexpr double smooth = 0.7;  // tolerances
+    if (!effort_.all && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
+        return "its break is so smooth that it fits too many of so many fragments";
+    return "";
+}
+
+double LooseFragments::tolerance(std::size_t a, std::size_t b) const {
+    return options_.pairs.last_search_radius * join_scale(*prepared_[a], *prepared_[b]);
+}
+
+bool LooseFragments::agree(const Motion& x, const Motion& y, std::size_t k, double length) const {
+    constexpr double angle = 0.2;  // radians
+    return (x(middle_[k]) - y(middle_[k])).norm() < length &&
+           Eigen::AngleAxisd(x.rotation.transpose() * y.rotation).angle() < angle;
+}
+
+double LooseFragments::loop_length(std::size_t i, std::size_t j, std::size_t k) const {
+    return 0.1 * std::min({prepared_[i]->size(), prepared_[j]->size(), prepared_[k]->size()});
+}
+
+}  // namespace ostraka

@@ -1,0 +1,47 @@
+// The fragments of a box, prepared, before anything is known of what belongs together.
+#pragma once
+
+#include "ostraka/reassembly/reassembly.h"
+#include "pair_choice.h"
+
+#include <memory>
+
+namespace ostraka {
+
+class LooseFragments {
+public:
+    /// `alone` is told why a fragment cannot show what it belongs to.
+    LooseFragments(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairEffort& effort,
+                   std::vector<std::string>& alone);
+
+    [[nodiscard]] std::size_t count() const { return prepared_.size(); }
+    /// Whether a fragment takes part.
+    [[nodiscard]] bool has(std::size_t k) const { return prepared_[k] != nullptr; }
+    [[nodiscard]] std::size_t taking_part() const;
+    [[nodiscard]] const PreparedBreak& operator[](std::size_t k) const { return *prepared_[k]; }
+    [[nodiscard]] const std::vector<std::unique_ptr<PreparedBreak>>& all() const { return prepared_; }
+    /// Mean of the vertices.
+    [[nodiscard]] const Eigen::Vector3d& middle(std::size_t k) const { return middle_[k]; }
+
+    /// Length within which two breaks are taken to touch.
+    [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const;
+    /// Whether two fragments may touch in these poses.
+    [[nodiscard]] bool near(std::size_t i, const Motion& of_i, std::size_t j, const Motion& of_j) const {
+        return (of_i(middle_[i]) - of_j(middle_[j])).norm() < radius_[i] + radius_[j];
+    }
+    /// Two poses of fragment `k` into the frame of another are the same for what a loop asks.
+    [[nodiscard]] bool agree(const Motion& x, const Motion& y, std::size_t k, double length) const;
+    [[nodiscard]] double loop_length(std::size_t i, std::size_t j, std::size_t k) const;
+
+private:
+    void prepare(const Fragment& given, std::size_t k, std::string& alone);
+    [[nodiscard]] std::string what_hides_the_break(const PreparedBreak& one) const;
+
+    const ReassemblyOptions& options_;
+    const PairEffort& effort_;
+    std::vector<std::unique_ptr<PreparedBreak>> prepared_;
+    std::vector<Eigen::Vector3d> middle_;
+    std::vector<double> radius_;  ///< about the middle
+};
+
+}  // namespace ostraka
