@@ -83,19 +83,23 @@ TEST(Facets, ASolidHasARoughEnd) {
 }
 
 TEST(Facets, WhatIsWholeHasNoBreak) {
-    for (const auto& soup : {test::octahedron_sphere(4), test::box(12), test::torus(48, 24), test::patch(30, 30)}) {
+    for (const auto& soup : {test::octahedron_sphere(4), test::torus(48, 24), test::patch(30, 30)}) {
         const Mesh mesh = build_mesh(soup);
         const Facets found = find_facets(mesh);
         EXPECT_EQ(found.area(Facet::fracture), 0);
         EXPECT_NEAR(found.area(Facet::outer), surface_area(mesh), 1e-9 * surface_area(mesh));
     }
+    // A cube may be sawn from something: that is not known.
+    EXPECT_NE(find_facets(build_mesh(test::box(12))).answer, Facets::Answer::broken);
 }
 
 TEST(Facets, AFormedFlatEndIsNoBreakForSure) {
     for (const double top : {0.5, 2.0}) {
         TriangleSoup ball = test::octahedron_sphere(5);
         for (auto& p : ball.points) p = {p[0], 1.2 * p[1], std::clamp(p[2], -0.4, top)};
-        EXPECT_NE(find_facets(build_mesh(ball)).answer, Facets::Answer::broken) << top;
+        const Facets found = find_facets(build_mesh(ball));
+        for (const FacetSegment& segment : found.segments)
+            EXPECT_TRUE(segment.facet != Facet::fracture || segment.confidence < 0.9) << top;
     }
 }
 
