@@ -20,7 +20,7 @@ void class_membership(const ClassMembershipOptions& options);
 /// How many members it takes: eight classes made by rule, whose members differ in proportions, taper and bend.
 struct ClassSizeOptions {
     std::string output = "experiments-output/class-size";
-    std::uint64_t vertices = 3000, seed = 1;
+    std::uint64_t vertices = 4000, seed = 1;  ///< fewer do not hold the handles
 };
 void class_size(const ClassSizeOptions& options);
 
