@@ -38,12 +38,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         // The last third at the last search radius.
         const double share = std::min(1.0, 1.5 * step / std::max(1, steps - 1));
         const double search_radius = search_radius_ * std::pow(last_search_radius_ / search_radius_, share);
-        Vector3d centre = Vector3d::Zero();
-        struct Plane {
-            Vector3d point, normal;
-            double off, weight;
-        };
-        std::vector<Plane> planes;
+        std::vector<PlanePoint> planes;
         double all = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * b_.fracture.places.size() / (2 * count);
@@ -58,7 +53,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
             planes.push_back({p, normal, off, (1 - share_off) * (1 - share_off)});
             all += planes.back().weight;
         }
-        std::vector<Plane> rims;
+        std::vector<PlanePoint> rims;
         double rim = 0;
         for_each_continued(pose, search_radius, [&](const Vector3d& p, const RimFrame& other, double squared) {
             const double weight = std::pow(1 - squared / (2.25 * search_radius * search_radius), 2);
@@ -68,35 +63,20 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         });
         if (planes.size() + rims.size() < 6) break;
         const double per_rim = rim > 0 ? edges_ * (all > 0 ? all : 1) / rim * 0.5 : 0;
-        for (Plane& plane : rims) {
+        for (PlanePoint& plane : rims) {
             plane.weight *= per_rim;
             planes.push_back(plane);
         }
         double total = 0;
-        for (const Plane& plane : planes) total += plane.weight;
+        for (const PlanePoint& plane : planes) total += plane.weight;
         const std::size_t held = hold > 0 ? std::min<std::size_t>(200, b_.intact.places.size()) : 0;
         for (std::size_t i = 0; i < held; ++i) {
             const std::size_t k = (2 * i + 1) * b_.intact.places.size() / (2 * held);
             const Vector3d p = pose(b_.intact.places[k]), normal = start.rotation * b_.intact.normals[k];
             planes.push_back({p, normal, normal.dot(start(b_.intact.places[k]) - p), hold * total / static_cast<double>(held)});
         }
-        total = 0;
-        for (const Plane& plane : planes) {
-            centre += plane.weight * plane.point;
-            total += plane.weight;
-        }
-        if (!(total > 0)) break;
-        centre /= total;
-        double unit = 0;
-        for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
-        unit = std::sqrt(unit);
-        if (!(unit > 0)) break;
-        PlaneMotion system(centre, unit);
-        for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
-        const PlaneMotion::Step move = system.solve(1e-3 / 6);
-        pose = system.motion(move).after(pose);
-        pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
-        if (share >= 1 && move.rotation.norm() < 1e-7 && move.translation.norm() < 1e-7 * unit) break;
+        const StepLength moved = step_onto_planes(planes, pose);
+        if (!moved || (share >= 1 && *moved < 1e-7)) break;
     }
     return pose;
 }

@@ -85,11 +85,7 @@ public:
         constexpr int steps = 6;
         for (int step = 0; step < steps; ++step) {
             const double radius = search_radius_ * std::pow(close / search_radius_, static_cast<double>(step) / (steps - 1));
-            struct Plane {
-                Vector3d point, normal;
-                double off, weight;
-            };
-            std::vector<Plane> planes;
+            std::vector<PlanePoint> planes;
             for (const std::size_t i : fractures_) {
                 const Vector3d p = pose(of_.fracture.places[i]);
                 const Index k = on_.grid->near(p);
@@ -113,18 +109,7 @@ public:
                 planes.push_back({p, other.side, other.side.dot(other.place - p), weight});
                 planes.push_back({p, other.fracture, other.fracture.dot(other.place - p), weight});
             }
-            if (planes.size() < 6) break;
-            Vector3d centre = Vector3d::Zero();
-            double total = 0, unit = 0;
-            for (const Plane& plane : planes) centre += plane.weight * plane.point, total += plane.weight;
-            if (!(total > 0)) break;
-            centre /= total;
-            for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
-            if (!(unit > 0)) break;
-            PlaneMotion system(centre, std::sqrt(unit));
-            for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
-            pose = system.motion(system.solve(1e-3 / 6)).after(pose);
-            pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
+            if (planes.size() < 6 || !step_onto_planes(planes, pose)) break;
         }
         double touching = 0;
         for (const std::size_t i : fractures_) {

@@ -108,13 +108,7 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
                     contact_points(loose_[j], loose_[i], pose.inverse(), wide * loose_.tolerance(i, j), samples);
             },
             1);
-        struct Plane {
-            Vector3d point, normal;
-            double off, weight;
-        };
-        std::vector<Plane> planes;
-        Vector3d centre = Vector3d::Zero();
-        double total = 0;
+        std::vector<PlanePoint> planes;
         for (std::size_t k = 0; k < close.size(); ++k) {
             const auto [i, j] = close[k];
             const Motion moved_b = join.after(poses_[j]);
@@ -128,20 +122,10 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
                     // Seen from the second, its plane moves onto the first's place.
                     if (back) point += off * normal, normal = -normal;
                     planes.push_back({point, normal, off, each * one.weight});
-                    centre += planes.back().weight * point;
-                    total += planes.back().weight;
                 }
             }
         }
-        if (planes.size() < 12) break;
-        centre /= total;
-        double unit = 0;
-        for (const Plane& plane : planes) unit += plane.weight / total * (plane.point - centre).squaredNorm();
-        if (!(unit > 0)) break;
-        PlaneMotion system(centre, std::sqrt(unit));
-        for (const Plane& plane : planes) system.add(plane.point, plane.normal, plane.off, plane.weight);
-        join = system.motion(system.solve(1e-3 / 6)).after(join);
-        join.rotation = Eigen::Quaterniond(join.rotation).normalized().toRotationMatrix();
+        if (planes.size() < 12 || !step_onto_planes(planes, join)) break;
     }
     return join;
 }

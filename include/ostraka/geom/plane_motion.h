@@ -4,7 +4,10 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/geom/rigid_fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace ostraka {
 
@@ -62,5 +65,34 @@ private:
     Eigen::Matrix<double, 7, 7> normal_;
     Row right_;
 };
+
+/// A point that is `off` below the plane with this unit normal.
+struct PlanePoint {
+    Eigen::Vector3d point, normal;
+    double off, weight;
+};
+
+/// How far one step moved: the larger of the angle (radians) and of the distance in the unit of the points' spread. Nothing where
+/// the points do not spread, or weigh nothing.
+using StepLength = std::optional<double>;
+
+/// A rigid pose after one more step, about the points' weighted centroid and in the unit of their spread, damped by a thousandth
+/// of the mean eigenvalue.
+inline StepLength step_onto_planes(const std::vector<PlanePoint>& points, Motion& pose) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    double total = 0, unit = 0;
+    for (const PlanePoint& one : points) centre += one.weight * one.point, total += one.weight;
+    if (!(total > 0)) return std::nullopt;
+    centre /= total;
+    for (const PlanePoint& one : points) unit += one.weight / total * (one.point - centre).squaredNorm();
+    unit = std::sqrt(unit);
+    if (!(unit > 0)) return std::nullopt;
+    PlaneMotion system(centre, unit);
+    for (const PlanePoint& one : points) system.add(one.point, one.normal, one.off, one.weight);
+    const PlaneMotion::Step move = system.solve(1e-3 / 6);
+    pose = system.motion(move).after(pose);
+    pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
+    return std::max(move.rotation.norm(), move.translation.norm() / unit);
+}
 
 }  // namespace ostraka
