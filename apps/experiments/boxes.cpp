@@ -72,20 +72,25 @@ std::vector<bool> facing(const Mesh& mesh, const std::vector<const SurfaceSearch
 
 }  // namespace
 
+std::vector<Path> fragment_files(const std::string& folder) {
+    std::vector<Path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
+        // The vessel's folder holds two clouds of other vessels too.
+        if ((ending == ".obj" || ending == ".ply") && stem.rfind("AL_", 0) != 0 && stem.rfind("CC_", 0) != 0)
+            files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
 Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetChoice facets) {
     Box box;
     box.name = source;
     if (std::filesystem::is_directory(source)) {
         box.name = Path(source).filename().string();
         box.scanned = true;
-        std::vector<Path> files;
-        for (const auto& entry : std::filesystem::directory_iterator(source)) {
-            const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
-            // The vessel's folder holds two clouds of other vessels too.
-            if ((ending == ".obj" || ending == ".ply") && stem.rfind("AL_", 0) != 0 && stem.rfind("CC_", 0) != 0)
-                files.push_back(entry.path());
-        }
-        std::sort(files.begin(), files.end());
+        const std::vector<Path> files = fragment_files(source);
         FragmentFileOptions reading;
         reading.facets =
             facets == FacetChoice::found ? FragmentFileOptions::FacetSource::automatic : FragmentFileOptions::FacetSource::none;

@@ -22,6 +22,9 @@ struct Box {
 
 enum class FacetChoice { known, found };
 
+/// Of a folder of fragments in their assembled layout, in order.
+std::vector<Path> fragment_files(const std::string& folder);
+
 /// `source`: "pot:SHAPE", "plate:SHAPE", "stone:SHAPE", "made:NAME" or a mesh file, broken into `pieces` with noise and wear that
 /// follow from `seed` (three levels each, wear up to 3 % of a piece's size); or a folder of fragments in assembled layout. Throws
 /// Error where it cannot be broken.

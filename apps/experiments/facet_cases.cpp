@@ -63,16 +63,10 @@ void as_cloud(FacetCase& sherd, Random& random) {
 
 /// What is left of a scan where its archive wants it small.
 void as_simplified(FacetCase& sherd, Random& random) {
-    SimplifyOptions how;
-    how.vertices = static_cast<std::uint64_t>(std::lround(400 * std::pow(10, random.uniform())));
-    if (how.vertices >= sherd.mesh.number_of_vertices()) return;
-    const SurfaceSearch skin(sherd.mesh);
-    Mesh small = sherd.mesh;
-    simplify(small, how);
-    std::vector<bool> broken;
-    for (const Face f : small.faces()) broken.push_back(sherd.broken[skin.closest(centroid(small, f)).face]);
-    sherd.mesh = std::move(small);
-    sherd.broken = std::move(broken);
+    const auto vertices = static_cast<std::uint64_t>(std::lround(400 * std::pow(10, random.uniform())));
+    Sherd small = simplified({std::move(sherd.mesh), std::move(sherd.broken)}, vertices);
+    sherd.mesh = std::move(small.mesh);
+    sherd.broken = std::move(small.broken);
 }
 
 /// Rough all over, grainy, smooth and arched as of flint or glass, or facetted as simulated on coarse cells.

@@ -1,4 +1,5 @@
 // Scanned fragments in assembled layout: what lies close to another one and faces it is broken.
+#include "boxes.h"
 #include "facet_cases.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
@@ -36,14 +37,7 @@ std::vector<bool> facing(const Mesh& mesh, const std::vector<const SurfaceSearch
 }  // namespace
 
 std::vector<FacetCase> scanned_cases(const std::string& folder) {
-    std::vector<Path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
-        // The vessel's folder holds two clouds of other vessels too.
-        if ((ending == ".obj" || ending == ".ply") && stem.rfind("AL_", 0) != 0 && stem.rfind("CC_", 0) != 0)
-            files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
+    const std::vector<Path> files = fragment_files(folder);
     FragmentFileOptions reading;
     reading.facets = FragmentFileOptions::FacetSource::none;
     const std::string name = Path(folder).filename().string();

@@ -225,8 +225,10 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     parts.noise = surface_noise(parts.side.intact);
     parts.edge = mean_edge_length(parts.mesh);
     const SurfaceSamples& intact = parts.side.intact;
+    const double each = 1 / static_cast<double>(std::max<std::size_t>(1, intact.places.size()));
+    for (const Vector3d& p : intact.places) parts.middle += each * p;
     for (std::size_t k = 0; k < intact.places.size(); ++k)
-        parts.lines.add(intact.places[k], intact.normals[k], 1 / static_cast<double>(intact.places.size()));
+        parts.lines.add(intact.places[k] - parts.middle, intact.normals[k], each);
     parts.off_axis = parts.lines.off_axis();
     parts.fracture = PointTree(points_of(parts.side.fracture.places));
     parts.frames = PointTree(places_of(parts.side.frames));
@@ -253,8 +255,9 @@ double PreparedBreak::relief() const { return parts_->relief; }
 std::size_t PreparedBreak::fracture_faces() const { return parts_->faces; }
 
 double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
+    constexpr double by_noise = 240;  // the tolerance, a fortieth, is six times the noise
     const double smaller = std::min(a.size(), b.size()), noise = std::hypot(a.parts().noise, b.parts().noise);
-    return std::min(smaller, std::max(std::min(6 * a.width(), 6 * b.width()), 240 * noise));
+    return std::min(smaller, std::max(std::min(6 * a.width(), 6 * b.width()), by_noise * noise));
 }
 
 namespace {

@@ -17,8 +17,9 @@ struct PreparedBreak::Parts {
     double relief = 0;      ///< root mean square deviation of the fracture from its quadric
     double noise = 0;       ///< of the intact surface, a length: see surface_noise
     double edge = 0;        ///< mean length of the mesh's edges
-    LineComplex lines;      ///< of the intact surface's normals
-    double off_axis = 0;    ///< root mean square distance of these from their best axis
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the intact surface
+    LineComplex lines;                                 ///< of its normals, about the middle
+    double off_axis = 0;                               ///< root mean square distance of these from their best axis
     BreakSide side;
     PointTree fracture, frames;
     std::vector<Eigen::Vector3d> places, normals;  ///< fracture first, then intact surface

@@ -121,7 +121,9 @@ double surface_noise(const SurfaceSamples& intact) {
 }
 
 double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts& b, const Motion& pose) {
-    LineComplex together = b.lines.moved(pose);
+    Motion about_middles = pose;
+    about_middles.translation = pose(b.middle) - a.middle;
+    LineComplex together = b.lines.moved(about_middles);
     together.add(a.lines);
     const double both = together.off_axis(), alone = (a.off_axis * a.off_axis + b.off_axis * b.off_axis) / 2;
     return std::sqrt(std::max(0.0, both * both - alone));

@@ -22,7 +22,11 @@ public:
           groups_(loose_, graph_, options) {}
 
     Reassembly run() {
-        report();
+        groups_.merge(effort_.all);
+        result_.undone = groups_.undone();
+        place_groups();
+        for (std::size_t k = 0; k < result_.alone.size(); ++k)
+            if (result_.group[k] < 0 && result_.alone[k].empty()) result_.alone[k] = why_alone(k);
         return std::move(result_);
     }
 
@@ -35,9 +39,7 @@ private:
         return result;
     }
 
-    void report() {
-        groups_.merge(effort_.all);
-        result_.undone = groups_.undone();
+    void place_groups() {
         const auto list = groups_.groups();
         for (std::size_t g = 0; g < list.size(); ++g) {
             groups_.refine(list[g], 6);
@@ -52,8 +54,6 @@ private:
             result_.poses[root] = Motion();
             joins_of(list[g]);
         }
-        for (std::size_t k = 0; k < result_.alone.size(); ++k)
-            if (result_.group[k] < 0 && result_.alone[k].empty()) result_.alone[k] = why_alone(k);
     }
 
     void joins_of(const std::vector<std::size_t>& group) {

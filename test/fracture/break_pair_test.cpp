@@ -121,6 +121,19 @@ TEST(BreakPair, WhichIsNamedFirstDoesNotMatter) {
     }
 }
 
+TEST(JoinEvidence, TheCommonAxisIsSeenFarFromTheOriginToo) {
+    Motion far;
+    far.translation = {1e6, -2e6, 1e6};
+    const auto axis_of = [](const Motion& where) {
+        const PreparedBreak a(fragment_of(synthetic_sherd(1, 2, 0, 1), "a", where), quick()),
+            b(fragment_of(synthetic_sherd(2, 3, 1, 2), "b", where), quick());
+        return measure_join(a, b, {}, 0.01 * join_scale(a, b));
+    };
+    const JoinEvidence near = axis_of({}), there = axis_of(far);
+    EXPECT_NEAR(near.own_axis, there.own_axis, 1e-5);
+    EXPECT_NEAR(near.axis, there.axis, 1e-3);
+}
+
 TEST(BreakPair, ThreadsDoNotMatter) {
     const Fragment a = fragment_of(synthetic_bar(), "a"), b = fragment_of(synthetic_bar(1, true), "b", random_motion(4, 5));
     PairOptions options = quick();

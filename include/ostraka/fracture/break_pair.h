@@ -57,7 +57,8 @@ private:
 };
 
 /// What two breaks are compared in units of: the size of the smaller fragment, or six times the width of the narrower break if
-/// that is less, so that a thin wall is not as thick as what counts as contact.
+/// that is less, so that a thin wall is not as thick as what counts as contact; but no less than 240 times the noise of the two
+/// intact surfaces, so that noisy or coarse ones may touch at all.
 double join_scale(const PreparedBreak& a, const PreparedBreak& b);
 
 /// A way to lay the second fragment onto the first.

@@ -10,7 +10,8 @@
 namespace ostraka {
 
 /// Normal equations of the linear line complex of normals (Pottmann and Wallner, Computational Line Geometry, 2001): every normal
-/// of a surface of revolution meets its axis, n . m + (p x n) . a = 0 for the axis with direction a and moment m.
+/// of a surface of revolution meets its axis, n . m + (p x n) . a = 0 for the axis with direction a and moment m. Places should
+/// lie about the origin: what is lost grows with the square of their distance from it.
 class LineComplex {
 public:
     /// A place with its unit normal.
@@ -21,11 +22,11 @@ public:
         b_ += weight * normal * q.transpose();
         d_ += weight * q * q.transpose();
     }
-    void add(const LineComplex& other, double weight = 1) {
-        weight_ += weight * other.weight_;
-        n_ += weight * other.n_;
-        b_ += weight * other.b_;
-        d_ += weight * other.d_;
+    void add(const LineComplex& other) {
+        weight_ += other.weight_;
+        n_ += other.n_;
+        b_ += other.b_;
+        d_ += other.d_;
     }
     /// Of the places after a rigid motion.
     [[nodiscard]] LineComplex moved(const Motion& motion) const {
@@ -40,13 +41,11 @@ public:
         result.d_ = r * d_ * r.transpose() + t * b + (t * b).transpose() + t * n * t.transpose();
         return result;
     }
-    [[nodiscard]] double weight() const { return weight_; }
 
     /// The axis of least error with |a| = 1, its pitch dropped.
     struct Axis {
         Eigen::Vector3d place, direction;
-        double error = 0;   ///< weighted sum of the squares of the normals' distances times the sines of their angles
-        double second = 0;  ///< the same of the next eigenvector: how well other axes would do
+        double error = 0;  ///< weighted sum of the squares of the normals' distances times the sines of their angles
     };
     [[nodiscard]] Axis solve() const {
         const SymmetricEigen3 of_n(n_);
@@ -56,7 +55,7 @@ public:
                 inverse += of_n.eigenvectors().col(k) * of_n.eigenvectors().col(k).transpose() / of_n.eigenvalues()[k];
         const SymmetricEigen3 solver(d_ - b_.transpose() * inverse * b_);
         const Eigen::Vector3d a = solver.eigenvectors().col(0);
-        return {a.cross(-inverse * b_ * a), a, std::max(0.0, solver.eigenvalues()[0]), std::max(0.0, solver.eigenvalues()[1])};
+        return {a.cross(-inverse * b_ * a), a, std::max(0.0, solver.eigenvalues()[0])};
     }
     /// Root mean square distance between the axis and the normals (times the sine of the angle between them).
     [[nodiscard]] double off_axis() const { return weight_ > 0 ? std::sqrt(solve().error / weight_) : 0; }
