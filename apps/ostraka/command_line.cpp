@@ -70,7 +70,7 @@ FlagValue value_of_flag(const Call& call, const std::string& name) {
 
 /// The words behind the operation's name as the parser takes them: each flag is one of the operation's, and has its value. A
 /// word that is a flag of the operation is a value only behind "=", and what begins with a dash an argument only behind "--".
-std::vector<std::string> checked_words(const Call& call, const std::vector<std::string>& words) {
+std::vector<std::string> checked_words(Call& call, const std::vector<std::string>& words) {
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
         throw Error(ErrorKind::usage, call.entry().name, what, remedy);
     };
@@ -78,6 +78,12 @@ std::vector<std::string> checked_words(const Call& call, const std::vector<std::
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
         if (word == "--") {
+            // An option that takes words without a flag, such as another program's command line, gets them as they are.
+            for (Option& option : call.parameters().options)
+                if (option.is_positional && option.takes_words && i + 1 < words.size()) {
+                    option.set(std::vector(words.begin() + static_cast<long>(i) + 1, words.end()));
+                    return checked;
+                }
             for (std::size_t k = i + 1; k < words.size(); ++k)
                 arguments.push_back(begins_a_flag(words[k]) ? "./" + words[k] : words[k]);
             break;

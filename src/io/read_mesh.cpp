@@ -1,6 +1,7 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/io/mesh_of_polygons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,27 +113,26 @@ PolygonSoup read_polygons(const Path& file) {
     return soup;
 }
 
-MeshFile read_mesh(const Path& file) {
+MeshFile read_mesh(const Path& file) { return mesh_of_polygons(read_polygons(file), file.string()); }
+
+MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
     MeshFile result;
-    PolygonSoup polygons = read_polygons(file);
     if (polygons.polygon_count() == 0)
-        fail_input(file.string(), "has no faces (" + std::to_string(polygons.points.size()) + " vertices)",
-                   "use a file with a surface");
+        fail_input(name, "has no faces (" + std::to_string(polygons.points.size()) + " vertices)", "use a file with a surface");
     TriangulatedSoup triangles = triangulate(std::move(polygons));
     if (triangles.soup.triangles.empty())
-        fail_input(file.string(), "has no face with three distinct corners", "use a file with a surface");
+        fail_input(name, "has no face with three distinct corners", "use a file with a surface");
     const ManifoldDefects defects = try_build_mesh(triangles.soup, result.mesh);
     if (defects.any())
-        fail_input(file.string(), "is not an oriented manifold: " + io::defects_in_words(defects),
-                   "run: ostraka mesh repair " + file.string());
+        fail_input(name, "is not an oriented manifold: " + io::defects_in_words(defects), "run: ostraka mesh repair " + name);
     const CGAL::Bbox_3 box = bounding_box(result.mesh);
     if (!(box.x_span() > 0 || box.y_span() > 0 || box.z_span() > 0))
-        fail_input(file.string(), "has no size: all its faces are at one place", "use a file with a surface");
+        fail_input(name, "has no size: all its faces are at one place", "use a file with a surface");
     double largest = 0;
     for (const auto& point : triangles.soup.points)
         for (const double x : point) largest = std::max(largest, std::abs(x));
     if (largest > largest_coordinate || box_diagonal(result.mesh) < 1e-60)
-        fail_input(file.string(), "has coordinates beyond what can be computed with (1e-60 to 1e60)", "choose another unit");
+        fail_input(name, "has coordinates beyond what can be computed with (1e-60 to 1e60)", "choose another unit");
     result.extras = std::move(triangles.extras);
     result.triangle_polygon = std::move(triangles.triangle_polygon);
     result.notes = std::move(triangles.notes);

@@ -14,6 +14,7 @@ struct Context::CallState {
     std::vector<ReadRecord::Entry> read = {};                                   ///< files, in the order of reading
     std::map<std::pair<const Slot*, std::size_t>, std::string> checksums = {};  ///< of objects in memory
     std::map<std::tuple<const Slot*, std::size_t, std::type_index, std::string>, std::shared_ptr<const void>> loaded = {};
+    std::vector<ReadRecord::Entry>* within = nullptr;             ///< what the load reads under which another one is under way
     std::vector<std::pair<std::string, std::string>> noted = {};  ///< so that each note of a file comes once
     std::vector<std::pair<std::string, std::string>> named = {};  ///< name and checksum of inputs that are read elsewhere
 

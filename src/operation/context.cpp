@@ -2,32 +2,50 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 
 namespace ostraka {
 
+struct Object::Made {
+    std::mutex mutex;
+    std::map<std::string, Checksums> of;  ///< by name
+};
+
+std::shared_ptr<Object::Made> Object::make_made() { return std::make_shared<Made>(); }
+
+const Object::Checksums& Object::checksums() const {
+    const std::lock_guard lock(made_->mutex);
+    const auto [place, is_new] = made_->of.try_emplace(name);
+    Checksums& sums = place->second;
+    if (!is_new) return sums;
+    sums.sha256 = sha256;
+    if (sums.sha256.empty() && write) {
+        static std::atomic<std::size_t> count{0};
+        const Path file = "memory:.checksum/" + std::to_string(++count) + "/" + Path(name).filename().string();
+        OutputTransaction own;
+        write(file);
+        own.commit();
+        sums.sha256 = sha256_of_file(file);
+        for (const std::string& one : files_in(file.parent_path()))  // such as the header of coordinates
+            if (one != file.filename()) sums.beside.emplace_back(one, sha256_of_file(file.parent_path() / one));
+        forget_memory(file.parent_path());
+    } else if (const auto bytes = as<std::string>(); sums.sha256.empty() && bytes) {
+        sums.sha256 = ostraka::sha256(*bytes);
+    } else if (const auto document = as<Json>(); sums.sha256.empty() && document) {
+        sums.sha256 = ostraka::sha256(to_text(*document));
+    }
+    return sums;
+}
+
 const std::string& Context::CallState::know(const Slot& slot, std::size_t i) {
-    const Object& object = slot.sources[i].object;
     std::string& sum = checksums[{&slot, i}];
     if (!sum.empty()) return sum;
-    sum = object.sha256;
-    if (sum.empty() && object.write) {
-        static std::atomic<std::size_t> count{0};
-        const Path file = "memory:.checksum/" + std::to_string(++count) + "/" + Path(object.name).filename().string();
-        OutputTransaction own;
-        object.write(file);
-        own.commit();
-        sum = sha256_of_file(file);
-        for (const std::string& beside : files_in(file.parent_path()))  // such as the header of coordinates
-            if (beside != file.filename()) named.emplace_back(beside, sha256_of_file(file.parent_path() / beside));
-        forget_memory(file.parent_path());
-    } else if (const auto bytes = object.as<std::string>(); sum.empty() && bytes) {
-        sum = sha256(*bytes);
-    } else if (const auto document = object.as<Json>(); sum.empty() && document) {
-        sum = sha256(to_text(*document));
-    }
-    return sum;
+    const Object::Checksums& made = slot.sources[i].object.checksums();
+    named.insert(named.end(), made.beside.begin(), made.beside.end());
+    return sum = made.sha256;
 }
 
 void Context::CallState::add(const std::vector<ReadRecord::Entry>& files) {
@@ -59,10 +77,43 @@ struct Context::Kept {
         std::vector<File> files;
         std::shared_ptr<const void> data;
     };
-    std::map<std::tuple<std::string, std::type_index, std::string>, Entry> objects;
+    using Name = std::tuple<std::string, std::type_index, std::string>;
+    std::map<Name, Entry> objects;
+    std::set<Name> reading;  ///< by a context that shares them
+    std::mutex mutex;
+    std::condition_variable read;
+
+    /// What is kept under this name and unchanged, once nobody reads it; else it is this context that reads it.
+    std::optional<Entry> find_or_begin(const Name& name) {
+        std::unique_lock lock(mutex);
+        read.wait(lock, [&] { return !reading.contains(name); });
+        if (const auto known = objects.find(name); known != objects.end()) {
+            const auto& files = known->second.files;
+            if (std::all_of(files.begin(), files.end(), [](const File& file) { return file.unchanged(); })) return known->second;
+            objects.erase(known);
+        }
+        reading.insert(name);
+        return {};
+    }
+    void end(const Name& name, std::optional<Entry> entry) {
+        const std::lock_guard lock(mutex);
+        reading.erase(name);
+        if (entry) objects.insert_or_assign(name, std::move(*entry));
+        read.notify_all();
+    }
 };
 
-Context::Context() : kept_(std::make_unique<Kept>()) {}
+Context::Context() : kept_(std::make_shared<Kept>()) {}
+
+void Context::share_objects(Context& other) {
+    keep_objects = other.keep_objects = true;
+    kept_ = other.kept_;
+}
+
+void Context::forget(const Path& file) {
+    const std::lock_guard lock(kept_->mutex);
+    std::erase_if(kept_->objects, [&](const auto& one) { return std::get<0>(one.first) == file.string(); });
+}
 
 Context::~Context() {
     for (const Path& file : memory_) forget_memory(file);
@@ -115,32 +166,45 @@ std::shared_ptr<const void> Context::load(const Slot& slot, std::size_t i, std::
     const bool shared = keep_objects && !source.object;
     const auto name = std::tuple(source.file.string(), type, key);
     if (shared)
-        if (const auto known = kept_->objects.find(name); known != kept_->objects.end()) {
-            const auto& files = known->second.files;
-            if (std::all_of(files.begin(), files.end(), [](const Kept::File& file) { return file.unchanged(); })) {
-                for (const auto& file : files) run_->add({file.entry});
-                return run_->loaded[place] = known->second.data;
+        if (const auto known = kept_->find_or_begin(name)) {
+            for (const auto& file : known->files) {
+                run_->add({file.entry});
+                if (run_->within != nullptr) run_->within->push_back(file.entry);
             }
-            kept_->objects.erase(known);
+            return run_->loaded[place] = known->data;
         }
+    std::optional<Kept::Entry> entry;
+    struct End {  // whatever becomes of the reading
+        Kept* kept;
+        const Kept::Name& name;
+        std::optional<Kept::Entry>& entry;
+        ~End() {
+            if (kept != nullptr) kept->end(name, std::move(entry));
+        }
+    } const end{shared ? kept_.get() : nullptr, name, entry};
     std::vector<ReadRecord::Entry> files;
     std::shared_ptr<const void> data;
     {
         const ReadRecord record;
+        struct Within {
+            CallState& run;
+            std::vector<ReadRecord::Entry>* outer;
+            ~Within() { run.within = outer; }
+        } const within{*run_, std::exchange(run_->within, &files)};
         data = read(source.file);
-        files = record.files;
+        files.insert(files.end(), record.files.begin(), record.files.end());
     }
     run_->add(files);
+    if (run_->within != nullptr) run_->within->insert(run_->within->end(), files.begin(), files.end());
     if (shared) {
-        Kept::Entry entry{{}, data};
+        entry.emplace(Kept::Entry{{}, data});
         for (const auto& file : files) {
             std::error_code code;
-            if (is_memory(file.file)) entry.files.push_back({file, 0, {}});
+            if (is_memory(file.file)) entry->files.push_back({file, 0, {}});
             else
-                entry.files.push_back(
+                entry->files.push_back(
                     {file, std::filesystem::file_size(file.file, code), std::filesystem::last_write_time(file.file, code)});
         }
-        kept_->objects[name] = std::move(entry);
     }
     return run_->loaded[place] = data;
 }

@@ -1,6 +1,8 @@
 #include "polygons.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/io/mesh_of_polygons.h"
+#include "ostraka/operation/object_files.h"
 #include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"
 
@@ -8,21 +10,12 @@ namespace ostraka {
 
 namespace {
 
-MeshFile mesh_of(PolygonSoup soup) {
-    TriangulatedSoup triangles = triangulate(std::move(soup));
-    return {build_mesh(triangles.soup), std::move(triangles.extras), std::move(triangles.triangle_polygon),
-            std::move(triangles.notes)};
-}
-
 /// Of an object in memory that another operation made, or that is bytes or a folder.
 Path in_memory(Context& context, const Object& object, const std::string& slot) {
     if (const auto folder = object.as<Path>()) return *folder;
     const Path path = context.memory(object.name.empty() ? slot : Path(object.name).filename().string());
     OutputTransaction own;  // it is read before the outputs of the call are complete
-    if (object.write) object.write(path);
-    else if (const auto bytes = object.as<std::string>()) write_file(path, *bytes);
-    else if (const auto document = object.as<Json>()) write_json(path, *document);
-    else throw Error(ErrorKind::usage, slot, "is given as an object that cannot be read as a file", "give a file, or its bytes");
+    write_object(object, path, slot);
     own.commit();
     return path;
 }
@@ -84,6 +77,7 @@ std::vector<std::string> endings_of(Kind kind) {
         {Kind::vocabulary, {".vocabulary.json", ".ttl", ".rdf"}},
         {Kind::shape_class, {".class.json"}},
         {Kind::assembly, {".assembly.json"}},
+        {Kind::study, {".study.json"}},
         {Kind::coordinates, {".npy"}},
     };
     const auto known = endings.find(kind);
@@ -94,7 +88,7 @@ std::string to_string(Kind kind) {
     static constexpr const char* names[]{"mesh",       "annotations", "graph",     "cage",     "coordinates", "values",
                                          "labels",     "index map",   "edit",      "recipe",   "rules",       "template",
                                          "vocabulary", "class",       "landmarks", "assembly", "pose",        "collection",
-                                         "picture",    "table",       "report",    "text",     "folder"};
+                                         "study",      "picture",     "table",     "report",   "text",        "folder"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -102,17 +96,32 @@ Slot::~Slot() = default;
 
 bool Slot::exists(std::size_t i) const { return i < size() && (sources[i].object || file_exists(sources[i].file)); }
 
+void write_object(const Object& object, const Path& file, const std::string& slot) {
+    if (object.write) return object.write(file);
+    if (const auto bytes = object.as<std::string>()) return write_file(file, *bytes);
+    if (const auto document = object.as<Json>()) return write_json(file, *document);
+    const auto folder = object.as<Path>();
+    if (!folder)
+        throw Error(ErrorKind::usage, slot, "is given as an object that cannot be read as a file", "give a file, or its bytes");
+    make_folder(file);
+    for (const std::string& name : files_in(*folder)) write_file(file / name, read_file(*folder / name));
+}
+
 const MeshFile& MeshInput::get(std::size_t i) const {
     const auto convert = [&](const Object& object) -> std::optional<MeshFile> {
         const auto mesh = object.as<Mesh>();
         const auto soup = object.as<PolygonSoup>();
         if (!mesh && !soup) return {};
-        MeshFile file = mesh ? MeshFile{*mesh, {}, {}, {}} : in_file(object.name, [&] { return mesh_of(*soup); });
+        MeshFile file = mesh ? MeshFile{*mesh, {}, {}, {}} : mesh_of_polygons(*soup, object.name);
         context->record_object(*this, i, mesh_checksum(file.mesh));
         return file;
     };
+    // Where objects are kept, the file is read once for those who want its polygons and those who want the mesh.
+    const auto read = [&](const Path& path) {
+        return context->keep_objects && !sources.at(i).object ? mesh_of_polygons(polygons(i), path.string()) : read_mesh(path);
+    };
     const auto& file = loaded<MeshFile>(
-        *this, i, "", read_mesh, [](const MeshFile& one) { return mesh_checksum(one.mesh); }, convert);
+        *this, i, "", read, [](const MeshFile& one) { return mesh_checksum(one.mesh); }, convert);
     context->notes(size() > 1 || role != Role::input ? sources[i].name() : std::string(), file.notes);
     return file;
 }

@@ -220,7 +220,7 @@ void refuse_mesh(const Slot& slot, const Path& file) {
 }
 }  // namespace
 
-void Call::check_given() const {
+void Call::check_given(const std::function<bool(const Path&)>& comes) const {
     for (const Option& option : parameters_.options)
         if (option.needed && !option.given)
             throw Error(ErrorKind::usage, entry_->name, "option " + option.name + " is missing", "give " + option.help);
@@ -250,11 +250,11 @@ void Call::check_given() const {
     for (const Slot* slot : parameters_.slots())
         for (const Source& source : slot->sources)
             if (slot->role == Role::input && !source.file.empty() && slot->kind != Kind::collection && !is_folder(source.file) &&
-                (!slot->may_be_new || file_exists(source.file)))
+                (!slot->may_be_new || file_exists(source.file)) && (!comes || file_exists(source.file) || !comes(source.file)))
                 check_readable(source.file);
 }
 
-Report Call::run(Context& context, const std::function<void(const Report&)>& before_commit) {
+void Call::complete() {
     for (Slot* slot : parameters_.slots()) {
         if (slot->updated != nullptr && slot->sources.empty()) {
             const bool given = static_cast<bool>(*slot->updated);
@@ -262,10 +262,18 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
             else if (slot->updated->needed) slot->sources.emplace_back();
         }
         if (slot->role == Role::output && slot->needed && slot->sources.empty()) slot->sources.emplace_back();
-        slot->context = &context;
     }
+}
+
+void Call::check(const std::function<bool(const Path&)>& comes) {
+    complete();
     in_operation(entry_->name, [&] { parameters_.options.check(""); });
-    check_given();
+    check_given(comes);
+}
+
+Report Call::run(Context& context, const std::function<void(const Report&)>& before_commit) {
+    check();
+    for (Slot* slot : parameters_.slots()) slot->context = &context;
     Report report({entry_->name, {}, {}}, parameters_.report);
     report.on_note = context.on_note;
     Context::CallState run{entry_->name, &parameters_, &report};
@@ -280,6 +288,7 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     OutputTransaction outputs;
     operation_->run(context, report);
     report.set_provenance(context.provenance());
+    context.read_ = run.read;
     check_cancelled();
     if (before_commit) before_commit(report);
     std::vector<Path> inputs;
@@ -291,6 +300,16 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     outputs.commit();
     for (Slot* slot : parameters_.slots()) slot->finish();
     return report;
+}
+
+std::string Call::usual_ending(const std::string& output) const {
+    const Slot* found = parameters_.slot(output);
+    if (found == nullptr) no_such_name(output);
+    if (dynamic_cast<const FolderOutput*>(found) != nullptr) return {};
+    if (const auto* file = dynamic_cast<const FileOutput*>(found); file != nullptr && !file->extension_.empty())
+        return file->extension_;
+    if (const auto endings = endings_of(found->kind); !endings.empty()) return endings.front();
+    return dynamic_cast<const ValuesOutput*>(found) != nullptr ? ".npy" : ".json";
 }
 
 const Object& Call::object(const std::string& name, std::size_t i) const {

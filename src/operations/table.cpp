@@ -23,7 +23,7 @@ std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check()
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
     make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
 std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(),
-    make_operations();
+    make_run(), make_replay(), make_conformance_run(), make_conformance_self(), make_operations();
 
 namespace {
 constexpr OperationEntry entries[]{
@@ -93,6 +93,10 @@ constexpr OperationEntry entries[]{
     {"pair", "lay two fragments together by the break they share; exit code 3 if it cannot be told how", make_pair},
     {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble},
     {"render", "make a picture of meshes, their annotations and maps", make_render},
+    {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run},
+    {"replay", "repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs", make_replay},
+    {"conformance run", "give the golden cases to another program, and say where it agrees (exit code 3: somewhere it does not)", make_conformance_run},
+    {"conformance self", "the golden cases by this command; exit code 3 if one differs", make_conformance_self},
     {"operations", "what the toolkit can do: every operation with its inputs, outputs, options, ranges, defaults and units", make_operations},
 };
 // clang-format on
@@ -105,6 +109,7 @@ const OperationGroup groups[]{
     {"template", "the files of a template, as one"},
     {"cage", "cages around meshes, and coordinates in them"},
     {"study", "questions to a whole collection of objects"},
+    {"conformance", "whether other programs do what this one does"},
     {"study make", "collections whose answers are known, to try a study on"},
 };
 }  // namespace

@@ -239,7 +239,7 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
 
 TEST_F(EveryOperation, RunsHereOrHasATestOfItsOwn) {
     // What asks for data that takes long to make is run by the tests of its module.
-    std::set<std::string> run{"study landmarks", "template turn", "pair", "assemble"};
+    std::set<std::string> run{"study landmarks", "template turn", "pair", "assemble", "run", "replay"};
     for (const Step& step : steps()) run.insert(step.operation);
     for (const OperationEntry& entry : operations()) EXPECT_TRUE(run.count(entry.name) == 1) << entry.name;
 }

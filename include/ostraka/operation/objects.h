@@ -42,6 +42,7 @@ enum class Kind {
     assembly,
     pose,
     collection,  ///< a folder of objects, or a list of them
+    study,       ///< steps to run
     picture,
     table,
     report,
@@ -76,7 +77,19 @@ public:
     /// Writes it as a file of this name; what was made in memory has it.
     std::function<void(const Path&)> write;
 
+    /// SHA-256 of the file of that name, or of what it would be; empty where nothing says it. `beside`: name and checksum of
+    /// files that belong to it, such as the header of coordinates.
+    struct Checksums {
+        std::string sha256;
+        std::vector<std::pair<std::string, std::string>> beside;
+    };
+    /// Made once for all copies of one name.
+    [[nodiscard]] const Checksums& checksums() const;
+
 private:
+    struct Made;
+    std::shared_ptr<Made> made_ = make_made();
+    static std::shared_ptr<Made> make_made();
     std::shared_ptr<const void> data_;
     std::type_index type_ = typeid(void);
 };

@@ -73,6 +73,7 @@ struct OperationEntry {
     const char* name;  ///< e.g. "annotation transfer"
     const char* help;
     std::unique_ptr<Operation> (*make)();
+    int version = 1;  ///< raised when the same inputs give other results: what was done before is done again
 };
 
 /// What operations share within one process: objects that were read, files that are held in memory.
@@ -89,6 +90,13 @@ public:
     std::function<void(const std::string&)> on_note;
     /// Whether objects read from files are kept for later operations. Files that have changed since (other bytes) are read again.
     bool keep_objects = false;
+    /// From here on both keep objects, and share them: a file is read once, whichever of them needs it. Each is used by a thread
+    /// of its own.
+    void share_objects(Context& other);
+    /// What was made of this file is no longer kept.
+    void forget(const Path& file);
+    /// Files that the last call read, with their checksums.
+    [[nodiscard]] const std::vector<ReadRecord::Entry>& files_read() const { return read_; }
 
     // ---- for operations ----
 
@@ -122,8 +130,9 @@ private:
     struct CallState;
     CallState* run_ = nullptr;
     struct Kept;
-    std::unique_ptr<Kept> kept_;
+    std::shared_ptr<Kept> kept_;
     std::vector<Path> memory_;
+    std::vector<ReadRecord::Entry> read_;
 };
 
 /// An operation with what it is to be run on.
@@ -153,12 +162,17 @@ public:
     /// The output is made, and stays in memory; `called`: what others call it that name it, as a file's name.
     void want(const std::string& output, const std::string& called = {});
 
+    /// Checks all that `run` checks before it reads. `comes`: says of a file that is not there whether it will be.
+    void check(const std::function<bool(const Path&)>& comes = {});
     /// Checks all that was given, reads, works, and writes the files all together or not at all. May be called once. Outputs that
     /// are needed and have no file stay in memory. `before_commit` sees the report before files take their names: what it throws
     /// leaves nothing behind.
     Report run(Context& context, const std::function<void(const Report&)>& before_commit = {});
     /// What an output holds that stayed in memory; the i-th of several.
     [[nodiscard]] const Object& object(const std::string& output, std::size_t i = 0) const;
+
+    /// How the name of an output's file ends, where nobody says otherwise: ".ply"; empty: a folder.
+    [[nodiscard]] std::string usual_ending(const std::string& output) const;
 
     /// The JSON schema (draft 4) of what `set` takes, with a description of each; and that of the report's result.
     [[nodiscard]] JsonValue schema(JsonAllocator& allocator) const;
@@ -169,7 +183,8 @@ public:
     [[noreturn]] void no_such_name(const std::string& name, const std::vector<std::string>& flags = {}) const;
 
 private:
-    void check_given() const;
+    void complete();
+    void check_given(const std::function<bool(const Path&)>& comes) const;
 
     const OperationEntry* entry_;
     std::unique_ptr<Operation> operation_;

@@ -1,0 +1,81 @@
+// What a study comes to: one instance of each step for each value of the parameters that it varies with.
+#pragma once
+
+#include "ostraka/workflow/study_file.h"
+
+#include <limits>
+#include <set>
+
+namespace ostraka {
+
+inline constexpr std::size_t no_instance = std::numeric_limits<std::size_t>::max();
+
+/// An input of an instance: a file, or an output of another instance.
+struct StudyInput {
+    std::string slot;
+    std::string label;                   ///< NAME of NAME=FILE
+    Path file;                           ///< empty: an output
+    std::size_t instance = no_instance;  ///< whose output it is
+    std::string output;
+};
+
+struct StudyInstance {
+    std::size_t step = 0;
+    std::vector<std::size_t> values;  ///< of each parameter the index of its value, `no_instance` where the step does not vary
+    std::string label;                ///< "vertices=5000,seed=1"; empty where the step has one instance
+    Path folder;                      ///< in the run folder: steps/NAME or steps/NAME/LABEL
+    std::shared_ptr<const Json> options;
+    std::vector<StudyInput> inputs;
+    std::map<std::string, std::string> outputs;  ///< those that are wanted, and the names of their files
+    std::set<std::string> kept;                  ///< those of them that are written
+    std::vector<std::string> program;            ///< words; those of inputs and of the folder are filled in when it runs
+    std::vector<std::size_t> needs;              ///< instances
+
+    /// "transfer (vertices=5000)".
+    [[nodiscard]] std::string title(const Study& study) const;
+};
+
+class StudyPlan {
+public:
+    /// Checks every instance against the declaration of its operation: names, types, ranges, kinds of inputs, files that must be
+    /// there. Throws Error (input) with the file, the place in it and a remedy, before anything runs.
+    explicit StudyPlan(Study study);
+
+    /// The call of an instance; `object` gives the object, or the file, that an output of another one is.
+    using Fill = std::function<Source(const StudyInput&)>;
+    [[nodiscard]] Call call(const StudyInstance& instance, const Fill& fill) const;
+
+    /// The words of a program: `file` gives the file of an output of another instance; `folder` is the instance's own.
+    using FileOf = std::function<Path(const StudyInput&)>;
+    [[nodiscard]] std::vector<std::string> words(const StudyInstance& instance, const FileOf& file, const Path& folder) const;
+
+    /// The value of "name.member" in an instance; null where it does not vary with that parameter.
+    [[nodiscard]] const JsonValue* value(const StudyInstance& instance, const StudyReference& reference) const;
+
+    /// Instances of a step, in the order of their parameters.
+    [[nodiscard]] std::vector<std::size_t> instances_of(std::size_t step) const;
+
+    Study study;
+    std::vector<StudyInstance> instances;  ///< each behind those that it needs
+
+private:
+    void add_step(std::size_t step);
+    StudyInstance make_instance(std::size_t step, const std::vector<std::size_t>& values);
+    std::string filled(const StudyText& text, const StudyInstance& instance) const;
+    void set_value(StudyInstance& instance, const StudySetting& setting, const JsonValue& value, const std::string& place,
+                   const Call& call, JsonValue& options, JsonAllocator& allocator);
+    void add_output(StudyInstance& instance, const StudySetting& setting, const StudyReference& reference,
+                    const std::string& place, const std::string& label);
+    void want(std::size_t instance, const std::string& output, bool keep);
+    [[nodiscard]] std::size_t instance_of(std::size_t step, const StudyInstance& of) const;
+    void make_outputs(StudyInstance& instance);
+    void check(const StudyInstance& instance) const;
+    void check_outputs() const;
+
+    std::vector<std::map<std::vector<std::size_t>, std::size_t>> index_;  ///< of each step: values, instance
+};
+
+/// Whether what is of one kind can be given where the other is asked for.
+bool fits(Kind given, Kind asked);
+
+}  // namespace ostraka

@@ -1,0 +1,43 @@
+// Runs the instances of a study: what has not changed is not run again, what is independent runs side by side.
+#pragma once
+
+#include "ostraka/workflow/record.h"
+
+namespace ostraka {
+
+struct RunStudyOptions {
+    std::vector<std::string> only = {};  ///< steps, with what they need; empty: all
+    bool dry_run = false;                ///< says what would run, and runs nothing
+    bool again = false;                  ///< as if nothing had run before
+    double memory = 0;                  ///< bytes of the process below which a further instance starts beside others; 0: no limit
+    std::size_t shard = 0, shards = 1;  ///< of the instances that nothing takes, every n-th, with what these need
+    Path program_folder = {};
+};
+
+enum class InstanceState {
+    left_out,   ///< not asked for
+    unchanged,  ///< was not run again
+    would_run,  ///< in a dry run
+    done,
+    failed,
+    skipped  ///< something that it needs failed
+};
+std::string to_string(InstanceState state);
+
+struct InstanceResult {
+    InstanceState state = InstanceState::left_out;
+    std::string why;      ///< why it ran, or would
+    std::string problem;  ///< of what failed, or was skipped
+    StudyRecord record;   ///< of what is done or unchanged
+};
+
+/// Runs them into `folder`, at most as many at a time as there are threads: what an instance writes appears when it is complete,
+/// with its record. One that fails stops those that need it, and no others. Throws Error (cancelled) when the watch of this
+/// thread says so; what was done stays done. `on_progress`: the instance under way, how many of how many are done, and how many
+/// seconds are left (below 0: not known).
+std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options);
+
+/// Bytes of memory that this process occupies; 0 where the system does not say.
+double resident_memory();
+
+}  // namespace ostraka

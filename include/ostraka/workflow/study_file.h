@@ -1,0 +1,94 @@
+// Study files: steps that name an operation of the table, their inputs, options and grids of parameters.
+#pragma once
+
+#include "ostraka/core/json.h"
+#include "ostraka/operation/operation.h"
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace ostraka {
+
+/// "${name}" or "${name.member}": the value of a parameter, or an output of a step.
+struct StudyReference {
+    std::string name, member;
+};
+/// A text in which references may stand.
+struct StudyText {
+    std::vector<std::variant<std::string, StudyReference>> parts;
+    /// The text is one reference and nothing else; null otherwise.
+    [[nodiscard]] const StudyReference* single() const;
+    [[nodiscard]] std::vector<StudyReference> references() const;
+};
+/// Throws Error (input) where "${" is not followed by a name and "}".
+StudyText study_text(const std::string& text, const std::string& where);
+
+/// One of the values of a parameter: of its members by name, "" standing for the parameter itself. Texts, numbers, booleans.
+struct ParameterValue {
+    std::map<std::string, std::shared_ptr<const Json>> members;
+    std::string label;  ///< in tables and names of folders
+    [[nodiscard]] const JsonValue* find(const std::string& member) const;
+};
+struct StudyParameter {
+    std::string name;
+    std::vector<ParameterValue> values;
+    bool varies = false;  ///< given as a list, a range or files: steps run once for each value
+};
+
+/// An input or option of a step, as it stands in the file.
+struct StudySetting {
+    std::string name;
+    const JsonValue* value = nullptr;
+    std::string place;  ///< JSON pointer
+};
+
+struct StudyStep {
+    std::string name, place;                    ///< JSON pointer "/steps/NAME"
+    const OperationEntry* operation = nullptr;  ///< null: a program
+    std::vector<StudySetting> settings;         ///< of an operation
+    std::vector<StudySetting> program, reads;   ///< words of a program, and files that it reads
+    std::map<std::string, StudyText> keep;      ///< outputs that are written, and their files' names; empty: as usual
+    bool is_slow = false;                       ///< left out of quick runs
+    std::vector<std::size_t> needs;             ///< steps whose outputs it takes
+    std::vector<std::size_t> gathers;           ///< those of them that it takes all instances of
+    std::vector<bool> parameters;               ///< which of the study's parameters it varies with
+};
+
+struct Study {
+    Path file, folder;
+    std::string sha256;
+    std::shared_ptr<const Json> document;
+    std::string title;
+    std::vector<StudyParameter> parameters;
+    std::vector<StudyStep> steps;  ///< each behind those that it needs
+
+    [[nodiscard]] const StudyParameter* parameter(const std::string& name) const;
+    [[nodiscard]] std::size_t parameter_index(const std::string& name) const;
+    /// Index of the step, or the number of steps.
+    [[nodiscard]] std::size_t step(const std::string& name) const;
+    /// The name of a file as one says it who stands in the study's folder.
+    [[nodiscard]] std::string relative(const Path& file) const;
+    /// "FILE, at POINTER".
+    [[nodiscard]] std::string at(const std::string& pointer) const { return file.string() + ", at " + pointer; }
+};
+
+struct StudyOptions {
+    bool quick = false;                 ///< parameters as "quick" says, without slow steps
+    Path folder = {};                   ///< names are relative to it; empty: to the file's own folder
+    std::vector<std::string> set = {};  ///< "NAME=VALUE" or "NAME=VALUE,VALUE": instead of the file's values
+};
+
+/// Reads a study file and checks what can be checked without running: the schema, names, references, circles. Operations are
+/// looked up by `find`. Throws Error (input) with the file, the place in it and a remedy.
+using FindOperation = std::function<const OperationEntry&(const std::string&)>;
+Study read_study(const Path& file, const FindOperation& find, const StudyOptions& options = {});
+
+/// How a value of a parameter stands in a text.
+std::string scalar_text(const JsonValue& value);
+
+/// The paths, in order, that a pattern with * and ? in its parts names.
+std::vector<Path> matching_files(const Path& pattern);
+
+}  // namespace ostraka

@@ -1,0 +1,237 @@
+#include "ostraka/conformance/kit.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+std::vector<std::string> texts_in(const JsonValue& value, const char* member) {
+    std::vector<std::string> texts;
+    for (const auto& one : list_in(value, member)) texts.push_back(text_of(one));
+    return texts;
+}
+
+Comparison read_comparison(const JsonValue& value) {
+    Comparison comparison;
+    comparison.what = text_in(value, "what");
+    comparison.as = text_in(value, "as");
+    comparison.within = number_or(value, "within", 0);
+    if (const std::string of = text_in(value, "of"); !of.empty()) comparison.of = of;
+    comparison.freedoms = texts_in(value, "freedoms");
+    comparison.mesh = text_in(value, "mesh");
+    comparison.only = texts_in(value, "only");
+    comparison.but = texts_in(value, "but");
+    comparison.reason = text_in(value, "reason");
+    return comparison;
+}
+
+Path expected_folder(const ConformanceKit& kit, const ConformanceCase& one) { return kit.folder / "expected" / one.id; }
+
+/// "output/slices.json" of the file "slices/": the file of that output, and what lies in it.
+std::string file_of(const ConformanceCase& one, const std::string& what) {
+    const std::size_t slash = what.find('/');
+    const auto output = one.outputs.find(what.substr(0, slash));
+    if (output == one.outputs.end()) return {};
+    return slash == std::string::npos ? output->second : (Path(output->second) / what.substr(slash + 1)).string();
+}
+
+void check_case(const ConformanceKit& kit, const ConformanceCase& one, const FindOperation& find) {
+    const std::string where = (kit.folder / "conformance.json").string() + ", case '" + one.id + "'";
+    try {
+        Call call(find(one.operation));
+        const Json settings = settings_of(kit, one, "/nowhere", find);
+        if (one.code != 2) call.set(settings);
+    } catch (const Error& error) {
+        fail_input(where, error.problem(), error.remedy());
+    }
+    if ((one.code == 0 || one.code == 3) && one.comparisons.empty())
+        fail_input(where, "compares nothing", "say what counts, and how far off it may be");
+    for (const Comparison& comparison : one.comparisons) {
+        if (comparison.what == "report" ? comparison.as != "values" : file_of(one, comparison.what).empty())
+            fail_input(where, "compares '" + comparison.what + "', which is no output",
+                       "name one of its outputs, or report (as values)");
+        if (comparison.as == "annotations" && comparison.mesh.empty())
+            fail_input(where, "compares annotations without their mesh", "name it: \"mesh\": \"FILE\" or an output");
+    }
+}
+
+std::string escaped(const std::string& text) {
+    std::string made;
+    for (const char c : without_controls(text, " "))
+        if (c == '&') made += "&amp;";
+        else if (c == '<') made += "&lt;";
+        else if (c == '>') made += "&gt;";
+        else if (c == '"') made += "&quot;";
+        else made += c;
+    return made;
+}
+
+}  // namespace
+
+std::string to_string(Outcome outcome) {
+    static constexpr const char* names[]{"agrees", "differs", "unsupported"};
+    return names[static_cast<std::size_t>(outcome)];
+}
+
+ConformanceKit read_kit(const Path& folder, const FindOperation& find) {
+    const Path file = folder / "conformance.json";
+    ConformanceKit kit;
+    kit.folder = std::filesystem::absolute(folder).lexically_normal();
+    kit.document = std::make_shared<const Json>(read_json(file));
+    check_format(*kit.document, "ostraka-conformance", file.string(), "name the folder of a conformance kit");
+    validate(*kit.document, "conformance", file.string());
+    kit.version = text_in(*kit.document, "kit");
+    std::set<std::string> ids;
+    for (const auto& value : list_in(*kit.document, "cases")) {
+        ConformanceCase one;
+        one.id = text_in(value, "id");
+        one.operation = text_in(value, "operation");
+        one.about = text_in(value, "about");
+        one.degenerate = flag_in(value, "degenerate");
+        one.with = find_member(value, "with");
+        if (const JsonValue* outputs = find_member(value, "outputs"))
+            for (const auto& member : outputs->GetObject()) one.outputs[text_of(member.name)] = text_of(member.value);
+        one.code = find_member(value, "code")->GetInt();
+        one.names = texts_in(value, "names");
+        for (const auto& comparison : list_in(value, "compare")) one.comparisons.push_back(read_comparison(comparison));
+        if (!ids.insert(one.id).second)
+            fail_input(file.string(), "case '" + one.id + "' stands there twice", "give each a name of its own");
+        check_case(kit, one, find);
+        kit.cases.push_back(std::move(one));
+    }
+    return kit;
+}
+
+Json settings_of(const ConformanceKit& kit, const ConformanceCase& one, const Path& folder, const FindOperation& find) {
+    Json settings(rapidjson::kObjectType);
+    auto& allocator = settings.GetAllocator();
+    const Call call(find(one.operation));
+    const auto named = [&](const Slot& slot, const std::string& text) {
+        if (slot.takes_none && text == "none") return text;
+        const std::size_t equals = slot.is_named ? text.find('=') : std::string::npos;
+        if (equals == std::string::npos) return (kit.folder / text).string();
+        return text.substr(0, equals + 1) + (kit.folder / text.substr(equals + 1)).string();
+    };
+    for (const auto& member : one.with->GetObject()) {
+        const std::string name = text_of(member.name);
+        const Slot* slot = call.parameters().slot(name);
+        JsonValue value(member.value, allocator);
+        if (slot != nullptr && value.IsString()) {
+            value = json_string(named(*slot, text_of(member.value)), allocator);
+        } else if (slot != nullptr && value.IsArray()) {
+            for (auto& file : value.GetArray())
+                if (file.IsString()) file = json_string(named(*slot, text_of(file)), allocator);
+        }
+        add_member(settings, name, std::move(value), allocator);
+    }
+    for (const auto& [output, file] : one.outputs) add_member(settings, output, (folder / file).string(), allocator);
+    return settings;
+}
+
+namespace {
+Answer answer_of(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& folder,
+                 const FindOperation& find) {
+    std::error_code code;
+    std::filesystem::remove_all(folder, code);
+    make_folder(folder);
+    for (const auto& [output, file] : one.outputs)
+        if (file.ends_with('/')) make_folder(folder / file);
+    return backend.run(one, settings_of(kit, one, folder, find), folder);
+}
+}  // namespace
+
+CaseResult run_case(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& scratch,
+                    const FindOperation& find) {
+    const Path folder = std::filesystem::absolute(scratch / one.id), expected = expected_folder(kit, one);
+    const Answer answer = answer_of(kit, one, backend, folder, find);
+    CaseResult result;
+    result.seconds = answer.seconds;
+    if (answer.code == 4) {
+        result.outcome = Outcome::unsupported;
+        return result;
+    }
+    if (answer.code != one.code) {
+        result.differences.push_back("exit code " + std::to_string(answer.code) + ", expected " + std::to_string(one.code) +
+                                     (answer.message.empty() ? "" : ": " + answer.message));
+        return result;
+    }
+    for (const std::string& word : one.names)
+        if (answer.message.find(word) == std::string::npos)
+            result.differences.push_back("the message does not name '" + word + "': " + answer.message);
+    for (const Comparison& comparison : one.comparisons) {
+        std::string how;
+        if (comparison.what == "report") {
+            const Json wanted = read_json(expected / "report.json");
+            how = answer.result ? difference_of_values(comparison, wanted, *answer.result)
+                                : "there is none" + (answer.message.empty() ? "" : ": " + answer.message);
+        } else {
+            const std::string file = file_of(one, comparison.what), mesh = file_of(one, comparison.mesh);
+            how = difference(comparison, expected / file, folder / file,
+                             mesh.empty() ? kit.folder / comparison.mesh : expected / mesh,
+                             mesh.empty() ? kit.folder / comparison.mesh : folder / mesh);
+        }
+        if (!how.empty()) result.differences.push_back(comparison.what + ": " + how);
+    }
+    if (result.differences.empty()) result.outcome = Outcome::agrees;
+    return result;
+}
+
+void record_case(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& scratch,
+                 const FindOperation& find) {
+    const Path folder = std::filesystem::absolute(scratch / one.id), expected = expected_folder(kit, one);
+    const Answer answer = answer_of(kit, one, backend, folder, find);
+    if (answer.code != one.code)
+        fail_work("case '" + one.id + "'",
+                  "exit code " + std::to_string(answer.code) + ", expected " + std::to_string(one.code) + ": " + answer.message,
+                  "mend the case, or what it tests");
+    for (const std::string& word : one.names)
+        if (answer.message.find(word) == std::string::npos)
+            fail_work("case '" + one.id + "'", "the message does not name '" + word + "': " + answer.message, "mend the case");
+    std::error_code code;
+    std::filesystem::remove_all(expected, code);
+    std::set<std::string> files;
+    for (const Comparison& comparison : one.comparisons) {
+        if (comparison.what == "report") {
+            if (!answer.result) fail_work("case '" + one.id + "'", "there is no report", "mend the case");
+            make_folder(expected);
+            write_json(expected / "report.json", *answer.result);
+        } else if (comparison.as != "exists") {
+            files.insert(file_of(one, comparison.what));
+            if (const std::string mesh = file_of(one, comparison.mesh); !mesh.empty()) files.insert(mesh);
+        }
+    }
+    for (const std::string& file : files) {
+        make_folder((expected / file).parent_path());
+        write_file(expected / file, read_file(folder / file));
+    }
+}
+
+std::string junit_of(const ConformanceKit& kit, const std::vector<CaseResult>& results, const std::string& backend) {
+    std::size_t failed = 0, skipped = 0;
+    double seconds = 0;
+    for (const CaseResult& result : results) {
+        failed += result.outcome == Outcome::differs ? 1 : 0;
+        skipped += result.outcome == Outcome::unsupported ? 1 : 0;
+        seconds += result.seconds;
+    }
+    std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"ostraka conformance " +
+                       escaped(kit.version) + ": " + escaped(backend) + "\" tests=\"" + std::to_string(results.size()) +
+                       "\" failures=\"" + std::to_string(failed) + "\" skipped=\"" + std::to_string(skipped) + "\" time=\"" +
+                       digits(seconds, 6) + "\">\n";
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const ConformanceCase& one = kit.cases[i];
+        text += "<testcase classname=\"" + escaped(one.operation) + "\" name=\"" + escaped(one.id) + "\" time=\"" +
+                digits(results[i].seconds, 6) + "\"";
+        if (results[i].outcome == Outcome::agrees) text += "/>\n";
+        else if (results[i].outcome == Outcome::unsupported) text += "><skipped/></testcase>\n";
+        else text += "><failure message=\"" + escaped(joined(results[i].differences, "; ")) + "\"/></testcase>\n";
+    }
+    return text + "</testsuite>\n</testsuites>\n";
+}
+
+}  // namespace ostraka

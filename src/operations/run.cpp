@@ -1,0 +1,260 @@
+// run: the steps of a study file; replay: the same again, compared.
+#include "operations.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/workflow/collect.h"
+#include "ostraka/workflow/crate.h"
+#include "ostraka/workflow/program.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+/// How many instances are in which state, step by step.
+void report_steps(Report& report, const StudyPlan& plan, const std::vector<InstanceResult>& results) {
+    std::map<InstanceState, std::size_t> all;
+    for (std::size_t s = 0; s < plan.study.steps.size(); ++s) {
+        std::map<InstanceState, std::size_t> count;
+        double seconds = 0;
+        for (const std::size_t i : plan.instances_of(s)) {
+            ++count[results[i].state];
+            ++all[results[i].state];
+            if (results[i].state == InstanceState::done) seconds += results[i].record.seconds;
+        }
+        const StudyStep& step = plan.study.steps[s];
+        Report::Row row = report.row("steps");
+        row("step", step.name)("operation", step.operation == nullptr ? "(a program)" : step.operation->name)(
+            "instances", plan.instances_of(s).size());
+        row("done", count[InstanceState::done] + count[InstanceState::would_run])("unchanged", count[InstanceState::unchanged]);
+        row("failed", count[InstanceState::failed])("skipped", count[InstanceState::skipped]);
+        if (seconds > 0) report.run("seconds." + step.name, seconds);
+    }
+    report("instances", plan.instances.size())("done", all[InstanceState::done])("wouldRun", all[InstanceState::would_run]);
+    report("unchanged", all[InstanceState::unchanged])("failed", all[InstanceState::failed])("skipped",
+                                                                                             all[InstanceState::skipped]);
+}
+
+struct Run final : Operation {
+    void describe(Parameters& p) override {
+        p.input("study", Kind::study, study, "steps, parameters, tables and plots (.study.json)");
+        p.output_option("output", Kind::folder, output, "run folder: results, reports, tables, page, provenance; else NAME-run");
+        p.options("quick", quick, "parameters as the study's 'quick' says, without its slow steps").unrecorded();
+        p.options("set", set, "NAME=VALUE or NAME=VALUE,VALUE: instead of a parameter's values in the study").unrecorded();
+        p.options("only", only, "these steps, with what they need").words().unrecorded();
+        p.options("dry-run", dry_run, "check the study, and say what would run and why").unrecorded();
+        p.options("explain", explain, "why this step would run again").unrecorded();
+        p.options("again", again, "run all steps, whether they have changed or not").unrecorded();
+        p.options("memory", memory, "below this, further steps start beside others; 0: no limit", Range{0, 1e6}, "GB")
+            .unrecorded();
+        p.options("shard", shard, "K/N: the K-th of N parts of the work, for a machine of its own; without it all is gathered")
+            .unrecorded();
+        p.options("programs", programs, "folder of the programs that steps name; else that of this command").unrecorded();
+        p.report.values(text("output"), integer("instances", "steps to run"), integer("done", "done"),
+                        integer("wouldRun", "would run"), integer("unchanged", "unchanged"), integer("failed", "failed"),
+                        integer("skipped", "skipped"));
+        p.report.table("steps", text("step", "step"), text("operation", "operation"), integer("instances", "runs"),
+                       integer("done", "done"), integer("unchanged", "unchanged"), integer("failed", "failed"),
+                       integer("skipped", "skipped"));
+        p.report.table("reasons", text("step", "step"), text("state", "state"), text("why", "why"));
+        p.report.table("failures", text("step", "step"), text("problem", "problem"));
+    }
+
+    void check() const override {
+        if (dry_run && again) fail_usage("--dry-run and --again contradict each other", "give one of them");
+        static_cast<void>(shard_of());
+    }
+
+    void run(Context& context, Report& report) override {
+        RunStudyOptions options;
+        options.only = only;
+        options.dry_run = dry_run || !explain.empty();
+        options.again = again;
+        options.memory = memory * 1e9;
+        std::tie(options.shard, options.shards) = shard_of();
+        options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
+        if (!explain.empty()) options.only = {explain};
+        const Path file = study.path();
+        StudyOptions reading;
+        reading.quick = quick;
+        reading.set = set;
+        std::optional<StudyPlan> plan;
+        context.record([&] { plan.emplace(read_study(file, find_operation, reading)); });
+        check_collected(*plan);
+        check_programs(*plan, options);
+        if (!dry_run && explain.empty()) {
+            if (!output) output.sources.push_back({run_folder(file), {}});
+            output.open();
+        }
+        const Path folder = output ? output.path() : run_folder(file);
+        for (const StudyInstance& instance : plan->instances)
+            for (const StudyInput& input : instance.inputs)
+                if (!input.file.empty() && is_within(input.file, folder))
+                    throw Error(ErrorKind::input, plan->study.file.string(),
+                                "'" + input.file.string() + "' is an input, and lies in the run folder " + folder.string(),
+                                "name another run folder (--output)");
+        const auto results = run_study(*plan, folder, options);
+        report("output", folder.string());
+        report_steps(report, *plan, results);
+        for (std::size_t i = 0; i < results.size(); ++i) {
+            const std::string title = plan->instances[i].title(plan->study);
+            if (results[i].state == InstanceState::failed || results[i].state == InstanceState::skipped)
+                report.row("failures")("step", title)("problem", results[i].problem);
+            const bool asked = !explain.empty() && plan->study.steps[plan->instances[i].step].name == explain;
+            if (options.dry_run && (asked || (explain.empty() && results[i].state == InstanceState::would_run)))
+                report.row("reasons")("step", title)("state", to_string(results[i].state))(
+                    "why", results[i].state == InstanceState::unchanged ? "nothing has changed" : results[i].why);
+            if (results[i].state == InstanceState::failed) report.answer_no();
+        }
+        if (options.dry_run) return;
+        if (options.shards > 1) {
+            report.line("part " + shard + " is done; run it without --shard to gather the parts");
+            return;
+        }
+        auto written = write_collected(*plan, results, folder, [&](const std::string& name) { return output.in(name); });
+        const RunRequest request{std::filesystem::absolute(plan->study.folder).lexically_normal(), quick, set, only};
+        write_json(output.in("run.json"), run_request_to_json(request));
+        write_file(output.in("run.study.json"), read_file(file));
+        const Json crate = crate_of(*plan, results, folder, written);
+        write_json(output.in("ro-crate-metadata.json"), crate);
+        report.line("page: " + (folder / "page.md").string());
+    }
+
+private:
+    static bool is_within(const Path& file, const Path& folder) {
+        const auto full = [](const Path& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+        const std::string relative = full(file).lexically_relative(full(folder)).generic_string();
+        return !relative.empty() && relative != "." && !relative.starts_with("..");
+    }
+
+    void check_programs(const StudyPlan& plan, const RunStudyOptions& options) const {
+        for (const StudyStep& step : plan.study.steps)
+            if (step.operation == nullptr)
+                static_cast<void>(find_program(text_of(*step.program.front().value), options.program_folder,
+                                               plan.study.at(step.place + "/program/0")));
+    }
+
+    static Path run_folder(const Path& file) {
+        std::string name = file.filename().string();
+        for (const char* ending : {".json", ".study"})
+            if (name.ends_with(ending)) name = name.substr(0, name.size() - std::string_view(ending).size());
+        return name + "-run";
+    }
+
+    std::pair<std::size_t, std::size_t> shard_of() const {
+        if (shard.empty()) return {0, 1};
+        const std::size_t slash = shard.find('/');
+        const auto k = whole_of(shard.substr(0, slash));
+        const auto n = slash == std::string::npos ? std::nullopt : whole_of(shard.substr(slash + 1));
+        if (!k || !n || *k < 1 || *n < *k)
+            fail_usage("--shard is '" + printable(shard, 60) + "'", "give K/N with K from 1 to N, such as 3/64");
+        return {static_cast<std::size_t>(*k - 1), static_cast<std::size_t>(*n)};
+    }
+
+    FileInput study;
+    FolderOutput output;
+    bool quick = false, dry_run = false, again = false;
+    std::vector<std::string> set, only;
+    std::string explain, shard, programs;
+    double memory = 0;
+};
+
+/// Of a report all but what may differ between two runs.
+std::string lasting_report(const Path& folder) {
+    const Path file = folder / "report.json";
+    if (!file_exists(file)) return {};
+    Json report = read_json(file);
+    if (report.IsObject()) report.RemoveMember("run");
+    return to_compact_text(report);
+}
+
+struct Replay final : Operation {
+    void describe(Parameters& p) override {
+        p.input("crate", Kind::folder, crate, "the folder of a run");
+        p.output_option("output", Kind::folder, output, "where the run is repeated; else nothing of it is kept");
+        p.options("inputs", inputs, "folder that stands for that of the study, whose inputs are found from there").unrecorded();
+        p.options("programs", programs, "folder of the programs that steps name; else that of this command").unrecorded();
+        p.report.values(integer("steps", "steps repeated"), integer("outputs", "outputs compared"),
+                        integer("same", "same to the bit"), integer("different", "different"));
+        p.report.table("differences", text("step", "step"), text("output", "output"), text("before"), text("now"),
+                       text("what", "what differs"));
+    }
+
+    void run(Context& context, Report& report) override {
+        const Path folder = crate.path();
+        const RunRequest request = read_run_request(folder);
+        StudyOptions reading;
+        reading.quick = request.quick;
+        reading.set = request.set;
+        reading.folder = inputs.empty() ? request.study_folder : Path(inputs);
+        std::optional<StudyPlan> plan;
+        context.record([&] { plan.emplace(read_study(folder / "run.study.json", find_operation, reading)); });
+        RunStudyOptions options;
+        options.only = request.only;
+        options.again = true;
+        options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
+        const bool kept = static_cast<bool>(output);
+        const Path repeated =
+            kept ? output.open() : std::filesystem::temp_directory_path() / ("ostraka-replay-" + std::to_string(::getpid()));
+        struct Remove {
+            Path folder;
+            ~Remove() {
+                std::error_code code;
+                if (!folder.empty()) std::filesystem::remove_all(folder, code);
+            }
+        } const remove{kept ? Path() : repeated};
+        const auto results = run_study(*plan, repeated, options);
+        std::size_t steps = 0, compared = 0, same = 0;
+        for (std::size_t i = 0; i < results.size(); ++i) {
+            const StudyInstance& instance = plan->instances[i];
+            const auto before = read_record(folder / instance.folder);
+            if (!before && results[i].state != InstanceState::done) continue;
+            ++steps;
+            const auto differs = [&](const std::string& name, const std::string& was, const std::string& is,
+                                     const std::string& what) {
+                report.row("differences")("step", instance.title(plan->study))("output", name)("before", was)("now", is)("what",
+                                                                                                                         what);
+                report.answer_no();
+            };
+            if (!before || results[i].state != InstanceState::done) {
+                differs("", "", "", before ? "it failed now: " + results[i].problem : "it did not succeed then");
+                continue;
+            }
+            compare_inputs(*before, results[i].record, differs);
+            for (const auto& [name, was] : before->outputs) {
+                ++compared;
+                const auto now = results[i].record.outputs.find(name);
+                const std::string sum = now == results[i].record.outputs.end() ? "" : now->second.sha256;
+                if (sum == was.sha256) ++same;
+                else differs(name, was.sha256, sum, sum.empty() ? "not made now" : "other bytes");
+            }
+            ++compared;
+            if (lasting_report(folder / instance.folder) == lasting_report(repeated / instance.folder)) ++same;
+            else differs("report", "", "", "other values");
+        }
+        report("steps", steps)("outputs", compared)("same", same)("different", compared - same);
+    }
+
+    template <class Differs>
+    static void compare_inputs(const StudyRecord& before, const StudyRecord& now, const Differs& differs) {
+        const std::map<std::string, std::string> is(now.depends.begin(), now.depends.end());
+        for (const auto& [name, was] : before.depends)
+            if (const auto known = is.find(name); known == is.end() || known->second != was)
+                differs(name, was, known == is.end() ? "" : known->second,
+                        name == "toolkit" ? "another version" : "another input or option");
+    }
+
+    FileInput crate;
+    FolderOutput output;
+    std::string inputs, programs;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_run() { return make<Run>(); }
+std::unique_ptr<Operation> make_replay() { return make<Replay>(); }
+
+}  // namespace ostraka

@@ -1,0 +1,567 @@
+#include "ostraka/workflow/collect.h"
+
+#include "ostraka/core/csv.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/nearest_name.h"
+#include "ostraka/core/words.h"
+#include "ostraka/report/plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+[[noreturn]] void refuse(const Study& study, const std::string& place, const std::string& what, const std::string& name,
+                         const std::vector<std::string>& names) {
+    const std::string near = nearest_name(name, names);
+    fail_input(study.at(place), what,
+               !near.empty()   ? "did you mean '" + near + "'?"
+               : names.empty() ? "there is none"
+                               : "there are: " + printable(joined(names), 400));
+}
+
+std::vector<std::string> step_names(const Study& study) {
+    std::vector<std::string> names;
+    for (const auto& step : study.steps) names.push_back(step.name);
+    return names;
+}
+
+/// "STEP" or "STEP.TABLE".
+struct RowSource {
+    std::size_t step = 0;
+    std::string table;
+};
+
+std::vector<std::pair<std::string, std::string>> row_texts(const JsonValue& rows, const std::string& place) {
+    std::vector<std::pair<std::string, std::string>> texts;
+    if (rows.IsString()) texts.emplace_back(text_of(rows), place + "/rows");
+    else
+        for (rapidjson::SizeType i = 0; i < rows.Size(); ++i)
+            texts.emplace_back(text_of(rows[i]), place + "/rows/" + std::to_string(i));
+    return texts;
+}
+
+/// Steps that a quick run leaves out stand in the file all the same.
+bool is_left_out(const Study& study, const std::string& step) {
+    return study.step(step) == study.steps.size() && find_member(*find_member(*study.document, "steps"), step) != nullptr;
+}
+
+std::vector<RowSource> row_sources(const Study& study, const JsonValue& table, const std::string& place) {
+    std::vector<RowSource> sources;
+    for (const auto& [text, at] : row_texts(*find_member(table, "rows"), place)) {
+        const std::size_t dot = text.find('.');
+        const std::string step = text.substr(0, dot);
+        if (is_left_out(study, step)) continue;
+        const std::size_t i = study.step(step);
+        if (i == study.steps.size()) refuse(study, at, "there is no step '" + printable(step, 60) + "'", step, step_names(study));
+        sources.push_back({i, dot == std::string::npos ? "" : text.substr(dot + 1)});
+    }
+    return sources;
+}
+
+void check_table(const StudyPlan& plan, const std::string& name, const JsonValue& table) {
+    const Study& study = plan.study;
+    const std::string place = "/tables/" + name;
+    const auto sources = row_sources(study, table, place);
+    for (const RowSource& source : sources) {
+        const StudyStep& step = study.steps[source.step];
+        if (step.operation == nullptr) {
+            if (!source.table.ends_with(".csv"))
+                fail_input(study.at(place + "/rows"), "'" + step.name + "' is a program",
+                           "name a CSV file that it writes: " + step.name + ".FILE.csv");
+            continue;
+        }
+        const Call call(*step.operation);
+        const ReportLayout& layout = call.parameters().report;
+        std::vector<std::string> tables, values, columns;
+        for (const auto& one : layout.tables)
+            if (!one.key.empty()) tables.push_back(one.key);
+        for (const auto& one : layout.of_values) values.push_back(one.key);
+        if (!source.table.empty() && layout.schema.empty() &&
+            std::find(tables.begin(), tables.end(), source.table) == tables.end())
+            refuse(study, place + "/rows",
+                   "'" + std::string(step.operation->name) + "' reports no table '" + printable(source.table, 60) + "'",
+                   source.table, tables);
+        for (const auto& one : layout.tables)
+            if (one.key == source.table)
+                for (const auto& column : one.columns)
+                    if (!column.key.empty()) columns.push_back(column.key);
+        const JsonValue& list = *find_member(table, "columns");
+        for (rapidjson::SizeType k = 0; k < list.Size(); ++k) {
+            const std::string value = text_in(list[k], "value"), at = place + "/columns/" + std::to_string(k) + "/value";
+            const auto check = [&](std::string_view prefix, const std::vector<std::string>& known, const std::string& what) {
+                if (!value.starts_with(prefix)) return;
+                const std::string key = value.substr(prefix.size());
+                const bool is_known = std::any_of(known.begin(), known.end(), [&](const std::string& one) {
+                    return one == key || key.starts_with(one + ".") || one.starts_with(key + ".");
+                });
+                if (!is_known && layout.schema.empty())
+                    refuse(study, at,
+                           "'" + std::string(step.operation->name) + "' reports no " + what + " '" + printable(key, 60) + "'",
+                           key, known);
+            };
+            if (source.table.empty() && value.starts_with("row."))
+                fail_input(
+                    study.at(at), "names a row, and the rows are the instances of '" + step.name + "'",
+                    "name a table of its report in 'rows': " + step.name + "." + (tables.empty() ? "TABLE" : tables.front()));
+            check("row.", columns, "column");
+            check("result.", values, "value");
+        }
+    }
+    std::vector<std::string> titles;
+    const JsonValue& list = *find_member(table, "columns");
+    for (rapidjson::SizeType k = 0; k < list.Size(); ++k) {
+        const std::string value = text_in(list[k], "value"), title = text_in(list[k], "title"),
+                          at = place + "/columns/" + std::to_string(k);
+        if (std::find(titles.begin(), titles.end(), title) != titles.end())
+            fail_input(study.at(at + "/title"), "'" + printable(title, 60) + "' is the title of two columns",
+                       "give each its own");
+        titles.push_back(title);
+        const StudyText text = study_text(value, study.at(at + "/value"));
+        const bool plain = value.starts_with("row.") || value.starts_with("result.") || value.starts_with("run.") ||
+                           value == "step" || value == "holds" || value == "seconds";
+        if (!plain && text.references().empty())
+            fail_input(study.at(at + "/value"), "'" + printable(value, 60) + "' names no value",
+                       "write result.KEY, row.KEY, run.KEY, ${PARAMETER}, step, holds or seconds");
+        for (const StudyReference& reference : text.references()) {
+            std::vector<std::string> names;
+            for (const auto& one : study.parameters) names.push_back(one.name);
+            const StudyParameter* parameter = study.parameter(reference.name);
+            if (parameter == nullptr)
+                refuse(study, at + "/value", "there is no parameter '" + printable(reference.name, 60) + "'", reference.name,
+                       names);
+            if (parameter->values.front().find(reference.member) == nullptr)
+                fail_input(study.at(at + "/value"),
+                           "'" + reference.name + "' has no member '" + printable(reference.member, 60) + "'",
+                           "name one that its values have");
+            for (const RowSource& source : sources)
+                if (parameter->varies && !study.steps[source.step].parameters[study.parameter_index(reference.name)])
+                    fail_input(study.at(at + "/value"),
+                               "step '" + study.steps[source.step].name + "' does not vary with '" + reference.name + "'",
+                               "leave the column out, or use the parameter in the step");
+        }
+    }
+    if (const JsonValue* beside = find_member(table, "beside"))
+        for (rapidjson::SizeType k = 0; k < beside->Size(); ++k) {
+            std::size_t known = 0;
+            for (const auto& member : (*beside)[k].GetObject())
+                known += std::find(titles.begin(), titles.end(), text_of(member.name)) != titles.end() ? 1 : 0;
+            if (known == 0 || known == (*beside)[k].MemberCount())
+                fail_input(study.at(place + "/beside/" + std::to_string(k)),
+                           known == 0 ? "names no column of the table" : "adds nothing to the columns of the table",
+                           "give the titles of columns, to find the rows, and others with what stands beside them");
+        }
+}
+
+const JsonValue* at_path(const JsonValue& value, const std::string& path) {
+    if (const JsonValue* whole = find_member(value, path)) return whole;
+    const std::size_t dot = path.find('.');
+    if (dot == std::string::npos) return nullptr;
+    const JsonValue* inner = find_member(value, path.substr(0, dot));
+    return inner == nullptr ? nullptr : at_path(*inner, path.substr(dot + 1));
+}
+
+Json copy_of(const JsonValue* value) {
+    Json copy;
+    if (value != nullptr) copy.CopyFrom(*value, copy.GetAllocator());
+    return copy;
+}
+
+std::string cell_text(const JsonValue& value, int digits_shown, bool percent) {
+    if (value.IsNull()) return "-";
+    if (value.IsInt64() && !percent) return std::to_string(value.GetInt64());
+    if (value.IsNumber())
+        return percent ? digits(100 * value.GetDouble(), digits_shown) : digits(value.GetDouble(), digits_shown);
+    if (value.IsString() || value.IsBool()) return scalar_text(value);
+    if (!value.IsArray()) return to_compact_text(value);
+    std::vector<std::string> texts;
+    for (const auto& one : value.GetArray()) texts.push_back(cell_text(one, digits_shown, percent));
+    return joined(texts, ", ");
+}
+
+double statistic_of(std::vector<double> values, const std::string& statistic) {
+    if (statistic == "count") return static_cast<double>(values.size());
+    if (values.empty()) return std::nan("");
+    const double count = static_cast<double>(values.size()), sum = std::accumulate(values.begin(), values.end(), 0.0);
+    if (statistic == "sum") return sum;
+    if (statistic == "mean") return sum / count;
+    std::sort(values.begin(), values.end());
+    if (statistic == "minimum") return values.front();
+    if (statistic == "maximum") return values.back();
+    if (statistic == "median")
+        return values.size() % 2 == 1 ? values[values.size() / 2]
+                                      : (values[values.size() / 2 - 1] + values[values.size() / 2]) / 2;
+    double squares = 0;
+    for (const double value : values) squares += (value - sum / count) * (value - sum / count);
+    return values.size() < 2 ? std::nan("") : std::sqrt(squares / (count - 1));
+}
+
+class TableMaker {
+public:
+    TableMaker(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder, std::string name,
+               const JsonValue& description)
+        : plan_(plan),
+          results_(results),
+          folder_(folder),
+          description_(description),
+          columns_(*find_member(description, "columns")) {
+        table_.name = std::move(name);
+        table_.title = text_in(description, "title");
+        table_.note = text_in(description, "note");
+        for (const auto& column : columns_.GetArray()) {
+            table_.columns.push_back(text_in(column, "title"));
+            table_.digits.push_back(static_cast<int>(number_or(column, "digits", 4)));
+            table_.percent.push_back(flag_in(column, "percent"));
+        }
+    }
+
+    StudyTable make() {
+        for (const RowSource& source : row_sources(plan_.study, description_, "/tables/" + table_.name))
+            for (const std::size_t i : plan_.instances_of(source.step)) {
+                const InstanceState state = results_[i].state;
+                if (state == InstanceState::done || state == InstanceState::unchanged) add_instance(i, source.table);
+            }
+        summarise();
+        add_beside();
+        return std::move(table_);
+    }
+
+private:
+    void add_instance(std::size_t i, const std::string& rows) {
+        const StudyInstance& instance = plan_.instances[i];
+        const Path folder = folder_ / instance.folder;
+        const Json report = read_json(folder / "report.json");
+        if (plan_.study.steps[instance.step].operation == nullptr) {
+            const std::string text = read_file(folder / rows);
+            const auto lines = csv_rows(text, csv_separator(text), (folder / rows).string());
+            for (std::size_t k = 1; k < lines.size(); ++k) {
+                Json row(rapidjson::kObjectType);
+                auto& allocator = row.GetAllocator();
+                for (std::size_t c = 0; c < std::min(lines[0].cells.size(), lines[k].cells.size()); ++c) {
+                    const std::string& cell = lines[k].cells[c];
+                    const auto value = number_of(cell);
+                    if (value && *value == std::floor(*value) && std::abs(*value) < 1e15)
+                        add_members(row, allocator, unguarded(lines[0].cells[c]), static_cast<std::int64_t>(*value));
+                    else if (value) add_members(row, allocator, unguarded(lines[0].cells[c]), *value);
+                    else if (!cell.empty()) add_members(row, allocator, unguarded(lines[0].cells[c]), unguarded(cell));
+                }
+                add_row(i, report, row);
+            }
+            return;
+        }
+        if (rows.empty()) return add_row(i, report, Json());
+        const JsonValue* result = find_member(report, "result");
+        const JsonValue* list = result == nullptr ? nullptr : at_path(*result, rows);
+        if (list == nullptr || !list->IsArray()) return;
+        for (const auto& row : list->GetArray()) add_row(i, report, row);
+    }
+
+    void add_row(std::size_t i, const JsonValue& report, const JsonValue& row) {
+        const StudyInstance& instance = plan_.instances[i];
+        std::vector<Json> cells;
+        for (const auto& column : columns_.GetArray()) {
+            const std::string value = text_in(column, "value");
+            const auto behind = [&](std::string_view prefix) { return value.substr(prefix.size()); };
+            if (value.starts_with("row.")) cells.push_back(copy_of(at_path(row, behind("row."))));
+            else if (value.starts_with("result.") || value.starts_with("run.")) cells.push_back(copy_of(at_path(report, value)));
+            else if (value == "step") cells.push_back(text_cell(plan_.study.steps[instance.step].name));
+            else if (value == "holds") cells.emplace_back().SetBool(results_[i].record.holds);
+            else if (value == "seconds") cells.emplace_back().SetDouble(results_[i].record.seconds);
+            else cells.push_back(parameter_cell(instance, value));
+        }
+        table_.cells.push_back(std::move(cells));
+    }
+
+    static Json text_cell(const std::string& text) {
+        Json cell;
+        cell.SetString(text, cell.GetAllocator());
+        return cell;
+    }
+
+    Json parameter_cell(const StudyInstance& instance, const std::string& text) const {
+        const StudyText parts = study_text(text, "");
+        if (const StudyReference* one = parts.single()) return copy_of(plan_.value(instance, *one));
+        std::string all;
+        for (const auto& part : parts.parts)
+            if (const auto* literal = std::get_if<std::string>(&part)) all += *literal;
+            else if (const JsonValue* value = plan_.value(instance, std::get<StudyReference>(part))) all += scalar_text(*value);
+        return text_cell(all);
+    }
+
+    /// Rows that agree in the columns without a statistic become one.
+    void summarise() {
+        std::vector<std::string> statistics;
+        for (const auto& column : columns_.GetArray()) statistics.push_back(text_in(column, "statistic"));
+        if (std::all_of(statistics.begin(), statistics.end(), [](const std::string& one) { return one.empty(); })) return;
+        std::vector<std::vector<Json>> groups;
+        std::vector<std::vector<std::vector<double>>> values;
+        std::map<std::string, std::size_t> places;
+        for (auto& row : table_.cells) {
+            std::string key;
+            for (std::size_t c = 0; c < row.size(); ++c)
+                if (statistics[c].empty()) key += to_compact_text(row[c]) + "\n";
+            const auto [place, is_new] = places.emplace(key, groups.size());
+            if (is_new) values.emplace_back(row.size());
+            for (std::size_t c = 0; c < row.size(); ++c)
+                if (row[c].IsNumber()) values[place->second][c].push_back(row[c].GetDouble());
+                else if (row[c].IsBool()) values[place->second][c].push_back(row[c].GetBool() ? 1 : 0);
+            if (is_new) groups.push_back(std::move(row));
+        }
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            for (std::size_t c = 0; c < statistics.size(); ++c) {
+                if (statistics[c].empty()) continue;
+                const double value = statistic_of(values[g][c], statistics[c]);
+                if (!std::isfinite(value)) groups[g][c].SetNull();
+                else if (statistics[c] == "count") groups[g][c].SetInt64(static_cast<std::int64_t>(value));
+                else groups[g][c].SetDouble(value);
+            }
+        table_.cells = std::move(groups);
+    }
+
+    void add_beside() {
+        const JsonValue* beside = find_member(description_, "beside");
+        if (beside == nullptr) return;
+        const std::size_t own = table_.columns.size();
+        for (const auto& row : beside->GetArray())
+            for (const auto& member : row.GetObject())
+                if (const std::string title = text_of(member.name); table_.column(title) == table_.columns.size()) {
+                    table_.columns.push_back(title);
+                    table_.digits.push_back(6);
+                    table_.percent.push_back(false);
+                }
+        for (auto& cells : table_.cells) {
+            cells.resize(table_.columns.size());
+            for (const auto& row : beside->GetArray()) {
+                bool agrees = true;
+                for (const auto& member : row.GetObject())
+                    if (const std::size_t c = table_.column(text_of(member.name)); c < own)
+                        agrees =
+                            agrees && !cells[c].IsNull() && cell_text(cells[c], 17, false) == cell_text(member.value, 17, false);
+                if (!agrees) continue;
+                for (const auto& member : row.GetObject())
+                    if (const std::size_t c = table_.column(text_of(member.name)); c >= own) cells[c] = copy_of(&member.value);
+            }
+        }
+    }
+
+    const StudyPlan& plan_;
+    const std::vector<InstanceResult>& results_;
+    const Path& folder_;
+    const JsonValue& description_;
+    const JsonValue& columns_;
+    StudyTable table_;
+};
+
+Plot plot_of(const JsonValue& description, const StudyTable& table) {
+    Plot plot;
+    plot.title = text_in(description, "title");
+    const std::size_t x = table.column(text_in(description, "x"));
+    plot.x.label = table.columns[x];
+    std::vector<std::string> ys;
+    if (const JsonValue& y = *find_member(description, "y"); y.IsString()) ys.push_back(text_of(y));
+    else
+        for (const auto& one : y.GetArray()) ys.push_back(text_of(one));
+    plot.y.label = joined(ys);
+    if (const JsonValue* axes = find_member(description, "logarithmic"))
+        for (const auto& axis : axes->GetArray()) (text_of(axis) == "x" ? plot.x : plot.y).logarithmic = true;
+    const std::string by = text_in(description, "series");
+    const bool named = std::any_of(table.cells.begin(), table.cells.end(), [&](const auto& row) { return !row[x].IsNumber(); });
+    std::map<std::string, std::size_t> places;
+    for (std::size_t r = 0; r < table.cells.size(); ++r) {
+        const auto& row = table.cells[r];
+        double at = 0;
+        if (named) {
+            const std::string name = cell_text(row[x], 6, false);
+            const auto known = std::find(plot.x.names.begin(), plot.x.names.end(), name);
+            at = static_cast<double>(known - plot.x.names.begin());
+            if (known == plot.x.names.end()) plot.x.names.push_back(name);
+        } else {
+            at = row[x].GetDouble();
+        }
+        for (const std::string& y : ys) {
+            const std::size_t c = table.column(y);
+            std::string series = by.empty() ? "" : cell_text(row[table.column(by)], 6, false);
+            if (ys.size() > 1) series += (series.empty() ? "" : ", ") + y;
+            const auto [place, is_new] = places.emplace(series, plot.series.size());
+            if (is_new) plot.series.push_back({.name = series, .joined = !named});
+            if (row[c].IsNumber())
+                plot.series[place->second].points.push_back({at, (table.percent[c] ? 100 : 1) * row[c].GetDouble()});
+        }
+    }
+    for (PlotSeries& series : plot.series) std::sort(series.points.begin(), series.points.end());
+    return plot;
+}
+
+bool has_points(const Plot& plot) {
+    return std::any_of(plot.series.begin(), plot.series.end(), [&](const PlotSeries& series) {
+        return std::any_of(series.points.begin(), series.points.end(),
+                           [&](const auto& p) { return (!plot.x.logarithmic || p[0] > 0) && (!plot.y.logarithmic || p[1] > 0); });
+    });
+}
+
+}  // namespace
+
+TextTable StudyTable::text() const {
+    std::vector<TableColumn> heads;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        heads.emplace_back(columns[c] + (percent[c] ? ", %" : ""), std::vector{columns[c]});
+    TextTable table(heads);
+    for (const auto& row : cells) {
+        std::vector<TableCell> texts;
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            texts.emplace_back(cell_text(row[c], digits[c], percent[c]),
+                               std::vector{row[c].IsNull() ? std::string() : cell_text(row[c], 17, false)});
+        table.add(texts);
+    }
+    return table;
+}
+
+std::size_t StudyTable::column(const std::string& wanted) const {
+    return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), wanted) - columns.begin());
+}
+
+void check_collected(const StudyPlan& plan) {
+    const Study& study = plan.study;
+    std::map<std::string, std::vector<std::string>> titles;
+    std::vector<std::string> shown;
+    const auto check_name = [&](const std::string& place, const std::string& name) {
+        const bool plain = !name.empty() && name.size() <= 60 &&
+                           std::all_of(name.begin(), name.end(),
+                                       [](char c) {
+                                           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                                                  c == '-' || c == '_' || c == '.';
+                                       }) &&
+                           name[0] != '.' && name != "page";
+        if (!plain)
+            fail_input(study.at(place), "cannot be the name of files", "use letters, digits, '-', '_' and '.', and not 'page'");
+        if (std::find(shown.begin(), shown.end(), name) != shown.end())
+            fail_input(study.at(place), "is the name of a table as well", "give the plot another name");
+        shown.push_back(name);
+    };
+    if (const JsonValue* tables = find_member(*study.document, "tables"))
+        for (const auto& member : tables->GetObject()) {
+            const std::string name = text_of(member.name);
+            check_name("/tables/" + name, name);
+            check_table(plan, name, member.value);
+            for (const auto& column : list_in(member.value, "columns")) titles[name].push_back(text_in(column, "title"));
+            for (const auto& row : list_in(member.value, "beside"))
+                for (const auto& one : row.GetObject()) titles[name].push_back(text_of(one.name));
+        }
+    if (const JsonValue* plots = find_member(*study.document, "plots"))
+        for (const auto& member : plots->GetObject()) {
+            const std::string name = text_of(member.name), place = "/plots/" + name, table = text_in(member.value, "table");
+            check_name(place, name);
+            std::vector<std::string> tables;
+            for (const auto& [known, columns] : titles) tables.push_back(known);
+            if (!titles.contains(table))
+                refuse(study, place + "/table", "there is no table '" + printable(table, 60) + "'", table, tables);
+            const auto check_column = [&](const std::string& title, const std::string& at) {
+                const auto& known = titles.at(table);
+                if (std::find(known.begin(), known.end(), title) == known.end())
+                    refuse(study, place + "/" + at, "table '" + table + "' has no column '" + printable(title, 60) + "'", title,
+                           known);
+            };
+            check_column(text_in(member.value, "x"), "x");
+            if (const JsonValue& y = *find_member(member.value, "y"); y.IsString()) check_column(text_of(y), "y");
+            else
+                for (const auto& one : y.GetArray()) check_column(text_of(one), "y");
+            if (find_member(member.value, "series") != nullptr) check_column(text_in(member.value, "series"), "series");
+        }
+    const auto sections = list_in(*study.document, "page");
+    for (rapidjson::SizeType k = 0; k < sections.Size(); ++k) {
+        const auto list = list_in(sections[k], "show");
+        for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+            const std::string name = text_of(list[i]), place = "/page/" + std::to_string(k) + "/show/" + std::to_string(i);
+            if (std::find(shown.begin(), shown.end(), name) != shown.end()) continue;
+            const std::size_t dot = name.find('.');
+            const std::string step = name.substr(0, dot);
+            if (dot == std::string::npos || (study.step(step) == study.steps.size() && !is_left_out(study, step)))
+                refuse(study, place, "there is no table, plot or output of a step '" + printable(name, 60) + "'", name, shown);
+            const std::size_t s = study.step(step);
+            if (s < study.steps.size() && study.steps[s].operation != nullptr &&
+                !study.steps[s].keep.contains(name.substr(dot + 1)))
+                fail_input(study.at(place), "'" + name + "' is not kept", "name the output in 'keep' of its step");
+        }
+    }
+}
+
+std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder) {
+    std::vector<StudyTable> made;
+    if (const JsonValue* tables = find_member(*plan.study.document, "tables"))
+        for (const auto& member : tables->GetObject())
+            made.push_back(TableMaker(plan, results, folder, text_of(member.name), member.value).make());
+    return made;
+}
+
+std::vector<std::string> write_collected(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
+                                         const std::function<Path(const std::string&)>& write) {
+    const Study& study = plan.study;
+    std::vector<std::string> names;
+    const auto put = [&](const std::string& name, const std::string& text) {
+        write_file(write(name), text);
+        names.push_back(name);
+    };
+    std::map<std::string, std::string> parts;  // of the page
+    std::vector<std::string> order;
+    std::map<std::string, StudyTable> tables;
+    for (StudyTable& table : collect_tables(plan, results, folder)) {
+        const TextTable text = table.text();
+        put(table.name + ".csv", text.csv());
+        put(table.name + ".md", text.markdown());
+        put(table.name + ".tex", text.latex(table.title));
+        parts[table.name] = (table.title.empty() ? "" : "**" + table.title + "**\n\n") +
+                            (table.note.empty() ? "" : table.note + "\n\n") +
+                            (text.size() == 0 ? "Nothing to show yet.\n" : text.markdown());
+        order.push_back(table.name);
+        tables.emplace(table.name, std::move(table));
+    }
+    if (const JsonValue* plots = find_member(*study.document, "plots"))
+        for (const auto& member : plots->GetObject()) {
+            const std::string name = text_of(member.name);
+            const Plot plot = plot_of(member.value, tables.at(text_in(member.value, "table")));
+            order.push_back(name);
+            if (!has_points(plot)) continue;
+            write_plot(write(name + ".svg"), plot);
+            names.push_back(name + ".svg");
+            parts[name] = "![" + (plot.title.empty() ? name : plot.title) + "](" + name + ".svg)\n";
+        }
+    std::string page = "# " + (study.title.empty() ? study.file.filename().string() : study.title) + "\n";
+    if (const std::string note = text_in(*study.document, "note"); !note.empty()) page += "\n" + note + "\n";
+    const auto show = [&](const std::string& name) {
+        if (const auto known = parts.find(name); known != parts.end()) {
+            page += "\n" + known->second;
+            return;
+        }
+        const std::size_t dot = name.find('.');
+        const std::size_t s = dot == std::string::npos ? study.steps.size() : study.step(name.substr(0, dot));
+        if (s == study.steps.size()) return;
+        for (const std::size_t i : plan.instances_of(s)) {
+            const auto& outputs = results[i].record.outputs;
+            const auto output = outputs.find(name.substr(dot + 1));
+            if (output == outputs.end() || !output->second.kept) continue;
+            const std::string file = (plan.instances[i].folder / output->second.file).generic_string();
+            const bool is_picture = file.ends_with(".png") || file.ends_with(".svg");
+            page += "\n" + std::string(is_picture ? "!" : "") + "[" + plan.instances[i].title(study) + "](<" + file + ">)\n";
+        }
+    };
+    const auto sections = list_in(*study.document, "page");
+    for (const auto& section : sections) {
+        if (const std::string title = text_in(section, "title"); !title.empty()) page += "\n## " + title + "\n";
+        if (const std::string text = text_in(section, "text"); !text.empty()) page += "\n" + text + "\n";
+        for (const auto& one : list_in(section, "show")) show(text_of(one));
+    }
+    if (sections.Empty())
+        for (const std::string& name : order) show(name);
+    std::string problems;
+    for (std::size_t i = 0; i < results.size(); ++i)
+        if (results[i].state == InstanceState::failed)
+            problems += "- " + plan.instances[i].title(study) + ": " + results[i].problem + "\n";
+    if (!problems.empty()) page += "\n## What failed\n\n" + problems;
+    put("page.md", page);
+    return names;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,504 @@
+#include "ostraka/workflow/run.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/stopwatch.h"
+#include "ostraka/core/transaction.h"
+#include "ostraka/core/words.h"
+#include "ostraka/operation/object_files.h"
+#include "ostraka/workflow/program.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <ctime>
+#include <fstream>
+#include <set>
+#include <thread>
+
+namespace ostraka {
+
+namespace {
+
+std::string now_text() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
+}
+
+/// An instance under way or done.
+struct Work {
+    enum class Stage { waiting, queued, running, final } stage = Stage::waiting;
+    bool selected = false;
+    bool again = false;               ///< runs although it is done: what it made is needed in memory
+    std::size_t open_needs = 0;       ///< instances that it needs and that are not final
+    std::size_t open_takers = 0;      ///< instances that need it and are not final
+    std::vector<std::size_t> takers;  ///< instances that need it
+    std::map<std::string, Object> objects;
+    std::unique_ptr<Context> context;  ///< that makes the objects
+    double expected = -1;              ///< seconds, of an earlier run
+    std::size_t input_bytes = 0;
+};
+
+class Runner {
+public:
+    Runner(const StudyPlan& plan, Path folder, const RunStudyOptions& options)
+        : plan_(plan),
+          folder_(std::move(folder)),
+          options_(options),
+          works_(plan.instances.size()),
+          results_(plan.instances.size()) {
+        select();
+        for (std::size_t i = 0; i < works_.size(); ++i)
+            for (const std::size_t need : plan_.instances[i].needs) {
+                if (!works_[i].selected) continue;
+                works_[need].takers.push_back(i);
+                ++works_[need].open_takers;
+                ++works_[i].open_needs;
+            }
+        for (std::size_t i = 0; i < works_.size(); ++i) {
+            if (!works_[i].selected) continue;
+            ++selected_;
+            for (const StudyInput& input : plan_.instances[i].inputs)
+                if (!input.file.empty()) {
+                    ++file_uses_[input.file];
+                    works_[i].input_bytes += size_of_file(input.file);
+                }
+            if (works_[i].open_needs == 0) to_consider_.insert(i);
+        }
+    }
+
+    std::vector<InstanceResult> run() {
+        std::unique_lock lock(mutex_);
+        Watch* const watch = current_watch();
+        bool cancelled = false;
+        for (;;) {
+            while (!cancelled && !to_consider_.empty()) {
+                const std::size_t i = *to_consider_.begin();
+                to_consider_.erase(to_consider_.begin());
+                consider(i, lock);
+                while (start_next()) {
+                }
+                cancelled = watch != nullptr && watch->is_cancelled();
+            }
+            while (!cancelled && start_next()) {
+            }
+            join_ended(lock);
+            if (running_ == 0 && (cancelled || (to_consider_.empty() && queue_.empty()))) break;
+            changed_.wait_for(lock, std::chrono::milliseconds(100));
+            if (watch == nullptr) continue;
+            cancelled = cancelled || watch->is_cancelled();
+            if (cancelled)
+                for (const auto& [i, thread] : workers_)
+                    if (works_[i].context) works_[i].context->watch.cancel();
+            tell(*watch);
+        }
+        join_ended(lock);
+        if (cancelled)
+            throw Error(ErrorKind::cancelled, "", "cancelled", "what is done is kept: the same command goes on from there");
+        return std::move(results_);
+    }
+
+private:
+    const StudyInstance& instance(std::size_t i) const { return plan_.instances[i]; }
+    Path folder_of(std::size_t i) const { return folder_ / instance(i).folder; }
+
+    /// Those asked for, and what they need.
+    void select() {
+        std::vector<std::size_t> wanted;
+        std::vector<bool> is_taken(works_.size(), false);
+        for (const StudyInstance& one : plan_.instances)
+            for (const std::size_t need : one.needs) is_taken[need] = true;
+        for (std::size_t i = 0, leaf = 0; i < works_.size(); ++i) {
+            const std::string& name = plan_.study.steps[instance(i).step].name;
+            if (!options_.only.empty() && std::find(options_.only.begin(), options_.only.end(), name) == options_.only.end())
+                continue;
+            if (options_.shards > 1 && (is_taken[i] || leaf++ % options_.shards != options_.shard)) continue;
+            wanted.push_back(i);
+        }
+        while (!wanted.empty()) {
+            const std::size_t i = wanted.back();
+            wanted.pop_back();
+            if (works_[i].selected) continue;
+            works_[i].selected = true;
+            wanted.insert(wanted.end(), instance(i).needs.begin(), instance(i).needs.end());
+        }
+    }
+
+    bool is_there(std::size_t i, const std::string& output) const {
+        const Work& work = works_[i];
+        if (work.objects.contains(output)) return true;
+        const auto& outputs = results_[i].record.outputs;
+        const auto known = outputs.find(output);
+        return known != outputs.end() && known->second.kept;
+    }
+
+    /// What becomes of an instance whose needs are final: nothing to do, skipped, queued, or it waits for one that runs again.
+    void consider(std::size_t i, std::unique_lock<std::mutex>& lock) {
+        Work& work = works_[i];
+        InstanceResult& result = results_[i];
+        if (work.stage != Work::Stage::waiting) return;
+        for (const std::size_t need : instance(i).needs) {
+            const InstanceState state = results_[need].state;
+            if (state == InstanceState::failed || state == InstanceState::skipped) {
+                result.problem = plan_.instances[need].title(plan_.study) + " did not succeed";
+                return finish(i, InstanceState::skipped);
+            }
+            if (state == InstanceState::would_run) {
+                result.why = "it takes what " + plan_.instances[need].title(plan_.study) + " would make";
+                return finish(i, InstanceState::would_run);
+            }
+        }
+        if (!work.again) {
+            try {
+                lock.unlock();  // checksums of large files take their time
+                const auto known = read_record(folder_of(i));
+                // Where nothing is known, files are read by those who need them, and their checksums come from that.
+                std::vector<std::pair<std::string, std::string>> depends;
+                if (known) depends = dependencies_of(i);
+                std::string why = why_again(plan_, known, depends, instance(i), folder_of(i), checksums_);
+                if (why.empty() && options_.again) why = "all is to run again";
+                lock.lock();
+                if (known) work.expected = known->seconds;
+                if (why.empty()) {
+                    result.record = *known;
+                    return finish(i, InstanceState::unchanged);
+                }
+                result.record.depends = std::move(depends);
+                result.why = std::move(why);
+            } catch (const Error& error) {
+                if (!lock.owns_lock()) lock.lock();
+                result.problem = error.what();
+                return finish(i, InstanceState::failed);
+            }
+            if (options_.dry_run) return finish(i, InstanceState::would_run);
+        }
+        bool complete = true;
+        for (const StudyInput& input : instance(i).inputs) {
+            if (input.instance == no_instance || is_there(input.instance, input.output)) continue;
+            complete = false;
+            Work& other = works_[input.instance];
+            if (other.stage != Work::Stage::final) continue;
+            other.stage = Work::Stage::waiting;
+            other.again = true;
+            results_[input.instance].why = "what it makes is needed again by " + instance(i).title(plan_.study);
+            to_consider_.insert(input.instance);
+        }
+        if (!complete) return;  // considered again when they are done
+        work.stage = Work::Stage::queued;
+        queue_.push_back(i);
+    }
+
+    std::vector<std::pair<std::string, std::string>> dependencies_of(std::size_t i) {
+        std::map<std::size_t, StudyRecord> needs;
+        {
+            const std::lock_guard lock(mutex_);
+            for (const std::size_t need : instance(i).needs) needs.emplace(need, results_[need].record);
+        }
+        return dependencies(
+            plan_, instance(i), [&](std::size_t need) -> const StudyRecord& { return needs.at(need); }, checksums_,
+            options_.program_folder);
+    }
+
+    void finish(std::size_t i, InstanceState state) {
+        Work& work = works_[i];
+        const bool first = !work.again;
+        work.again = false;
+        work.stage = Work::Stage::final;
+        results_[i].state = state;
+        if (first) {
+            ++finished_;
+            for (const StudyInput& input : instance(i).inputs)
+                if (!input.file.empty() && --file_uses_[input.file] == 0) root_.forget(input.file);
+        }
+        for (const std::size_t need : instance(i).needs) {
+            if (first) --works_[need].open_takers;
+            if (works_[need].open_takers == 0) release(need);
+        }
+        if (work.open_takers == 0) release(i);
+        else if (state != InstanceState::done) works_[i].context.reset();
+        for (const std::size_t taker : work.takers) {
+            if (first) --works_[taker].open_needs;
+            if (works_[taker].open_needs == 0 && works_[taker].stage == Work::Stage::waiting) to_consider_.insert(taker);
+        }
+    }
+
+    void release(std::size_t i) {
+        works_[i].objects.clear();
+        works_[i].context.reset();
+    }
+
+    /// Starts one that is queued, if threads and memory are free.
+    bool start_next() {
+        if (queue_.empty() || running_ >= static_cast<std::size_t>(threads())) return false;
+        const std::size_t i = queue_.front();
+        // A mesh in memory with its trees comes to about a dozen times its file.
+        if (running_ > 0 && options_.memory > 0 &&
+            resident_memory() + 12 * static_cast<double>(works_[i].input_bytes) > options_.memory)
+            return false;
+        queue_.erase(queue_.begin());
+        const std::size_t side_by_side = std::min<std::size_t>(static_cast<std::size_t>(threads()), running_ + queue_.size() + 1);
+        const int share = std::max(1, threads() / static_cast<int>(side_by_side));
+        ++running_;
+        Work& work = works_[i];
+        work.stage = Work::Stage::running;
+        work.context = std::make_unique<Context>();
+        work.context->share_objects(root_);
+        workers_.emplace(i, std::thread([this, i, share] { do_work(i, share); }));
+        return true;
+    }
+
+    void do_work(std::size_t i, int share) {
+        set_threads(share);
+        InstanceState state = InstanceState::done;
+        std::string problem;
+        StudyRecord record;
+        std::map<std::string, Object> objects;
+        Context* context = nullptr;
+        {
+            const std::lock_guard lock(mutex_);
+            record.depends = results_[i].record.depends;
+            context = works_[i].context.get();
+        }
+        try {
+            const Stopwatch clock;
+            record.began = now_text();
+            if (plan_.study.steps[instance(i).step].operation != nullptr) do_operation(i, *context, record, objects, clock);
+            else do_program(i, context->watch, share, record, clock);
+        } catch (const Error& error) {
+            state = InstanceState::failed;
+            problem = error.what();
+        } catch (const std::bad_alloc&) {
+            state = InstanceState::failed;
+            problem = "out of memory (use --memory, fewer threads or smaller meshes)";
+        } catch (const std::exception& error) {
+            state = InstanceState::failed;
+            problem = std::string("internal error: ") + error.what();
+        }
+        const std::lock_guard lock(mutex_);
+        Work& work = works_[i];
+        if (state == InstanceState::done) {
+            work.objects = std::move(objects);
+            results_[i].record = std::move(record);
+        }
+        results_[i].problem = std::move(problem);
+        finish(i, state);
+        ended_.push_back(i);
+        changed_.notify_all();
+    }
+
+    void do_operation(std::size_t i, Context& context, StudyRecord& record, std::map<std::string, Object>& objects,
+                      const Stopwatch& clock) {
+        const StudyInstance& one = instance(i);
+        const Path folder = folder_of(i);
+        make_folder(folder);
+        Call call = plan_.call(one, [&](const StudyInput& input) { return source_of(input); });
+        std::set<std::string> written;  // by the operation itself
+        for (const auto& [output, file] : one.outputs) {
+            Slot& slot = call.slot(output);
+            const bool taken = std::any_of(works_[i].takers.begin(), works_[i].takers.end(), [&](std::size_t taker) {
+                const auto& inputs = instance(taker).inputs;
+                return std::any_of(inputs.begin(), inputs.end(),
+                                   [&](const StudyInput& input) { return input.instance == i && input.output == output; });
+            });
+            if (!one.kept.contains(output) || (taken && !slot.fills_folder(0))) continue;
+            slot.sources.front() = {folder / file, {}};
+            written.insert(output);
+        }
+        const Report report = call.run(context);
+        record.holds = report.holds();
+        for (const auto& read : context.files_read()) {
+            checksums_.know(read.file, read.sha256);
+            if (!is_memory(read.file) && std::none_of(one.inputs.begin(), one.inputs.end(),
+                                                      [&](const StudyInput& input) { return input.file == read.file; }))
+                record.read.emplace_back(plan_.study.relative(read.file), read.sha256);
+        }
+        auto outputs = std::make_unique<OutputTransaction>();
+        for (const auto& [output, file] : one.outputs) {
+            OutputRecord& made = record.outputs[output];
+            made.file = file;
+            made.kept = one.kept.contains(output);
+            made.is_folder = call.slot(output).fills_folder(0);
+            if (written.contains(output)) continue;
+            if (call.slot(output).sources.empty() || !call.slot(output).sources.front().object) {  // it had nothing to make
+                record.outputs.erase(output);
+                continue;
+            }
+            const Object& object = call.object(output);
+            if (made.kept) write_object(object, folder / file, output);
+            objects.emplace(output, object);
+        }
+        write_json(folder / "report.json", report.to_json());
+        outputs->commit();
+        outputs.reset();
+        for (auto& [output, made] : record.outputs) {
+            const Path file = folder / made.file;
+            if (made.kept) {
+                checksums_.forget(file);
+                if (made.is_folder ? !is_folder(file) : !file_exists(file))
+                    fail_work(file.string(), "was asked for and not made", "see what '" + output + "' depends on");
+                made.sha256 = made.is_folder ? FileChecksums().folder(file) : sha256_of_file(file);
+            } else if (const auto known = objects.find(output); known != objects.end()) {
+                const auto in_memory = known->second.as<Path>();
+                made.sha256 = in_memory ? FileChecksums().folder(*in_memory) : known->second.checksums().sha256;
+            }
+        }
+        keep(i, record, clock);
+    }
+
+    Source source_of(const StudyInput& input) {
+        const std::lock_guard lock(mutex_);
+        const Work& work = works_[input.instance];
+        if (const auto object = work.objects.find(input.output); object != work.objects.end()) {
+            Source source{{}, object->second};
+            source.object.name = results_[input.instance].record.outputs.at(input.output).file;
+            return source;
+        }
+        return {file_of(input), {}};
+    }
+    Path file_of(const StudyInput& input) const {
+        const auto& outputs = results_[input.instance].record.outputs;
+        const auto known = outputs.find(input.output);
+        if (known == outputs.end())
+            fail_work(plan_.instances[input.instance].title(plan_.study), "has not made '" + input.output + "'",
+                      "look at what it wrote, and name that");
+        return std::filesystem::absolute(folder_of(input.instance) / known->second.file);
+    }
+
+    void do_program(std::size_t i, const Watch& watch, int share, StudyRecord& record, const Stopwatch& clock) {
+        const StudyInstance& one = instance(i);
+        const Path folder = std::filesystem::absolute(folder_of(i));
+        std::error_code code;
+        std::filesystem::remove_all(folder, code);  // what an earlier run left
+        make_folder(folder);
+        const auto words = plan_.words(
+            one,
+            [&](const StudyInput& input) {
+                const std::lock_guard lock(mutex_);
+                return input.instance == no_instance ? input.file : file_of(input);
+            },
+            folder);
+        const Path program = find_program(words.front(), options_.program_folder, plan_.study.steps[one.step].name);
+        const int exit_code =
+            run_program(std::filesystem::absolute(program), words, folder, share, [&] { return watch.is_cancelled(); });
+        if (watch.is_cancelled()) throw Error(ErrorKind::cancelled, "", "cancelled", "nothing was written");
+        if (exit_code != 0 && exit_code != 3) {
+            std::string text = read_file(folder / "output.txt");
+            if (text.size() > 600) text = "..." + text.substr(text.size() - 600);
+            fail_work(words.front(),
+                      "ended with exit code " + std::to_string(exit_code) + ": " + printable(std::string(trimmed(text)), 700),
+                      "see " + (folder / "output.txt").string());
+        }
+        record.holds = exit_code == 0;
+        for (std::filesystem::recursive_directory_iterator entry(folder), end; entry != end; ++entry) {
+            if (!entry->is_regular_file()) continue;
+            const std::string name = entry->path().lexically_relative(folder).generic_string();
+            record.outputs[name] = {name, sha256_of_file(entry->path()), true, false};
+            checksums_.forget(folder_of(i) / name);
+        }
+        Json report(rapidjson::kObjectType);
+        auto& allocator = report.GetAllocator();
+        add_members(report, allocator, "format", "ostraka-report", "command", words.front(), "result",
+                    json_object(allocator, "holds", record.holds));
+        write_json(folder / "report.json", report);
+        keep(i, record, clock);
+    }
+
+    /// The record stands last: without it the instance runs again.
+    void keep(std::size_t i, StudyRecord& record, const Stopwatch& clock) {
+        const Path folder = folder_of(i);
+        const auto before = read_record(folder);
+        if (record.depends.empty()) record.depends = dependencies_of(i);
+        record.seconds = clock.seconds();
+        record.ended = now_text();
+        write_record(folder, plan_, instance(i), record);
+        if (!before) return;
+        for (const auto& [output, was] : before->outputs) {  // under another name
+            const bool again = std::any_of(record.outputs.begin(), record.outputs.end(),
+                                           [&](const auto& made) { return made.second.kept && made.second.file == was.file; });
+            if (was.kept && !again && !was.is_folder && file_exists(folder / was.file)) remove_file(folder / was.file);
+        }
+    }
+
+    void join_ended(std::unique_lock<std::mutex>& lock) {
+        while (!ended_.empty()) {
+            const auto worker = workers_.find(ended_.back());
+            ended_.pop_back();
+            std::thread thread = std::move(worker->second);
+            workers_.erase(worker);
+            lock.unlock();
+            thread.join();
+            lock.lock();
+            --running_;
+        }
+    }
+
+    void tell(const Watch& watch) {
+        if (!watch.on_progress || selected_ == 0) return;
+        double known = 0, left = 0;
+        std::size_t count = 0, open = 0;
+        for (std::size_t i = 0; i < works_.size(); ++i) {
+            if (results_[i].state == InstanceState::done) known += results_[i].record.seconds, ++count;
+            if (works_[i].selected && works_[i].stage != Work::Stage::final) ++open;
+        }
+        const double mean = count > 0 ? known / static_cast<double>(count) : -1;
+        bool certain = true;
+        for (const Work& work : works_)
+            if (work.selected && work.stage != Work::Stage::final) {
+                const double seconds = work.expected >= 0 ? work.expected : mean;
+                certain = certain && seconds >= 0;
+                left += std::max(0.0, seconds);
+            }
+        left /= static_cast<double>(std::max<std::size_t>(1, std::min<std::size_t>(static_cast<std::size_t>(threads()), open)));
+        std::string phase;
+        for (const auto& [i, thread] : workers_) phase += (phase.empty() ? "" : ", ") + instance(i).title(plan_.study);
+        phase += ": " + std::to_string(finished_) + " of " + std::to_string(selected_);
+        if (certain && open > 0)
+            phase += left < 90 ? ", " + std::to_string(static_cast<int>(left) + 1) + " s left"
+                               : ", " + std::to_string(static_cast<int>(left / 60) + 1) + " min left";
+        watch.on_progress(phase, std::min(0.999, static_cast<double>(finished_) / static_cast<double>(selected_)));
+    }
+
+    const StudyPlan& plan_;
+    const Path folder_;
+    const RunStudyOptions& options_;
+    std::vector<Work> works_;
+    std::vector<InstanceResult> results_;
+    FileChecksums checksums_;
+    Context root_;  ///< keeps what files hold as long as an instance may need it
+    std::map<Path, std::size_t> file_uses_;
+    std::set<std::size_t> to_consider_;
+    std::vector<std::size_t> queue_, ended_;
+    std::map<std::size_t, std::thread> workers_;
+    std::size_t running_ = 0, finished_ = 0, selected_ = 0;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+};
+
+}  // namespace
+
+std::string to_string(InstanceState state) {
+    static constexpr const char* names[]{"left out", "unchanged", "would run", "done", "failed", "skipped"};
+    return names[static_cast<std::size_t>(state)];
+}
+
+double resident_memory() {
+    std::ifstream file("/proc/self/statm");
+    double all = 0, resident = 0;
+    return file >> all >> resident ? resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) : 0;
+}
+
+std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options) {
+    for (const std::string& name : options.only)
+        if (plan.study.step(name) == plan.study.steps.size())
+            fail_usage("--only names '" + printable(name, 60) + "', which is no step of " + plan.study.file.string(),
+                       "its steps: " + joined(plan.study.steps, ", ", &StudyStep::name));
+    return Runner(plan, folder, options).run();
+}
+
+}  // namespace ostraka
