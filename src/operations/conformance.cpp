@@ -163,7 +163,8 @@ struct ConformanceRun final : Conformance {
     }
 
     void check() const override {
-        if (command.empty()) fail_usage("no command is given", "write it behind --: ostraka conformance run -- python3 backend.py");
+        if (command.empty())
+            fail_usage("no command is given", "write it behind --: ostraka conformance run -- python3 backend.py");
     }
 
     void run(Context&, Report& report) override {
