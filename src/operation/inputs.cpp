@@ -113,7 +113,7 @@ const MeshFile& MeshInput::get(std::size_t i) const {
         const auto soup = object.as<PolygonSoup>();
         if (!mesh && !soup) return {};
         MeshFile file = mesh ? MeshFile{*mesh, {}, {}, {}} : mesh_of_polygons(*soup, object.name);
-        context->record_object(*this, i, mesh_checksum(file.mesh));
+        tell_checksum(*this, i, [&] { return mesh_checksum(file.mesh); });
         return file;
     };
     // Where objects are kept, the file is read once for those who want its polygons and those who want the mesh.
