@@ -1,0 +1,421 @@
+"""What operations take and make: each object stands for a file and need not be one."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy
+
+from . import _ostraka
+from ._errors import InputError, UsageError
+
+
+def _is_file_name(value: Any) -> bool:
+    return isinstance(value, (str, bytes, os.PathLike))
+
+
+class Object:
+    """Something that an operation takes or makes. It can be saved, and given to another operation."""
+
+    def __init__(self, native: _ostraka.Object) -> None:
+        self._native = native
+
+    @property
+    def name(self) -> str:
+        """What its file would be called: reports, provenance and other files name it so."""
+        return self._native.name
+
+    @name.setter
+    def name(self, name: str) -> None:
+        if not isinstance(name, str) or not name:
+            raise UsageError("the name of an object is no text", "", "name it as its file would be called")
+        self._native.name = name
+
+    def save(self, file: str | os.PathLike[str]) -> pathlib.Path:
+        """Write it. The file appears when it is complete, or not at all."""
+        self._native.save(os.fsencode(file))
+        return pathlib.Path(os.fsdecode(file))
+
+    def to_bytes(self) -> bytes:
+        """The bytes of its file."""
+        return self._native.bytes()
+
+    def __repr__(self) -> str:
+        return f"<ostraka.{type(self).__name__} {self.name!r}>"
+
+
+def _numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
+    """An array of whole numbers ("integers") or numbers; anything else is refused."""
+    try:
+        array = numpy.asarray(value)
+    except (ValueError, TypeError) as error:
+        raise InputError(f"no array can be made of it: {error}", name, f"give {kind}") from None
+    if array.size == 0 and array.dtype == numpy.float64:
+        array = array.astype(numpy.int64) if kind == "integers" else array
+    if array.dtype.kind not in ("iu" if kind == "integers" else "iuf"):
+        raise InputError(f"is an array of {array.dtype}", name, f"give {kind}")
+    return array
+
+
+_extras = {
+    "vertex_colours": numpy.uint8,
+    "face_colours": numpy.uint8,
+    "vertex_labels": numpy.int32,
+    "face_labels": numpy.int32,
+}
+
+
+def _extra(name: str, value: Any) -> numpy.ndarray:
+    array = _numbers(name, value, "integers")
+    limits = numpy.iinfo(_extras[name])
+    if array.size and (array.min() < limits.min or array.max() > limits.max):
+        raise InputError(f"holds numbers that are not from {limits.min} to {limits.max}", name, "give such numbers")
+    if name.endswith("colours") and array.ndim == 2 and array.shape[1] == 3:
+        array = numpy.column_stack([array, numpy.full(len(array), 255)])
+    if array.ndim != (2 if name.endswith("colours") else 1) or array.shape[1:] not in ((), (4,)):
+        raise InputError(f"is an array of the shape {array.shape}", name,
+                         "give red, green, blue (and alpha) of each" if name.endswith("colours") else "give one of each")
+    return array.astype(_extras[name])
+
+
+def _polygons(faces: Any) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Where each polygon begins among the corners, and the corners: of an array, or of lists of any lengths."""
+    if not isinstance(faces, numpy.ndarray) and hasattr(faces, "__len__"):
+        lengths = [len(face) if hasattr(face, "__len__") else 0 for face in faces]
+        if len(set(lengths)) > 1:
+            corners = [_numbers("faces", face, "integers") for face in faces]
+            return numpy.cumsum([0, *lengths]), numpy.concatenate(corners).astype(numpy.int64)
+    array = _numbers("faces", faces, "integers")
+    if array.size == 0:
+        return numpy.zeros(1, numpy.int64), numpy.zeros(0, numpy.int64)
+    if array.ndim != 2 or array.shape[1] < 3:
+        raise InputError(f"is an array of the shape {array.shape}", "faces", "give the three vertices of each triangle")
+    if array.dtype == numpy.uint64 and array.max() > numpy.iinfo(numpy.int64).max:
+        raise InputError("names vertices that are not there", "faces", "count vertices from 0")
+    return numpy.arange(0, array.size + 1, array.shape[1]), array.astype(numpy.int64, copy=False).reshape(-1)
+
+
+def _padded_polygons(faces: Any) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """The same of a list as VTK keeps it: the number of corners of each polygon stands before them."""
+    array = _numbers("faces", faces, "integers").astype(numpy.int64).reshape(-1)
+    if array.size % 4 == 0 and (array[::4] == 3).all():
+        return _polygons(array.reshape(-1, 4)[:, 1:])
+    begins, at = [], 0
+    while at < array.size and array[at] >= 0:
+        begins.append(at)
+        at += int(array[at]) + 1
+    if at != array.size:
+        raise InputError("is no list of polygons", "faces", "give the number of corners before the corners of each")
+    keep = numpy.ones(array.size, bool)
+    keep[begins] = False
+    return numpy.concatenate([[0], numpy.cumsum(array[begins])]).astype(numpy.int64), array[keep]
+
+
+class Mesh(Object):
+    """A mesh: from a file, from arrays, or from an object of trimesh or PyVista.
+
+    Mesh("pot.ply")
+    Mesh(points, faces)            # n x 3 numbers; m x 3 whole numbers, or lists of corners
+    Mesh(trimesh_or_pyvista_mesh)  # anything with .vertices and .faces, or with .points and .faces
+
+    Points and faces are copied once, here; `points` and the others show the memory of the toolkit. A mesh cannot be changed.
+
+    Parameters
+    ----------
+    source : a file, an object with a mesh, or the points
+    faces : of points
+    name : what its file would be called; its ending says in which format it is saved for operations that read files
+    vertex_colours, face_colours : red, green, blue (and alpha) of each, 0 to 255
+    vertex_labels, face_labels : a whole number of each
+    """
+
+    def __init__(self, source: Any, faces: Any = None, *, name: str | None = None, **extras: Any) -> None:
+        self._faces: numpy.ndarray | None = None
+        if isinstance(source, _ostraka.Object):
+            super().__init__(source)
+            return
+        for extra in extras:
+            if extra not in _extras:
+                near = _ostraka.nearest_name(extra, list(_extras))
+                raise UsageError(f"there is no '{extra}' of a mesh", "Mesh",
+                                 f"did you mean '{near}'?" if near else "there are " + ", ".join(_extras))
+        if _is_file_name(source):
+            if faces is not None or extras:
+                raise UsageError("a file and arrays are given", "Mesh", "give either")
+            super().__init__(_ostraka.read_mesh(os.fsencode(source)))
+            if name is not None:
+                self.name = name
+            return
+        if faces is not None:
+            begin, corners = _polygons(faces)
+            points = source
+        elif hasattr(source, "vertices") and hasattr(source, "faces"):  # trimesh
+            points = source.vertices
+            begin, corners = _polygons(source.faces)
+        elif hasattr(source, "points") and hasattr(source, "faces"):  # PyVista
+            points = source.points
+            shape = numpy.asarray(source.faces)
+            begin, corners = _polygons(shape) if shape.ndim == 2 else _padded_polygons(shape)
+        else:
+            raise UsageError(f"no mesh can be made of {type(source).__name__}", "Mesh",
+                             "give a file, points and faces, or an object of trimesh or PyVista")
+        points = _numbers("points", points, "numbers")
+        if points.size == 0:
+            points = points.reshape(0, 3)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise InputError(f"is an array of the shape {points.shape}", "points", "give x, y, z of each")
+        arrays = {key: _extra(key, value) for key, value in extras.items()}
+        super().__init__(_ostraka.make_mesh(points, begin, corners, arrays, name or "mesh.ply"))
+
+    @Object.name.setter  # type: ignore[attr-defined]
+    def name(self, name: str) -> None:
+        _ostraka.check_mesh_name(name)
+        Object.name.fset(self, name)  # type: ignore[attr-defined]
+
+    @property
+    def points(self) -> numpy.ndarray:
+        """Coordinates, n x 3, float64: a view that cannot be written to."""
+        return self._native.points()
+
+    @property
+    def faces(self) -> numpy.ndarray:
+        """The corners of the triangles, m x 3, uint32. Of other polygons, see `polygons`."""
+        if self._faces is None:
+            begin, corners = self.polygons
+            if (numpy.diff(begin) != 3).any():
+                raise InputError("has polygons that are no triangles", self.name, "use polygons, or ostraka.mesh.convert")
+            self._faces = corners.reshape(-1, 3)
+        return self._faces
+
+    @property
+    def polygons(self) -> tuple[numpy.ndarray, numpy.ndarray]:
+        """Where each polygon begins among the corners (one more than there are polygons), and the corners."""
+        return self._native.polygons()
+
+    @property
+    def extras(self) -> dict[str, numpy.ndarray]:
+        """Colours, labels and texture coordinates, by name, as far as there are any: views that cannot be written to."""
+        return self._native.extras()
+
+    @property
+    def is_manifold(self) -> bool:
+        """It is an oriented manifold of triangles, with or without border. What is not can be repaired."""
+        return self._native.is_manifold()
+
+    def __repr__(self) -> str:
+        faces = len(self.polygons[0]) - 1 if self._faces is None else len(self._faces)
+        return f"<ostraka.Mesh {self.name!r}: {len(self.points)} vertices, {faces} faces>"
+
+
+class Document(Object):
+    """A JSON document: from a file, or of dicts and lists."""
+
+    _ending = ".json"
+
+    def __init__(self, source: Any, *, name: str | None = None) -> None:
+        self._document: Any = None
+        if isinstance(source, _ostraka.Object):
+            super().__init__(source)
+        elif _is_file_name(source):
+            super().__init__(_ostraka.read_bytes(os.fsencode(source)))
+        elif isinstance(source, (Mapping, list, tuple)):
+            called = name or "document" + self._ending
+            try:
+                text = json.dumps(source, allow_nan=False, default=_plain)
+            except (ValueError, TypeError, RecursionError) as error:
+                raise InputError(f"is no JSON document: {error}", called, "use texts, numbers, dicts and lists") from None
+            super().__init__(_ostraka.make_document(text, called))
+        else:
+            raise UsageError(f"no document can be made of {type(source).__name__}", type(self).__name__,
+                             "give a file, a dict or a list")
+        if name is not None:
+            self.name = name
+
+    @property
+    def document(self) -> Any:
+        """It as dicts and lists. They are a copy: a changed one makes a new object, `type(it)(document)`."""
+        try:
+            return json.loads(self.to_bytes())
+        except ValueError as error:
+            raise InputError(f"is no JSON document: {error}", self.name, "give another file") from None
+
+    def _known(self) -> Any:
+        if self._document is None:
+            self._document = self.document
+        return self._document
+
+    def __getitem__(self, key: Any) -> Any:
+        return self._known()[key]
+
+
+class Annotations(Document):
+    """Annotations of a mesh, each a dict as in the file (.ant.json). They are counted, listed, and found by id or tag."""
+
+    _ending = ".ant.json"
+
+    def _list(self) -> list[dict[str, Any]]:
+        document = self._known()
+        found = document.get("annotations") if isinstance(document, dict) else None
+        if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
+            raise InputError("holds no list of annotations", self.name, 'give {"annotations": [...]}')
+        return found
+
+    def __len__(self) -> int:
+        return len(self._list())
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self._list())
+
+    def __getitem__(self, key: Any) -> Any:
+        """The annotation of this id (a number) or tag (a text), or a member of the file."""
+        for one in self._list():
+            if one.get("id" if isinstance(key, int) else "tag") == key:
+                return one
+        document = self._known()
+        if key in document:
+            return document[key]
+        near = _ostraka.nearest_name(str(key), [str(tag) for tag in self.tags])
+        raise KeyError(f"there is no annotation {key!r}" + (f"; did you mean {near!r}?" if near else ""))
+
+    @property
+    def tags(self) -> list[str]:
+        return [one.get("tag", "") for one in self._list()]
+
+    def faces(self, mesh: Any) -> dict[int, numpy.ndarray]:
+        """The faces of each region on its mesh, by its id."""
+        return self._native.faces(as_mesh(mesh)._native)[0]
+
+    def labels(self, mesh: Any) -> numpy.ndarray:
+        """For each face of their mesh the id of the smallest region on it, -1 for none; the whole object does not count."""
+        return self._native.faces(as_mesh(mesh)._native)[1]
+
+
+class Array(Object):
+    """Numbers: a value of each element, coordinates in a cage, or new indices of old elements (-1: gone)."""
+
+    def __init__(self, source: Any, *, name: str | None = None) -> None:
+        if isinstance(source, _ostraka.Object):
+            super().__init__(source)
+            return
+        array = _numbers("values", source, "numbers")
+        if array.ndim != 1:
+            raise InputError(f"is an array of the shape {array.shape}", name or "values", "give one number an element")
+        super().__init__(_ostraka.make_values(array, name or "values.npy"))
+
+    @property
+    def array(self) -> numpy.ndarray:
+        """A view that cannot be written to."""
+        return self._native.array()
+
+    @property
+    def normals(self) -> numpy.ndarray | None:
+        """Of Green coordinates the weights of the normals."""
+        return self._native.normals()
+
+    def __array__(self, dtype: Any = None) -> numpy.ndarray:
+        return self.array if dtype is None else self.array.astype(dtype)
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+
+class Bytes(Object):
+    """A file that is kept as it is: a picture, a table, a text."""
+
+    def __init__(self, source: Any, *, name: str | None = None) -> None:
+        if isinstance(source, _ostraka.Object):
+            super().__init__(source)
+        elif isinstance(source, (bytes, bytearray, memoryview)):
+            super().__init__(_ostraka.make_bytes(bytes(source), name or "bytes"))
+        elif _is_file_name(source):
+            super().__init__(_ostraka.read_bytes(os.fsencode(source)))
+            if name is not None:
+                self.name = name
+        else:
+            raise UsageError(f"no bytes can be made of {type(source).__name__}", "Bytes", "give bytes or a file")
+
+    @property
+    def text(self) -> str:
+        return self.to_bytes().decode(errors="replace")
+
+    def _repr_png_(self) -> bytes | None:
+        data = self.to_bytes()
+        return data if data.startswith(b"\x89PNG") else None
+
+    def _repr_svg_(self) -> str | None:
+        return self.text if self.name.endswith(".svg") else None
+
+
+class Folder(Object, Mapping):
+    """Files that were made together, by their names."""
+
+    def __init__(self, native: _ostraka.Object) -> None:
+        super().__init__(native)
+        self._files: dict[str, Bytes] = {name: Bytes(one) for name, one in native.files().items()}
+
+    def __getitem__(self, name: str) -> Bytes:
+        return self._files[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+    __hash__ = object.__hash__
+    __eq__ = object.__eq__
+
+    def __repr__(self) -> str:
+        return f"<ostraka.Folder: {', '.join(self._files)}>"
+
+
+class Template(Object):
+    """A template with its parts."""
+
+
+_classes = {"mesh": Mesh, "annotations": Annotations, "document": Document, "array": Array, "folder": Folder, "bytes": Bytes}
+for _class in (Object, Template, *_classes.values()):
+    _class.__module__ = "ostraka"
+
+
+def shown(native: _ostraka.Object) -> Object:
+    """An object of the native module as one of these classes."""
+    return _classes.get(native.type, Template)(native)
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of NumPy within a document."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} cannot be written")
+
+
+def as_mesh(value: Any, name: str | None = None) -> Mesh:
+    return value if isinstance(value, Mesh) else Mesh(value, name=name)
+
+
+def as_given(value: Any, kind: str, name: str, called: str) -> Any:
+    """What is given for an input of this kind: the bytes of a file's name, or an object of the native module."""
+    if isinstance(value, Object):
+        return value._native
+    if isinstance(value, (str, os.PathLike)):
+        return os.fsencode(value)
+    if kind in ("mesh", "cage") and not isinstance(value, (bytes, bytearray, memoryview)):
+        return Mesh(value, name=called)._native
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return Bytes(value, name=called)._native
+    if isinstance(value, Mapping):
+        return Document(value, name=called)._native
+    is_list = isinstance(value, (list, tuple))
+    if is_list and not (kind == "values" or value and all(isinstance(one, (int, float)) for one in value)):
+        return Document(value, name=called)._native
+    if is_list or hasattr(value, "__array__"):
+        array = _numbers(name, value, "numbers")
+        if kind != "values" and array.dtype.kind in "iu" and array.ndim == 1:
+            return Bytes("".join(f"{one}\n" for one in array.tolist()).encode(), name=name + ".txt")._native
+        return Array(array, name=called)._native
+    raise UsageError(f"{name} is of the type {type(value).__name__}", "", "give a file, or an object in memory")

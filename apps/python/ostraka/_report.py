@@ -1,0 +1,197 @@
+"""Reports and results."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import pathlib
+from collections.abc import Iterator
+from typing import Any
+
+import numpy
+
+from . import _ostraka
+from ._objects import Bytes
+
+_dtypes = {"boolean": "?", "integer": "i8", "number": "f8"}
+
+
+class Table:
+    """A table of a report: a list of rows (dicts), with columns that can be taken as arrays by name."""
+
+    def __init__(self, name: str, columns: list[dict[str, str]], rows: list[dict[str, Any]]) -> None:
+        self.name = name
+        self._columns = columns
+        self.rows = [{column["key"]: _member(row, column["key"]) for column in columns} for row in rows]
+
+    @property
+    def columns(self) -> list[str]:
+        return [column["key"] for column in self._columns]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of the columns that have one; "length" is the unit of length of the objects."""
+        return {column["key"]: column["unit"] for column in self._columns if column["unit"]}
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self.rows)
+
+    def __getitem__(self, key: int | str) -> Any:
+        """A row by its number, a column (an array) by its name."""
+        return self.rows[key] if not isinstance(key, str) else self.to_numpy()[key]
+
+    def to_numpy(self) -> numpy.ndarray:
+        """A structured array, a field for each column. Cells that are empty: nan; in columns of another type than numbers None."""
+        fields = []
+        for column in self._columns:
+            cells = [row[column["key"]] for row in self.rows]
+            dtype = _dtypes.get(column["type"], "O")
+            if None in cells:
+                dtype = "f8" if dtype in ("i8", "f8") else "O"
+            fields.append((column["key"], dtype))
+        array = numpy.empty(len(self.rows), dtype=fields)
+        for key, dtype in fields:
+            cells = [row[key] for row in self.rows]
+            for i, cell in enumerate(cells):
+                array[key][i] = numpy.nan if cell is None and dtype == "f8" else cell
+        return array
+
+    def to_pandas(self) -> Any:
+        """A DataFrame, if pandas is there."""
+        import pandas
+
+        return pandas.DataFrame(self.rows, columns=self.columns)
+
+    def to_csv(self, file: str | os.PathLike[str] | None = None) -> str | None:
+        """The table as CSV: written to a file, or as text if none is named."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        for row in self.rows:
+            writer.writerow([json.dumps(cell) if isinstance(cell, (list, dict)) else cell for cell in row.values()])
+        if file is None:
+            return text.getvalue()
+        Bytes(text.getvalue().encode()).save(file)
+        return None
+
+    def __repr__(self) -> str:
+        return f"<ostraka.Table {self.name!r}: {len(self)} rows of {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        head = "".join(f"<th>{escape(column)}</th>" for column in self.columns)
+        body = "".join("<tr>" + "".join(f"<td>{escape('' if cell is None else str(cell))}</td>" for cell in row.values())
+                       + "</tr>" for row in self.rows)
+        return f"<table><tr>{head}</tr>{body}</table>"
+
+
+def _member(values: Any, key: str) -> Any:
+    """"a.b" is the member b of the member a; None where there is none."""
+    for name in key.split("."):
+        if not isinstance(values, dict) or name not in values:
+            return None
+        values = values[name]
+    return values
+
+
+class Report:
+    """What an operation has to say; printed as the command prints it."""
+
+    def __init__(self, native: _ostraka.Report) -> None:
+        self._native = native
+        self._json: dict[str, Any] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """False where the answer is "no": where the command would end with exit code 3."""
+        return self._native.holds
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it, as `--json` prints it."""
+        if self._json is None:
+            self._json = json.loads(self._native.text("json"))
+        return self._json
+
+    @property
+    def result(self) -> dict[str, Any]:
+        return self.to_dict()["result"]
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """The operation, its options, and the checksums of what it read."""
+        return self.to_dict()["provenance"]
+
+    @property
+    def notes(self) -> list[str]:
+        """What one should know beside the result."""
+        return self.result.get("notes", [])
+
+    @property
+    def tables(self) -> dict[str, Table]:
+        tables = {}
+        for layout in json.loads(self._native.layout()):
+            rows = _member(self.result, layout["key"])
+            if isinstance(rows, list):
+                tables[layout["key"]] = Table(layout["key"], layout["columns"], rows)
+        return tables
+
+    def to_csv(self) -> str:
+        """As `--show csv` prints it."""
+        return self._native.text("csv")
+
+    def to_markdown(self) -> str:
+        """As `--show markdown` prints it."""
+        return self._native.text("markdown")
+
+    def __getitem__(self, key: str) -> Any:
+        """A member of the result."""
+        return self.result[key]
+
+    def __repr__(self) -> str:
+        notes = "".join(f"note: {note}\n" for note in self.notes)
+        return (self._native.text("table") + notes).rstrip("\n")
+
+    def _repr_markdown_(self) -> str:
+        return self.to_markdown() + "".join(f"\n*Note: {note}*\n" for note in self.notes)
+
+
+class Result:
+    """What an operation gives: its report, and its outputs by name, as attributes or in brackets.
+
+    An output is an object if it stayed in memory, the path of its file if it was written, a list if there are several, None if
+    there is none. The name of an output that is already taken ends in "_".
+    """
+
+    def __init__(self, report: Report, outputs: dict[str, Any]) -> None:
+        self.report = report
+        self.outputs = outputs
+        for name, value in outputs.items():
+            setattr(self, name + "_" if hasattr(type(self), name) or name in ("report", "outputs") else name, value)
+
+    @property
+    def holds(self) -> bool:
+        """False where the answer is "no"."""
+        return self.report.holds
+
+    def __getitem__(self, name: str) -> Any:
+        return self.outputs[name]
+
+    def __repr__(self) -> str:
+        lines = [repr(self.report)] if repr(self.report) else []
+        for name, value in self.outputs.items():
+            shown = f"written to {value}" if isinstance(value, pathlib.Path) else repr(value)
+            lines.append(f"{name}: {shown}")
+        return "\n".join(lines)
+
+    def _repr_markdown_(self) -> str:
+        return self.report._repr_markdown_()
+
+
+for _class in (Table, Report, Result):
+    _class.__module__ = "ostraka"

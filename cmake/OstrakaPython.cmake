@@ -1,0 +1,49 @@
+# The Python module `ostraka`: the native half, and the package around it. For the distribution's Python: that is the one that the
+# distribution's pybind11 and NumPy are for; -DPython3_EXECUTABLE=... names another.
+if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
+find_package(Python3 COMPONENTS Interpreter Development.Module)
+find_path(PYBIND11_INCLUDE pybind11/pybind11.h)
+set(missing "")
+if(NOT Python3_Development.Module_FOUND)
+  list(APPEND missing "Python's headers (python3-dev)")
+else()
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import numpy" RESULT_VARIABLE no_numpy OUTPUT_QUIET ERROR_QUIET)
+  if(no_numpy)
+    list(APPEND missing "NumPy (python3-numpy)")
+  endif()
+endif()
+if(NOT PYBIND11_INCLUDE)
+  list(APPEND missing "pybind11 (pybind11-dev)")
+endif()
+if(missing)
+  list(JOIN missing ", " missing)
+  message(WARNING "The Python module is LEFT OUT: ${missing} cannot be found. Install it, or set OSTRAKA_PYTHON=OFF")
+  return()
+endif()
+
+Python3_add_library(ostraka_python MODULE WITH_SOABI apps/python/module.cpp)
+target_include_directories(ostraka_python SYSTEM PRIVATE ${PYBIND11_INCLUDE})
+target_link_libraries(ostraka_python PRIVATE ostraka ostraka_flags)
+# Beside the package's own files, so that the folder can be imported from; what the library is made of stays within the module.
+set(OSTRAKA_PYTHON_BUILT ${CMAKE_BINARY_DIR}/python)
+set_target_properties(ostraka_python PROPERTIES OUTPUT_NAME _ostraka CXX_VISIBILITY_PRESET hidden
+  LIBRARY_OUTPUT_DIRECTORY ${OSTRAKA_PYTHON_BUILT}/ostraka)
+target_link_options(ostraka_python PRIVATE LINKER:--exclude-libs,ALL)
+file(GLOB_RECURSE package_files RELATIVE ${CMAKE_SOURCE_DIR}/apps/python CONFIGURE_DEPENDS
+  apps/python/ostraka/*.py apps/python/ostraka/*.pyi apps/python/ostraka/py.typed)
+foreach(file IN LISTS package_files)
+  get_filename_component(folder ${file} DIRECTORY)
+  file(MAKE_DIRECTORY ${OSTRAKA_PYTHON_BUILT}/${folder})
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/apps/python/${file} ${OSTRAKA_PYTHON_BUILT}/${file} SYMBOLIC)
+endforeach()
+
+# Debian's Python looks into this folder below /usr and below /usr/local, so that a package and `cmake --install` may use the same
+# one; it is that of one version, as the native half is. CMAKE_INSTALL_LIBDIR would be another one below /usr.
+set(OSTRAKA_PYTHON_DIR lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages CACHE STRING
+  "Where the Python module is installed, below the prefix")
+install(TARGETS ostraka_python LIBRARY DESTINATION ${OSTRAKA_PYTHON_DIR}/ostraka)
+install(DIRECTORY apps/python/ostraka DESTINATION ${OSTRAKA_PYTHON_DIR}
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+message(STATUS "The Python module is for ${Python3_EXECUTABLE} (${Python3_VERSION}), below the prefix in ${OSTRAKA_PYTHON_DIR}")
