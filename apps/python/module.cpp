@@ -55,6 +55,70 @@ Path path_of(const py::bytes& name) {
     return text;
 }
 
+// ---- work ----
+
+std::atomic<int> wanted_threads{0};
+
+/// Runs `work` on a thread of its own, without Python's lock. This thread hears signals meanwhile: what their handlers raise,
+/// such as KeyboardInterrupt, cancels the work and is raised once it has ended. So does what `progress` raises.
+template <class Work>
+void run_watched(Watch& watch, const py::object& progress, const Work& work) {
+    std::exception_ptr failure;
+    std::optional<py::error_already_set> raised;  // touched under Python's lock only
+    const auto stop = [&] {
+        py::error_already_set error;
+        if (!raised) raised.emplace(std::move(error));
+        watch.cancel();
+    };
+    if (!progress.is_none())
+        watch.on_progress = [&](const std::string& phase, double share) {
+            const py::gil_scoped_acquire lock;
+            if (raised) return;
+            PyObject* answer = PyObject_CallFunction(progress.ptr(), "sd", phase.c_str(), share);
+            if (answer == nullptr) stop();
+            Py_XDECREF(answer);
+        };
+    {
+        const py::gil_scoped_release free;
+        std::mutex mutex;
+        std::condition_variable ended;
+        bool done = false;
+        std::thread worker([&] {
+            try {
+                set_threads(wanted_threads);  // a setting of each thread
+                const WatchScope watched(&watch);
+                work();
+            } catch (...) {
+                failure = std::current_exception();
+            }
+            const std::lock_guard lock(mutex);
+            done = true;
+            ended.notify_one();
+        });
+        for (std::unique_lock lock(mutex); !ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return done; });) {
+            lock.unlock();
+            {
+                const py::gil_scoped_acquire python;
+                if (PyErr_CheckSignals() != 0) stop();
+            }
+            lock.lock();
+        }
+        worker.join();
+    }
+    watch.on_progress = nullptr;
+    if (raised) throw py::error_already_set(std::move(*raised));
+    if (failure) std::rethrow_exception(failure);
+}
+
+/// The same of work that is not watched.
+template <class Work>
+auto unlocked(const Work& work) {
+    Watch watch;
+    std::optional<decltype(work())> result;
+    run_watched(watch, py::none(), [&] { result.emplace(work()); });
+    return std::move(*result);
+}
+
 // ---- objects ----
 
 /// An object of the toolkit that Python holds.
@@ -77,7 +141,7 @@ std::string type_of(const Held& held) {
 
 /// A name for a file in memory whose folder is removed at the end.
 struct InMemory {
-    explicit InMemory(const std::string& name) : folder("memory:.python/" + std::to_string(++count)), file(folder / name) {}
+    explicit InMemory(const std::string& name) : folder("memory:.python-" + std::to_string(++count)), file(folder / name) {}
     ~InMemory() { forget_memory(folder); }
     InMemory(const InMemory&) = delete;
     InMemory& operator=(const InMemory&) = delete;
@@ -105,20 +169,16 @@ void write_object(const Object& object, const Path& file) {
 
 void save(const Held& held, const py::bytes& name) {
     const Path file = path_of(name);
-    const py::gil_scoped_release free;
-    write_object(held.object, file);
+    unlocked([&] { return write_object(held.object, file), true; });
 }
 
 py::bytes bytes_of(const Held& held) {
     if (const auto bytes = held.object.as<std::string>()) return *bytes;
-    std::string bytes;
-    {
-        const py::gil_scoped_release free;
+    return unlocked([&] {
         const InMemory place(Path(held.object.name).filename().string());
         write_object(held.object, place.file);
-        bytes = read_file(place.file);
-    }
-    return bytes;
+        return read_file(place.file);
+    });
 }
 
 /// An array that shows memory of the toolkit, without a copy; it keeps the owner alive and cannot be written to.
@@ -168,10 +228,11 @@ Object mesh_object(PolygonSoup soup, std::string name, const std::string& sha256
 
 Held read_mesh_object(const py::bytes& name) {
     const Path file = path_of(name);
-    const py::gil_scoped_release free;
-    const ReadRecord record;
-    PolygonSoup soup = read_polygons(file);
-    return {mesh_object(std::move(soup), file.string(), record.files.at(0).sha256)};
+    return unlocked([&]() -> Held {
+        const ReadRecord record;
+        PolygonSoup soup = read_polygons(file);
+        return {mesh_object(std::move(soup), file.string(), record.files.at(0).sha256)};
+    });
 }
 
 template <class Number>
@@ -229,8 +290,7 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
     take_extra<Colour, std::uint8_t>(extras, "face_colours", faces, soup.extras.face_colours);
     take_extra<std::int32_t, std::int32_t>(extras, "vertex_labels", count, soup.extras.vertex_labels);
     take_extra<std::int32_t, std::int32_t>(extras, "face_labels", faces, soup.extras.face_labels);
-    const py::gil_scoped_release free;
-    return {mesh_object(std::move(soup), name, {})};
+    return unlocked([&]() -> Held { return {mesh_object(std::move(soup), name, {})}; });
 }
 
 static_assert(sizeof(Point) == 3 * sizeof(double), "points of a mesh are shown as they lie in memory");
@@ -259,7 +319,7 @@ std::pair<py::array, py::array> polygons_of(const Held& held) {
     std::vector<Index> begin(file->mesh.number_of_faces() + 1), corner_list;
     corner_list.reserve(3 * file->mesh.number_of_faces());
     for (std::size_t i = 0; i < begin.size(); ++i) begin[i] = static_cast<Index>(3 * i);
-    for (const auto& triangle : to_soup(file->mesh).triangles)
+    for (const auto& triangle : unlocked([&] { return to_soup(file->mesh); }).triangles)
         corner_list.insert(corner_list.end(), triangle.begin(), triangle.end());
     const py::ssize_t faces = size_of(begin.size()), corners = size_of(corner_list.size());
     return {array_of(std::move(begin), {faces}), array_of(std::move(corner_list), {corners})};
@@ -293,8 +353,7 @@ Held make_bytes(const py::bytes& bytes, const std::string& name) { return {Objec
 
 Held read_bytes(const py::bytes& name) {
     const Path file = path_of(name);
-    const py::gil_scoped_release free;
-    return {Object::of(read_file(file), file.string())};
+    return unlocked([&]() -> Held { return {Object::of(read_file(file), file.string())}; });
 }
 
 Held make_document(const std::string& text, const std::string& name) { return {Object::of(parse_json(text, name), name)}; }
@@ -338,20 +397,19 @@ py::dict files_of(const Held& held) {
 std::pair<py::dict, py::array> faces_of(const Held& held, const Held& on) {
     const auto file = on.object.as<MeshFile>();
     if (!file) throw Error(ErrorKind::input, on.object.name, "is no oriented manifold of triangles", "use ostraka.mesh.repair");
-    AnnotationSet set;
-    std::vector<std::int32_t> labels;
-    {
-        const py::gil_scoped_release free;
+    auto [set, labels] = unlocked([&] {
+        AnnotationSet read;
         if (const auto known = held.object.as<AnnotationSet>()) {
             check_annotations(*known, file->mesh, held.object.name);
-            set = *known;
+            read = *known;
         } else {
             const InMemory place(Path(held.object.name).filename().string());
             write_object(held.object, place.file);
-            set = in_file(held.object.name, [&] { return read_annotations(place.file, file->mesh); });
+            read = read_annotations(place.file, file->mesh);
         }
-        labels = labels_of(file->mesh, set);
-    }
+        auto of_faces = labels_of(file->mesh, read);
+        return std::pair(std::move(read), std::move(of_faces));
+    });
     py::dict faces;
     for (Annotation& one : set.annotations) {
         const py::ssize_t count = size_of(one.faces.size());
@@ -418,58 +476,6 @@ std::vector<std::pair<std::string, std::string>> groups() {
     std::vector<std::pair<std::string, std::string>> list;
     for (const OperationGroup& group : operation_groups()) list.emplace_back(group.name, group.help);
     return list;
-}
-
-std::atomic<int> wanted_threads{0};
-
-/// Runs `work` on a thread of its own, without Python's lock. This thread hears signals meanwhile: what their handlers raise,
-/// such as KeyboardInterrupt, cancels the work and is raised once it has ended. So does what `progress` raises.
-template <class Work>
-void run_watched(Watch& watch, const py::object& progress, const Work& work) {
-    std::exception_ptr failure;
-    std::optional<py::error_already_set> raised;  // touched under Python's lock only
-    const auto stop = [&] {
-        py::error_already_set error;
-        if (!raised) raised.emplace(std::move(error));
-        watch.cancel();
-    };
-    if (!progress.is_none())
-        watch.on_progress = [&](const std::string& phase, double share) {
-            const py::gil_scoped_acquire lock;
-            if (raised) return;
-            PyObject* answer = PyObject_CallFunction(progress.ptr(), "sd", phase.c_str(), share);
-            if (answer == nullptr) stop();
-            Py_XDECREF(answer);
-        };
-    {
-        const py::gil_scoped_release free;
-        std::mutex mutex;
-        std::condition_variable ended;
-        bool done = false;
-        std::thread worker([&] {
-            try {
-                set_threads(wanted_threads);  // a setting of each thread
-                work();
-            } catch (...) {
-                failure = std::current_exception();
-            }
-            const std::lock_guard lock(mutex);
-            done = true;
-            ended.notify_one();
-        });
-        for (std::unique_lock lock(mutex); !ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return done; });) {
-            lock.unlock();
-            {
-                const py::gil_scoped_acquire python;
-                if (PyErr_CheckSignals() != 0) stop();
-            }
-            lock.lock();
-        }
-        worker.join();
-    }
-    watch.on_progress = nullptr;
-    if (raised) throw py::error_already_set(std::move(*raised));
-    if (failure) std::rethrow_exception(failure);
 }
 
 void set_option(Call& call, const std::string& name, const py::handle& value) {

@@ -50,10 +50,7 @@ def _add_functions(modules: dict[str, _types.ModuleType]) -> None:
     for declared in _functions.declarations():
         group, _, word = declared["name"].rpartition(" ")
         function = _functions.make_function(declared)
-        name = _functions.python_name(word)
-        # A group of the same name keeps it.
-        while hasattr(modules[group], name):
-            name += "_"
+        name = _functions.free_name(word, vars(modules[group]))
         function.__name__ = function.__qualname__ = name
         function.__module__ = modules[group].__name__
         setattr(modules[group], name, function)

@@ -7,9 +7,10 @@ import json
 import keyword
 import os
 import pathlib
+import re
 import sys
 import textwrap
-from typing import Any, Callable
+from typing import Any, Callable, Container
 
 from . import _ostraka
 from ._errors import ArgumentError, UsageError
@@ -21,6 +22,14 @@ def python_name(name: str) -> str:
     """Of an operation, a parameter or an output: "-" and " " are "_", and a word that Python has for itself ends in "_"."""
     word = name.replace("-", "_").replace(" ", "_")
     return word + "_" if keyword.iskeyword(word) else word
+
+
+def free_name(word: str, taken: Container[str]) -> str:
+    """Of an operation beside others: where a group has it already, it ends in "_"."""
+    name = python_name(word)
+    while name in taken:
+        name += "_"
+    return name
 
 
 class Parameter:
@@ -190,7 +199,11 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
             progress = None
         if progress is not None and not callable(progress):
             refuse("progress cannot be called", "give True, or a function of a phase and a share")
-        report, made = _ostraka.run(operation, options, inputs, outputs, progress)
+        try:
+            report, made = _ostraka.run(operation, options, inputs, outputs, progress)
+        except UsageError as error:  # names the option as the command does
+            problem = re.sub("^option ([a-z0-9-]+) ", lambda match: f"option {python_name(match[1])} ", error.problem)
+            raise UsageError(problem, error.where, error.remedy) from None
         results: dict[str, Any] = {}
         for one in parameters:
             if one.role == "output":
@@ -239,7 +252,7 @@ def _about(one: Parameter) -> str:
 
 
 def docstring_of(declared: dict[str, Any], parameters: list[Parameter]) -> str:
-    lines = [_sentence(declared["help"]), "", "Parameters", "----------"]
+    lines = [sentence(declared["help"]), "", "Parameters", "----------"]
 
     def add(name: str, about: str, text: str) -> None:
         lines.append(f"{name} : {about}")
@@ -255,7 +268,7 @@ def docstring_of(declared: dict[str, Any], parameters: list[Parameter]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _sentence(text: str) -> str:
+def sentence(text: str) -> str:
     return text[:1].upper() + text[1:] + "."
 
 

@@ -172,7 +172,7 @@ class Result:
         self.report = report
         self.outputs = outputs
         for name, value in outputs.items():
-            setattr(self, name + "_" if hasattr(type(self), name) or name in ("report", "outputs") else name, value)
+            setattr(self, attribute_name(name), value)
 
     @property
     def holds(self) -> bool:
@@ -185,12 +185,19 @@ class Result:
     def __repr__(self) -> str:
         lines = [repr(self.report)] if repr(self.report) else []
         for name, value in self.outputs.items():
+            if value is None:
+                continue
             shown = f"written to {value}" if isinstance(value, pathlib.Path) else repr(value)
             lines.append(f"{name}: {shown}")
         return "\n".join(lines)
 
     def _repr_markdown_(self) -> str:
         return self.report._repr_markdown_()
+
+
+def attribute_name(output: str) -> str:
+    """Of an output: what a result has for itself ends in "_"."""
+    return output + "_" if hasattr(Result, output) or output in ("report", "outputs") else output
 
 
 for _class in (Table, Report, Result):
