@@ -1,5 +1,5 @@
-# The Python module `ostraka`: the native half, and the package around it. For the distribution's Python: that is the one that the
-# distribution's pybind11 and NumPy are for; -DPython3_EXECUTABLE=... names another.
+# The Python module `ostraka`: the native half, and the package around it. For the distribution's Python, which is the one that
+# the distribution's pybind11 and NumPy are for; -DPython3_EXECUTABLE=... names another.
 if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)
 endif()
@@ -39,11 +39,11 @@ foreach(file IN LISTS package_files)
   file(CREATE_LINK ${CMAKE_SOURCE_DIR}/apps/python/${file} ${OSTRAKA_PYTHON_BUILT}/${file} SYMBOLIC)
 endforeach()
 
-# Debian's Python looks into this folder below /usr and below /usr/local, so that a package and `cmake --install` may use the same
-# one; it is that of one version, as the native half is. CMAKE_INSTALL_LIBDIR would be another one below /usr.
+# Debian's Python looks into this folder below /usr and below /usr/local, so that a package and `cmake --install` may use the
+# same one; it is that of one version, as the native half is. CMAKE_INSTALL_LIBDIR would be another one below /usr.
 set(OSTRAKA_PYTHON_DIR lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages CACHE STRING
   "Where the Python module is installed, below the prefix")
-install(TARGETS ostraka_python LIBRARY DESTINATION ${OSTRAKA_PYTHON_DIR}/ostraka)
-install(DIRECTORY apps/python/ostraka DESTINATION ${OSTRAKA_PYTHON_DIR}
+install(TARGETS ostraka_python LIBRARY DESTINATION ${OSTRAKA_PYTHON_DIR}/ostraka COMPONENT python)
+install(DIRECTORY apps/python/ostraka DESTINATION ${OSTRAKA_PYTHON_DIR} COMPONENT python
   FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
 message(STATUS "The Python module is for ${Python3_EXECUTABLE} (${Python3_VERSION}), below the prefix in ${OSTRAKA_PYTHON_DIR}")

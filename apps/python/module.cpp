@@ -1,5 +1,5 @@
-// The native half of the Python module: operations of the table called by name, and what they take and make as objects of Python.
-// No operation is named here; the functions are made from the declarations by apps/python/ostraka.
+// The native half of the Python module: operations of the table called by name, and what they take and make as objects of
+// Python. No operation is named here; the functions are made from the declarations by apps/python/ostraka.
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/nearest_name.h"
@@ -253,7 +253,7 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
                       const py::dict& extras, const std::string& name) {
     check_mesh_extension(name);
     PolygonSoup soup;
-    if (points.ndim() != 2 || points.shape(1) != 3) fail_input("points", "is no array of n x 3 numbers", "give x, y, z of each");
+    if (points.ndim() != 2 || points.shape(1) != 3) fail_input("points", "is no array of n x 3 numbers", "give x, y, z");
     const auto count = static_cast<std::size_t>(points.shape(0));
     if (count >= no_index || static_cast<std::size_t>(corners.size()) >= no_index)
         fail_work(name, "has more than four thousand million corners", "split it");
@@ -269,7 +269,7 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
         const std::int64_t least = i == 0 ? 0 : begin.data()[i - 1];
         if (begin.data()[i] < least || begin.data()[i] > corners.size() || (i == 0 && begin.data()[0] != 0) ||
             (i + 1 == ends && begin.data()[i] != corners.size()))
-            fail_input("faces", "polygon " + std::to_string(i) + " begins at no place among the corners", "count corners from 0");
+            fail_input("faces", "polygon " + std::to_string(i) + " begins at no place of the corners", "count corners from 0");
         soup.polygon_begin[i] = static_cast<Index>(begin.data()[i]);
     }
     soup.corners.resize(static_cast<std::size_t>(corners.size()));
@@ -546,9 +546,14 @@ py::tuple run(const std::string& name, const py::dict& options, const py::list& 
     for (const Slot* slot : std::as_const(call).parameters().slots()) {
         if (slot->role != Role::output) continue;
         py::list objects;
-        for (const Source& source : slot->sources)
-            if (source.object)
-                objects.append(Held{source.object, source.object.as<Path>() || source.object.as<Template>() ? context : nullptr});
+        for (const Source& source : slot->sources) {
+            if (!source.object) continue;
+            Held held{source.object, source.object.as<Path>() || source.object.as<Template>() ? context : nullptr};
+            const Slot* updated = slot->updated;
+            if (held.object.name == slot->name)  // nobody called it otherwise
+                held.object.name = updated != nullptr && *updated ? updated->file_name() : default_name(*slot);
+            objects.append(std::move(held));
+        }
         if (!objects.empty()) made[py::str(slot->name)] = objects;
     }
     return py::make_tuple(report, made);

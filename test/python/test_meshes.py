@@ -87,7 +87,7 @@ def test_polygons_of_several_lengths(tetrahedron):
     points = numpy.vstack([tetrahedron[0], [[1, 1, 0]]])
     mesh = ostraka.Mesh(points, [[0, 1, 4, 2], [0, 1, 3]])
     assert mesh.polygons[0].tolist() == [0, 4, 7]
-    assert ostraka.mesh.info(mesh).report["polygons"]["count"] == 2 or "2" in repr(ostraka.mesh.info(mesh))
+    assert ostraka.mesh.info(mesh).report["polygons"] == 2
 
 
 class Trimesh:

@@ -3,9 +3,9 @@
 Every command of the toolkit is a function: `ostraka annotation transfer` is `ostraka.annotation.transfer`. In names "-" is "_",
 and a word that Python has for itself ends in "_": `ostraka.mesh.break_`. `help()` of a function shows what it takes.
 
-An input is a file, or an object: `Mesh`, `Annotations`, `Document`, `Array`, `Bytes`, arrays of NumPy, dicts, meshes of trimesh and
-PyVista. An output is written to the file that is named for it. One that is needed and not named comes back as an object; True asks
-for one that is optional, and "memory:NAME" for one that is called so. What a function returns is a `Result`.
+An input is a file, or an object: `Mesh`, `Annotations`, `Document`, `Array`, `Bytes`, arrays of NumPy, dicts, meshes of trimesh
+and PyVista. An output is written to the file that is named for it. One that is needed and not named comes back as an object;
+True asks for one that is optional, and "memory:NAME" for one that is called so. What a function returns is a `Result`.
 """
 
 import sys as _sys

@@ -137,7 +137,7 @@ def _given_output(name: str, value: Any) -> tuple[str, Any]:
         return name, value[len("memory:"):]
     if isinstance(value, (str, os.PathLike)):
         return name, os.fsencode(value)
-    raise UsageError(f"{name} is of the type {type(value).__name__}", "", "give the name of a file, or True to have it as an object")
+    raise UsageError(f"{name} is of the type {type(value).__name__}", "", "give the name of a file, or True for an object")
 
 
 def progress_bar(phase: str, share: float) -> None:
@@ -172,7 +172,7 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
             one = by_name.get(name)
             if one is None:
                 near = _ostraka.nearest_name(name, [*by_name, "progress"])
-                refuse(f"there is no parameter '{name}'", f"did you mean '{near}'?" if near else "help() of the function shows them")
+                refuse(f"there is no parameter '{name}'", f"did you mean '{near}'?" if near else "help() shows them")
             if value is None or (value is False and one.role == "output"):
                 continue
             if one.role == "option":
@@ -243,7 +243,9 @@ def _about(one: Parameter) -> str:
     if "choices" in declared:
         kind = "one of " + ", ".join(repr(name) for name in declared["choices"])
     elif "words" in declared:
-        kind = ", ".join(repr(name) for name in declared["words"]) + (" or " if declared.get("others") else "") + declared.get("others", "")
+        kind = ", ".join(repr(name) for name in declared["words"])
+        if declared.get("others"):
+            kind += " or " + declared["others"]
     elif "minimum" in declared:
         kind += f" from {declared['minimum']:g} to {declared['maximum']:g}"
     if declared.get("unit"):

@@ -46,7 +46,7 @@ class Table:
         return self.rows[key] if not isinstance(key, str) else self.to_numpy()[key]
 
     def to_numpy(self) -> numpy.ndarray:
-        """A structured array, a field for each column. Cells that are empty: nan; in columns of another type than numbers None."""
+        """A structured array, a field for each column. Empty cells are nan among numbers, None in other columns."""
         fields = []
         for column in self._columns:
             cells = [row[column["key"]] for row in self.rows]
