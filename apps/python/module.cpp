@@ -5,6 +5,7 @@
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
+#include "ostraka/io/mesh_of_polygons.h"
 #include "ostraka/operations/table.h"
 #include "ostraka/render/values.h"
 
@@ -207,7 +208,7 @@ Object mesh_object(PolygonSoup soup, std::string name, const std::string& sha256
     for (std::size_t i = 0; triangles && i < count; ++i) triangles = soup.polygon_begin[i + 1] == 3 * (i + 1);
     std::shared_ptr<const MeshFile> mesh;
     if (triangles) try {
-            mesh = std::make_shared<const MeshFile>(to_mesh(soup, name));
+            mesh = std::make_shared<const MeshFile>(mesh_of_polygons(soup, name));
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input) throw;
         }

@@ -5,6 +5,7 @@ from typing import Literal
 
 from . import annotation as annotation
 from . import cage as cage
+from . import conformance as conformance
 from . import measure as measure
 from . import mesh as mesh
 from . import relation as relation
@@ -312,6 +313,37 @@ def render(
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RenderResult:
     """Make a picture of meshes, their annotations and maps."""
+
+class _RunResult(Result):
+    output: Folder | Path | None
+def run(
+    study: Input,
+    *,
+    output: FileName | bool | None = None,
+    quick: bool | None = False,
+    set: Text | Sequence[Text] | None = None,
+    only: Text | Sequence[Text] | None = None,
+    dry_run: bool | None = False,
+    explain: Text | None = None,
+    again: bool | None = False,
+    memory: float | None = 0.0,
+    shard: Text | None = None,
+    programs: Text | None = None,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _RunResult:
+    """Run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)."""
+
+class _ReplayResult(Result):
+    output: Folder | Path | None
+def replay(
+    crate: Input,
+    *,
+    output: FileName | bool | None = None,
+    inputs: Text | None = None,
+    programs: Text | None = None,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _ReplayResult:
+    """Repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs."""
 
 class _OperationsResult(Result):
     pages: Folder | Path | None
