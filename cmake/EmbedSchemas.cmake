@@ -1,4 +1,4 @@
-# Writes a C++ source that holds each schema's or model's text under its name. Raw strings are cut into pieces, since the
+# Writes a C++ source that holds the toolkit's version, and each schema's or model's text under its name. Raw strings are cut into pieces, since the
 # language limits their length.
 set(code "#include <map>\n#include <string>\n#include <string_view>\n\nnamespace ostraka {\n\n")
 string(APPEND code "const std::map<std::string, std::string_view>& schema_texts();\n\n")
@@ -17,5 +17,5 @@ foreach(file IN LISTS SCHEMAS)
   endwhile()
   string(APPEND code "        {\"${name}\", ${pieces}},\n")
 endforeach()
-string(APPEND code "    };\n    return texts;\n}\n\n}  // namespace ostraka\n")
+string(APPEND code "    };\n    return texts;\n}\n\nstd::string version();\nstd::string version() { return \"${VERSION}\"; }\n\n}  // namespace ostraka\n")
 file(WRITE ${OUTPUT} "${code}")

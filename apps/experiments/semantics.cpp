@@ -9,6 +9,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/workflow/program.h"
 
 #include <Eigen/SVD>
 
@@ -63,7 +64,8 @@ Subject synthetic_subject(const std::string& object, std::uint64_t vertices, con
     SyntheticMesh made = make_mesh(synthetic_object(object), {.vertices = vertices});
     if (warp)
         for (const Vertex v : made.mesh.vertices()) made.mesh.point(v) = warp(made.mesh.point(v));
-    AnnotationSet set = apply_recipe(Path("data") / (object + ".recipe.json"), made.mesh, made.face_labels);
+    AnnotationSet set =
+        apply_recipe(own_program_folder() / "../../data" / (object + ".recipe.json"), made.mesh, made.face_labels);
     return {std::move(made.mesh), std::move(set)};
 }
 

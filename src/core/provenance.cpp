@@ -5,8 +5,6 @@
 
 namespace ostraka {
 
-std::string version() { return OSTRAKA_VERSION; }
-
 void Provenance::add_input(const Path& file) { inputs.emplace_back(file.filename().string(), sha256_of_file(file)); }
 
 JsonValue Provenance::to_json(JsonAllocator& allocator) const {

@@ -74,6 +74,9 @@ void check_table(const StudyPlan& plan, const std::string& name, const JsonValue
                            "name a CSV file that it writes: " + step.name + ".FILE.csv");
             continue;
         }
+        if (find_member(table, "columns")->IsString())
+            fail_input(study.at(place + "/columns"), "'all' is for files of programs, and '" + step.name + "' is an operation",
+                       "name the columns: its page in doc/commands lists what it reports");
         const Call call(*step.operation);
         const ReportLayout& layout = call.parameters().report;
         std::vector<std::string> tables, values, columns;
@@ -113,7 +116,9 @@ void check_table(const StudyPlan& plan, const std::string& name, const JsonValue
     }
     std::vector<std::string> titles;
     const JsonValue& list = *find_member(table, "columns");
-    for (rapidjson::SizeType k = 0; k < list.Size(); ++k) {
+    if (list.IsString() && sources.size() > 1)
+        fail_input(study.at(place + "/rows"), "several files, and 'all' their columns", "name the columns, or one file");
+    for (rapidjson::SizeType k = 0; list.IsArray() && k < list.Size(); ++k) {
         const std::string value = text_in(list[k], "value"), title = text_in(list[k], "title"),
                           at = place + "/columns/" + std::to_string(k);
         if (std::find(titles.begin(), titles.end(), title) != titles.end())
@@ -211,7 +216,7 @@ public:
         table_.name = std::move(name);
         table_.title = text_in(description, "title");
         table_.note = text_in(description, "note");
-        for (const auto& column : columns_.GetArray()) {
+        for (const auto& column : list_in(description, "columns")) {
             table_.columns.push_back(text_in(column, "title"));
             table_.digits.push_back(static_cast<int>(number_or(column, "digits", 4)));
             table_.percent.push_back(flag_in(column, "percent"));
@@ -237,6 +242,8 @@ private:
         if (plan_.study.steps[instance.step].operation == nullptr) {
             const std::string text = read_file(folder / rows);
             const auto lines = csv_rows(text, csv_separator(text), (folder / rows).string());
+            if (columns_.IsString() && !lines.empty() && table_.columns.empty())
+                for (const std::string& name : lines[0].cells) add_column(unguarded(name), 4);
             for (std::size_t k = 1; k < lines.size(); ++k) {
                 Json row(rapidjson::kObjectType);
                 auto& allocator = row.GetAllocator();
@@ -262,7 +269,9 @@ private:
     void add_row(std::size_t i, const JsonValue& report, const JsonValue& row) {
         const StudyInstance& instance = plan_.instances[i];
         std::vector<Json> cells;
-        for (const auto& column : columns_.GetArray()) {
+        if (columns_.IsString())
+            for (const std::string& name : table_.columns) cells.push_back(copy_of(find_member(row, name)));
+        for (const auto& column : list_in(description_, "columns")) {
             const std::string value = text_in(column, "value");
             const auto behind = [&](std::string_view prefix) { return value.substr(prefix.size()); };
             if (value.starts_with("row.")) cells.push_back(copy_of(at_path(row, behind("row."))));
@@ -273,6 +282,12 @@ private:
             else cells.push_back(parameter_cell(instance, value));
         }
         table_.cells.push_back(std::move(cells));
+    }
+
+    void add_column(const std::string& title, int shown) {
+        table_.columns.push_back(title);
+        table_.digits.push_back(shown);
+        table_.percent.push_back(false);
     }
 
     static Json text_cell(const std::string& text) {
@@ -294,7 +309,7 @@ private:
     /// Rows that agree in the columns without a statistic become one.
     void summarise() {
         std::vector<std::string> statistics;
-        for (const auto& column : columns_.GetArray()) statistics.push_back(text_in(column, "statistic"));
+        for (const auto& column : list_in(description_, "columns")) statistics.push_back(text_in(column, "statistic"));
         if (std::all_of(statistics.begin(), statistics.end(), [](const std::string& one) { return one.empty(); })) return;
         std::vector<std::vector<Json>> groups;
         std::vector<std::vector<std::vector<double>>> values;
@@ -328,9 +343,7 @@ private:
         for (const auto& row : beside->GetArray())
             for (const auto& member : row.GetObject())
                 if (const std::string title = text_of(member.name); table_.column(title) == table_.columns.size()) {
-                    table_.columns.push_back(title);
-                    table_.digits.push_back(6);
-                    table_.percent.push_back(false);
+                    add_column(title, 6);
                 }
         for (auto& cells : table_.cells) {
             cells.resize(table_.columns.size());

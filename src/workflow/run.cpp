@@ -297,6 +297,10 @@ private:
         const StudyInstance& one = instance(i);
         const Path folder = folder_of(i);
         make_folder(folder);
+        // Folders of a run that was complete are begun anew; those of one that was killed keep what a study has done already.
+        if (const auto before = read_record(folder))
+            for (const auto& [output, was] : before->outputs)
+                if (std::error_code code; was.kept && was.is_folder) std::filesystem::remove_all(folder / was.file, code);
         Call call = plan_.call(one, [&](const StudyInput& input) { return source_of(input); });
         std::set<std::string> written;  // by the operation itself
         for (const auto& [output, file] : one.outputs) {

@@ -239,8 +239,8 @@ TEST_F(EveryOperation, TakesWhatItsHelpNames) {
 
 TEST_F(EveryOperation, RunsHereOrHasATestOfItsOwn) {
     // What asks for data that takes long to make is run by the tests of its module.
-    std::set<std::string> run{"study landmarks", "template turn", "pair", "assemble", "run", "replay", "conformance run",
-                              "conformance self"};
+    std::set<std::string> run{"study landmarks", "template turn",   "pair", "assemble", "run", "replay",
+                              "conformance run", "conformance self"};
     for (const Step& step : steps()) run.insert(step.operation);
     for (const OperationEntry& entry : operations()) EXPECT_TRUE(run.count(entry.name) == 1) << entry.name;
 }

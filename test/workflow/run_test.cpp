@@ -159,11 +159,11 @@ TEST(RunStudy, AFailureEndsItsBranchOnly) {
 TEST(RunStudy, LosesOnlyTheStepUnderWayWhenKilled) {
     const Scratch scratch;
     const Path file = scratch.file("k.study.json", study_text_of(R"("parameters": {"n": {"from": 1, "to": 12}},
-        "steps": {"one": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 20000, "seed": "${n}", "noise": 0.001}, "keep": ["output"]}})"));
+        "steps": {"one": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 8000, "seed": "${n}", "noise": 0.001}, "keep": ["output"]}})"));
     for (const char* signal : {"KILL", "INT"}) {
         const Path out = scratch / signal;
         run_command("run " + file.string() + " --threads 1 --quiet --output " + out.string(),
-                    std::string("timeout --foreground -s ") + signal + " 2.5");
+                    std::string("timeout --foreground -s ") + signal + " 1.5");
         std::size_t kept = 0;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(out))
             kept += entry.path().filename() == "record.json" ? 1 : 0;

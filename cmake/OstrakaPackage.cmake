@@ -1,0 +1,18 @@
+# `cpack` makes a Debian package: the command, manual pages, completion, the library with its headers, the conformance kit, the Python
+# module. Dependencies on shared libraries are found by dpkg-shlibdeps.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME ostraka)
+set(CPACK_PACKAGE_VENDOR "The Ostraka developers")
+set(CPACK_PACKAGE_CONTACT "The Ostraka developers <ostraka@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_SCRIPT "")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# The module is for one version of Python; what compiles against the library needs the headers it was compiled with.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, libcgal-dev, libeigen3-dev, libboost-dev, rapidjson-dev, libembree-dev, libssl-dev, libsuitesparse-dev, libcairo2-dev, libpugixml-dev, libraptor2-dev, libceres-dev")
+set(CPACK_DEB_COMPONENT_INSTALL OFF)
+include(CPack)
