@@ -33,8 +33,8 @@ struct InstanceResult {
 
 /// Runs them into `folder`, at most as many at a time as there are threads: what an instance writes appears when it is complete,
 /// with its record. One that fails stops those that need it, and no others. Throws Error (cancelled) when the watch of this
-/// thread says so; what was done stays done. `on_progress`: the instance under way, how many of how many are done, and how many
-/// seconds are left (below 0: not known).
+/// thread says so; what was done stays done. The watch is told which instances are under way, how many of how many are done, and
+/// how long the rest will take, where that is known.
 std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options);
 
 /// Bytes of memory that this process occupies; 0 where the system does not say.
