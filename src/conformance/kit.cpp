@@ -3,8 +3,11 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
 
+#include <pugixml.hpp>
+
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 namespace ostraka {
 
@@ -28,6 +31,15 @@ Comparison read_comparison(const JsonValue& value) {
     comparison.but = texts_in(value, "but");
     comparison.reason = text_in(value, "reason");
     return comparison;
+}
+
+/// Takes members of these names out of objects at any depth.
+void remove_members(JsonValue& value, const std::vector<std::string>& names) {
+    if (value.IsArray())
+        for (auto& one : value.GetArray()) remove_members(one, names);
+    if (!value.IsObject()) return;
+    for (const std::string& name : names) value.RemoveMember(name);
+    for (auto& member : value.GetObject()) remove_members(member.value, names);
 }
 
 Path expected_folder(const ConformanceKit& kit, const ConformanceCase& one) { return kit.folder / "expected" / one.id; }
@@ -58,17 +70,6 @@ void check_case(const ConformanceKit& kit, const ConformanceCase& one, const Fin
         if (comparison.as == "annotations" && comparison.mesh.empty())
             fail_input(where, "compares annotations without their mesh", "name it: \"mesh\": \"FILE\" or an output");
     }
-}
-
-std::string escaped(const std::string& text) {
-    std::string made;
-    for (const char c : without_controls(text, " "))
-        if (c == '&') made += "&amp;";
-        else if (c == '<') made += "&lt;";
-        else if (c == '>') made += "&gt;";
-        else if (c == '"') made += "&quot;";
-        else made += c;
-    return made;
 }
 
 }  // namespace
@@ -195,15 +196,34 @@ void record_case(const ConformanceKit& kit, const ConformanceCase& one, Backend&
     std::error_code code;
     std::filesystem::remove_all(expected, code);
     std::set<std::string> files;
+    Json report(rapidjson::kObjectType);  // what is compared, and no more: other members may name places of this machine
     for (const Comparison& comparison : one.comparisons) {
         if (comparison.what == "report") {
             if (!answer.result) fail_work("case '" + one.id + "'", "there is no report", "mend the case");
-            make_folder(expected);
-            write_json(expected / "report.json", *answer.result);
+            for (const std::string& name : comparison.only)
+                if (find_member(*answer.result, name) == nullptr)
+                    fail_work("case '" + one.id + "'", "compares '" + name + "', which the report does not have",
+                              "mend the case");
+            for (const auto& member : answer.result->GetObject()) {
+                const std::string name = text_of(member.name);
+                const auto in = [&](const std::vector<std::string>& names) {
+                    return std::find(names.begin(), names.end(), name) != names.end();
+                };
+                if ((comparison.only.empty() || in(comparison.only)) && !in(comparison.but) &&
+                    find_member(report, name) == nullptr) {
+                    JsonValue value(member.value, report.GetAllocator());
+                    remove_members(value, comparison.but);
+                    add_members(report, report.GetAllocator(), name, std::move(value));
+                }
+            }
         } else if (comparison.as != "exists") {
             files.insert(file_of(one, comparison.what));
             if (const std::string mesh = file_of(one, comparison.mesh); !mesh.empty()) files.insert(mesh);
         }
+    }
+    if (report.MemberCount() > 0) {
+        make_folder(expected);
+        write_json(expected / "report.json", report);
     }
     for (const std::string& file : files) {
         make_folder((expected / file).parent_path());
@@ -219,19 +239,28 @@ std::string junit_of(const ConformanceKit& kit, const std::vector<CaseResult>& r
         skipped += result.outcome == Outcome::unsupported ? 1 : 0;
         seconds += result.seconds;
     }
-    std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"ostraka conformance " +
-                       escaped(kit.version) + ": " + escaped(backend) + "\" tests=\"" + std::to_string(results.size()) +
-                       "\" failures=\"" + std::to_string(failed) + "\" skipped=\"" + std::to_string(skipped) + "\" time=\"" +
-                       digits(seconds, 6) + "\">\n";
+    pugi::xml_document document;
+    pugi::xml_node suite = document.append_child("testsuites").append_child("testsuite");
+    const auto set = [](pugi::xml_node node, const char* name, const std::string& value) {
+        node.append_attribute(name) = without_controls(value, " ").c_str();
+    };
+    set(suite, "name", "ostraka conformance " + kit.version + ": " + backend);
+    set(suite, "tests", std::to_string(results.size()));
+    set(suite, "failures", std::to_string(failed));
+    set(suite, "skipped", std::to_string(skipped));
+    set(suite, "time", digits(seconds, 6));
     for (std::size_t i = 0; i < results.size(); ++i) {
-        const ConformanceCase& one = kit.cases[i];
-        text += "<testcase classname=\"" + escaped(one.operation) + "\" name=\"" + escaped(one.id) + "\" time=\"" +
-                digits(results[i].seconds, 6) + "\"";
-        if (results[i].outcome == Outcome::agrees) text += "/>\n";
-        else if (results[i].outcome == Outcome::unsupported) text += "><skipped/></testcase>\n";
-        else text += "><failure message=\"" + escaped(joined(results[i].differences, "; ")) + "\"/></testcase>\n";
+        pugi::xml_node one = suite.append_child("testcase");
+        set(one, "classname", kit.cases[i].operation);
+        set(one, "name", kit.cases[i].id);
+        set(one, "time", digits(results[i].seconds, 6));
+        if (results[i].outcome == Outcome::unsupported) one.append_child("skipped");
+        if (results[i].outcome == Outcome::differs)
+            set(one.append_child("failure"), "message", joined(results[i].differences, "; "));
     }
-    return text + "</testsuite>\n</testsuites>\n";
+    std::ostringstream text;
+    document.save(text, " ");
+    return text.str();
 }
 
 }  // namespace ostraka

@@ -115,7 +115,8 @@ struct Run final : Operation {
             return;
         }
         auto written = write_collected(*plan, results, folder, [&](const std::string& name) { return output.in(name); });
-        const RunRequest request{std::filesystem::absolute(plan->study.folder).lexically_normal(), quick, set, only};
+        const auto full = [](const Path& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+        const RunRequest request{full(plan->study.folder).lexically_relative(full(folder)), quick, set, only};
         write_json(output.in("run.json"), run_request_to_json(request));
         write_file(output.in("run.study.json"), read_file(file));
         const Json crate = crate_of(*plan, results, folder, written);
@@ -189,7 +190,7 @@ struct Replay final : Operation {
         StudyOptions reading;
         reading.quick = request.quick;
         reading.set = request.set;
-        reading.folder = inputs.empty() ? request.study_folder : Path(inputs);
+        reading.folder = inputs.empty() ? (folder / request.study_folder).lexically_normal() : Path(inputs);
         std::optional<StudyPlan> plan;
         context.record([&] { plan.emplace(read_study(folder / "run.study.json", find_operation, reading)); });
         RunStudyOptions options;

@@ -3,6 +3,8 @@
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/words.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <functional>
 #include <set>
@@ -432,17 +434,6 @@ private:
     const FindOperation& find_;
 };
 
-bool matches(const std::string& pattern, const std::string& name) {
-    std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
-    while (n < name.size())
-        if (p < pattern.size() && pattern[p] == '*') star = p++, mark = n;
-        else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) ++p, ++n;
-        else if (star != std::string::npos) p = star + 1, n = ++mark;
-        else return false;
-    while (p < pattern.size() && pattern[p] == '*') ++p;
-    return p == pattern.size();
-}
-
 }  // namespace
 
 const StudyReference* StudyText::single() const {
@@ -538,7 +529,7 @@ std::vector<Path> matching_files(const Path& pattern) {
             for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end; !code && entry != end;
                  entry.increment(code)) {
                 const std::string name = entry->path().filename().string();
-                if (name.starts_with('.') || !matches(part.string(), name)) continue;
+                if (name.starts_with('.') || ::fnmatch(part.c_str(), name.c_str(), 0) != 0) continue;
                 std::error_code own;
                 if (left == 0 ? entry->is_regular_file(own) : entry->is_directory(own)) next.push_back(folder / name);
             }

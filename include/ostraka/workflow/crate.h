@@ -14,7 +14,7 @@ Json crate_of(const StudyPlan& plan, const std::vector<InstanceResult>& results,
 
 /// What a run was asked for: FOLDER/run.json, with the study beside it as run.study.json.
 struct RunRequest {
-    Path study_folder;  ///< where the study stood
+    Path study_folder;  ///< where the study stood, as seen from the run folder
     bool quick = false;
     std::vector<std::string> set, only;
 };
