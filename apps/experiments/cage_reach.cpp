@@ -19,12 +19,10 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// "name=file".
-std::pair<std::string, std::string> named(const std::string& text) {
-    const std::size_t equal = text.find('=');
-    if (equal == 0 || equal == std::string::npos || equal + 1 == text.size())
-        fail_usage("'" + text + "' is no NAME=FILE", "e.g. uniform=cage.ply");
-    return {text.substr(0, equal), text.substr(equal + 1)};
+/// What a file is called in tables: its name up to the first dot.
+std::pair<std::string, std::string> named(const std::string& file) {
+    const std::string name = Path(file).filename().string();
+    return {name.substr(0, name.find('.')), file};
 }
 
 std::string deviations(const ConstraintReport& report, bool before) {

@@ -50,6 +50,7 @@ void control_points(const ControlPointOptions& options);
 /// How far each annotation moves from one shape to others.
 struct MovedOptions {
     std::string mesh, annotations, output;
+    std::string fit;  ///< folder of a fit of a fragment in the frame of `mesh`, in place of shapes
     std::vector<std::string> shapes;
 };
 void moved(const MovedOptions& options);
@@ -57,7 +58,7 @@ void moved(const MovedOptions& options);
 /// Figures 6.1 and 6.2: edits and constraints through cages.
 struct CageReachOptions {
     std::string mesh, annotations, graph, output = "experiments-output/figures-6-1-6-2";
-    std::vector<std::string> edits, cages;  ///< NAME=FILE
+    std::vector<std::string> edits, cages;  ///< files
     int iterations = 100;
 };
 void cage_reach(const CageReachOptions& options);

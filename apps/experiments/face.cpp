@@ -5,8 +5,11 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
+#include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/synthetic/synthetic_object.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <set>
 
@@ -15,6 +18,27 @@ namespace ostraka::experiments {
 namespace {
 
 using Eigen::Vector3d;
+
+/// A head where no scanned one is given: an ellipsoid with a nose and eyeballs, in the frame and size of ICT FaceKit's neutral
+/// face (cm, y upwards, looking along z), so that one recipe serves for both.
+Mesh made_face(std::uint64_t vertices) {
+    MakeOptions options;
+    options.vertices = vertices;
+    Mesh mesh = make_mesh(synthetic_object("sphere"), options).mesh;
+    const auto bell = [](double d, double width) { return std::exp(-d * d / (2 * width * width)); };
+    for (const Vertex v : mesh.vertices()) {
+        const Vector3d way = eigen(mesh.point(v)).normalized();
+        Vector3d p(7 * way.x(), 2 + 10 * way.y(), 2 + 8.5 * way.z());
+        if (way.z() > 0) {
+            const double down = (3.74 - p.y()) / (3.74 - 0.4);  // 0 at the root of the nose, 1 at its tip
+            const double ridge = 2.7 * (down < 1 ? std::pow(std::max(0.0, down), 1.2) : bell(down - 1, 0.18));
+            const double eyes = std::exp(-(std::pow(std::abs(p.x()) - 3.15, 2) / 1.1 + std::pow(p.y() - 3.45, 2) / 0.6));
+            p.z() += ridge * bell(p.x(), 0.5 + 0.35 * std::clamp(down, 0.0, 1.0)) + 0.5 * eyes;
+        }
+        mesh.point(v) = point_of(p);
+    }
+    return mesh;
+}
 
 /// 1 within `near`, 0 beyond `far`.
 double falloff(double distance, double near, double far) {
@@ -67,7 +91,8 @@ std::vector<Index> faces_at(const Subject& subject, const std::vector<Ratio>& ra
 
 void face_proportions(const SemanticOptions& options) {
     const Path folder(options.output);
-    Subject face{read_mesh(options.mesh).mesh, {}};
+    Subject face{
+        options.mesh.empty() ? made_face(options.vertices == 0 ? 25000 : options.vertices) : read_mesh(options.mesh).mesh, {}};
     face.set = apply_recipe(options.recipe, face.mesh);
     const std::vector<Point> rest = points_of(face.mesh);
     struct Case {

@@ -65,7 +65,11 @@ void declare_control_points(CLI::App& command, ControlPointOptions& options) {
 void declare_moved(CLI::App& command, MovedOptions& options) {
     command.add_option("mesh", options.mesh, "the shape at rest")->required();
     command.add_option("annotations", options.annotations, "its annotations")->required();
-    command.add_option("shapes", options.shapes, "mesh files with the same vertices")->required();
+    auto* shapes = command.add_option("shapes", options.shapes, "mesh files with the same vertices");
+    auto* fit = command.add_option("--fit", options.fit,
+                                   "folder of 'ostraka fit --no-join': its completed.ply is the shape, and the shape at rest, in "
+                                   "the frame of the fragment, goes where the fragment was laid");
+    shapes->excludes(fit);
     command.add_option("--output", options.output, "folder to write to")->required();
 }
 
@@ -73,8 +77,8 @@ void declare_cage_reach(CLI::App& command, CageReachOptions& options) {
     command.add_option("mesh", options.mesh, "mesh file")->required();
     command.add_option("annotations", options.annotations, "its annotations")->required();
     command.add_option("graph", options.graph, "relationships, some of them constraints")->required();
-    command.add_option("--edit", options.edits, "NAME=FILE of an edit")->required();
-    command.add_option("--cage", options.cages, "NAME=FILE of a cage")->required();
+    command.add_option("--edit", options.edits, "file of an edit, NAME.edit.json")->required();
+    command.add_option("--cage", options.cages, "file of a cage, NAME.ply")->required();
     command.add_option("--iterations", options.iterations, "at most")->capture_default_str();
     command.add_option("--output", options.output, "folder to write to")->capture_default_str();
 }
@@ -238,7 +242,7 @@ void declare_semantic(CLI::App& command, SemanticOptions& options) {
 
 void declare_face(CLI::App& command, SemanticOptions& options) {
     declare_semantic(command, options);
-    command.add_option("--mesh", options.mesh, "the face")->required();
+    command.add_option("--mesh", options.mesh, "the face; else one is made");
     command.add_option("--recipe", options.recipe, "with its eyes and nose")->required();
 }
 

@@ -7,6 +7,9 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/coords/coordinates.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/rigid_fit.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <algorithm>
@@ -15,17 +18,40 @@
 
 namespace ostraka::experiments {
 
+namespace {
+
+/// Carries points of the first fragment's frame to where the fit laid it.
+void lay(const std::string& file, std::vector<Point>& points) {
+    const Json assembly = read_json(file);
+    const auto fragments = list_in(assembly, "fragments");
+    const JsonValue* pose = fragments.Size() == 1 ? find_member(fragments[0], "pose") : nullptr;
+    if (pose == nullptr) fail_input(file, "is no assembly of one fragment that has a pose");
+    Motion motion;
+    for (rapidjson::SizeType i = 0; i < 3; ++i)
+        for (rapidjson::SizeType j = 0; j < 4; ++j)
+            (j < 3 ? motion.rotation(i, j) : motion.translation(i)) = (*pose)[i][j].GetDouble();
+    for (Point& p : points) p = point_of(motion(eigen(p)));
+}
+
+}  // namespace
+
 void moved(const MovedOptions& options) {
     const Path folder(options.output);
     std::filesystem::create_directories(folder);
     const Mesh mesh = read_mesh(options.mesh).mesh;
     const AnnotationSet set = read_annotations(options.annotations, mesh);
-    const std::vector<Point> rest = ostraka::points_of(mesh);
+    std::vector<Point> rest = ostraka::points_of(mesh);
+    std::vector<std::string> shapes = options.shapes;
+    if (!options.fit.empty()) {
+        lay((Path(options.fit) / "fit.assembly.json").string(), rest);
+        shapes = {(Path(options.fit) / "completed.ply").string()};
+    }
+    if (shapes.empty()) fail_usage("no shapes are given", "give mesh files, or --fit");
     const double diagonal = box_diagonal(mesh);
     std::vector<std::vector<double>> ways;
     double farthest = 0;
     std::string head = "| annotation |", rule = "|---|", rows = "annotation,shape,mean,max,max_of_diagonal\n";
-    for (const std::string& file : options.shapes) {
+    for (const std::string& file : shapes) {
         const Mesh shape = read_mesh(file).mesh;
         if (shape.number_of_vertices() != mesh.number_of_vertices())
             fail_input(file, "has another number of vertices than " + options.mesh);
@@ -35,8 +61,7 @@ void moved(const MovedOptions& options) {
         rule += "---|";
     }
     for (std::size_t i = 0; i < ways.size(); ++i)
-        write_coloured(folder / (Path(options.shapes[i]).stem().string() + "-moved.ply"), read_mesh(options.shapes[i]).mesh,
-                       ways[i], farthest);
+        write_coloured(folder / (Path(shapes[i]).stem().string() + "-moved.ply"), read_mesh(shapes[i]).mesh, ways[i], farthest);
     std::string body;
     for (const Annotation& annotation : set.annotations) {
         if (annotation.faces.empty()) continue;
@@ -47,7 +72,7 @@ void moved(const MovedOptions& options) {
             for (const Index v : vertices) sum += ways[i][v], maximum = std::max(maximum, ways[i][v]);
             const double mean = sum / static_cast<double>(vertices.size());
             body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * maximum / diagonal);
-            rows += '"' + annotation.tag + "\",\"" + Path(options.shapes[i]).stem().string() +
+            rows += '"' + annotation.tag + "\",\"" + Path(shapes[i]).stem().string() +
                     format("\",%.6g,%.6g,%.6g\n", mean, maximum, maximum / diagonal);
         }
         body += '\n';

@@ -44,6 +44,12 @@ bool fits(Kind given, Kind asked) {
     return asked == Kind::collection && is_any_of(given, {Kind::mesh, Kind::annotations, Kind::landmarks});
 }
 
+/// Fragments and members are named by mesh files, and bring the annotations of their name along.
+bool reads_beside(const Slot& slot) {
+    return dynamic_cast<const FileInput*>(&slot) != nullptr && slot.role == Role::input &&
+           (slot.kind == Kind::mesh || slot.kind == Kind::collection);
+}
+
 std::string StudyInstance::title(const Study& study) const {
     return study.steps[step].name + (label.empty() ? "" : " (" + label + ")");
 }
@@ -139,7 +145,7 @@ StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::siz
                 (study.folder / filled(study_text(text_of(*word.value), study.at(word.place)), instance)).lexically_normal();
             if (!file_exists(file) && !is_folder(file))
                 fail_input(study.at(word.place), "'" + file.string() + "' is not there", "names are relative to the study file");
-            instance.inputs.push_back({"reads", {}, file, no_instance, {}});
+            instance.inputs.push_back({"reads", {}, file, no_instance, {}, false});
         }
     }
     instance.options = options;
@@ -217,7 +223,7 @@ void StudyPlan::set_value(StudyInstance& instance, const StudySetting& setting, 
             }
         const std::string name = filled(text, instance);
         if (name.empty()) fail_input(study.at(place), "'" + setting.name + "' is empty", "name a file");
-        StudyInput input{setting.name, label, {}, no_instance, {}};
+        StudyInput input{setting.name, label, {}, no_instance, {}, false};
         if (!(slot->takes_none && name == "none")) {
             input.file = (study.folder / name).lexically_normal();
             if (is_memory(input.file)) input.file = "./" + name;
@@ -261,6 +267,7 @@ void StudyPlan::add_output(StudyInstance& instance, const StudySetting& setting,
     const std::size_t from = study.step(reference.name);
     const StudyStep& other = study.steps[from];
     const bool all = setting.value->IsObject();
+    bool on_disk = false;
     if (step.operation != nullptr && other.operation != nullptr) {
         const Call taking(*step.operation), giving(*other.operation);
         const Slot *asked = taking.parameters().slot(setting.name), *given = giving.parameters().slot(reference.member);
@@ -283,11 +290,18 @@ void StudyPlan::add_output(StudyInstance& instance, const StudySetting& setting,
         if (all && !asked->repeated && asked->kind != Kind::collection)
             fail_input(study.at(place), "'" + setting.name + "' takes one " + to_string(asked->kind),
                        "give it one: ${" + reference.name + "." + reference.member + "}");
+        on_disk = given->kind == Kind::mesh && reads_beside(*asked);
+        if (on_disk && !other.keep.contains(reference.member))
+            fail_input(study.at(place),
+                       "'" + std::string(step.operation->name) + "' reads what stands beside a file too (NAME.ant.json), and '" +
+                           reference.name + "." + reference.member + "' is not kept",
+                       R"(let step ')" + reference.name + R"(' have "keep": {")" + reference.member +
+                           R"(": "NAME.ply"}, and its annotations as "NAME.ant.json")");
     }
     const bool keep = step.operation == nullptr;  // a program reads files
     const auto add = [&](std::size_t source) {
         if (other.operation != nullptr) want(source, reference.member, keep);
-        instance.inputs.push_back({setting.name, label, {}, source, reference.member});
+        instance.inputs.push_back({setting.name, label, {}, source, reference.member, on_disk});
     };
     if (!all) return add(instance_of(from, instance));
     for (const auto& [values, i] : index_[from]) {

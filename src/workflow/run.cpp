@@ -358,7 +358,7 @@ private:
     Source source_of(const StudyInput& input) {
         const std::lock_guard lock(mutex_);
         const Work& work = works_[input.instance];
-        if (const auto object = work.objects.find(input.output); object != work.objects.end()) {
+        if (const auto object = work.objects.find(input.output); !input.on_disk && object != work.objects.end()) {
             Source source{{}, object->second};
             source.object.name = results_[input.instance].record.outputs.at(input.output).file;
             return source;

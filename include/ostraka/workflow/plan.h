@@ -17,6 +17,7 @@ struct StudyInput {
     Path file;                           ///< empty: an output
     std::size_t instance = no_instance;  ///< whose output it is
     std::string output;
+    bool on_disk = false;  ///< handed on as its file, since what stands beside it is read too (NAME.ant.json)
 };
 
 struct StudyInstance {
