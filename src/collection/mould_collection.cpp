@@ -82,6 +82,10 @@ std::string remedy_by_size(const Mesh& mesh, double common, const std::string& o
            " of the others': is it in another unit?";
 }
 
+bool is_elsewhere(const std::vector<ObjectResult>& results) {
+    return std::any_of(results.begin(), results.end(), [](const ObjectResult& one) { return one.elsewhere; });
+}
+
 }  // namespace
 
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
@@ -99,6 +103,10 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
                 result.SetDouble(std::sqrt(surface_area(read_head(object, leave_out))));
                 return result;
             });
+        if (is_elsewhere(areas)) {
+            prepared.waits_for = "sizes";
+            return prepared;
+        }
         std::vector<double> sizes;
         for (const auto& area : areas)
             if (area.problem.empty() && area.result.GetDouble() > 0) sizes.push_back(area.result.GetDouble());
@@ -118,6 +126,10 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
             fail_input(object.mesh.filename().string(), error.problem(), remedy_by_size(mesh, size, error.remedy()));
         }
     });
+    if (is_elsewhere(prepared.results)) {
+        prepared.waits_for = "features";
+        return prepared;
+    }
     for (std::size_t i = 0; i < prepared.results.size(); ++i)
         if (prepared.results[i].problem.empty()) prepared.objects.push_back(i);
     std::vector<std::optional<PreparedHead>> heads(prepared.objects.size());

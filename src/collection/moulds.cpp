@@ -85,6 +85,7 @@ MouldMatrices compare_heads(const std::vector<std::string>& names, const std::ve
     Progress progress("comparing", heads.size() * (heads.size() + 1) / 2);
     const auto is_kept = !checksums.empty();
     for (std::size_t i = 0; i < heads.size(); ++i) {
+        if (!store.share().has(i)) continue;
         std::string key;
         std::optional<Json> kept;
         if (is_kept) {

@@ -153,7 +153,7 @@ void check_new_collection(const Path& folder) {
         "name a folder that is new or empty, so that made objects are not mixed with others");
 }
 
-Collection read_collection(const Path& folder_or_file) {
+Collection read_collection(const Path& folder_or_file, const Share& share) {
     const std::string where = folder_or_file.string();
     const bool folder = is_folder(folder_or_file);
     if (!folder && !file_exists(folder_or_file)) fail_input(where, "there is no such folder or file", "check the name");
@@ -173,7 +173,10 @@ Collection read_collection(const Path& folder_or_file) {
         if (collection.objects[i].name == collection.objects[i - 1].name)
             fail_input(where, "two objects have the name '" + collection.objects[i].name + "'", "give each a name of its own");
     parallel_for(
-        collection.objects.size(), [&](std::size_t i) { collection.objects[i].checksum = checksum_of(collection.objects[i]); },
+        collection.objects.size(),
+        [&](std::size_t i) {
+            if (share.has(i)) collection.objects[i].checksum = checksum_of(collection.objects[i]);
+        },
         1);
     note_copies(collection);
     return collection;

@@ -10,12 +10,12 @@
 
 namespace ostraka {
 
-ResultStore::ResultStore(Path folder) : folder_(std::move(folder)) {
+ResultStore::ResultStore(Path folder, const Share& share) : folder_(std::move(folder)), share_(share) {
     if (!folder_.empty()) remove_stale_temporaries(folder_);
 }
 
 ResultStore ResultStore::part(const std::string& kind) const {
-    return folder_.empty() ? ResultStore() : ResultStore(folder_ / kind);
+    return folder_.empty() ? ResultStore() : ResultStore(folder_ / kind, share_);
 }
 
 std::string ResultStore::key(const std::vector<std::string>& parts) {
@@ -79,7 +79,9 @@ std::vector<ObjectResult> for_each_object(const Collection& collection, const Re
                         mine.result = std::move(*kept);
                         mine.resumed = true;
                     }
-                if (!mine.resumed) {
+                if (!mine.resumed && !store.share().has(i)) {
+                    mine.elsewhere = true;
+                } else if (!mine.resumed) {
                     mine.result = work(object);
                     if (!object.checksum.empty()) store.keep(object.name, key, mine.result);
                 }

@@ -65,7 +65,7 @@ struct Run final : Operation {
 
     void check() const override {
         if (dry_run && again) fail_usage("--dry-run and --again contradict each other", "give one of them");
-        static_cast<void>(shard_of());
+        static_cast<void>(share_from_text(shard));
     }
 
     void run(Context& context, Report& report) override {
@@ -74,7 +74,7 @@ struct Run final : Operation {
         options.dry_run = dry_run || !explain.empty();
         options.again = again;
         options.memory = memory * 1e9;
-        std::tie(options.shard, options.shards) = shard_of();
+        options.share = share_from_text(shard);
         options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
         if (!explain.empty()) options.only = {explain};
         const Path file = study.path();
@@ -110,7 +110,7 @@ struct Run final : Operation {
             if (results[i].state == InstanceState::failed) report.answer_no();
         }
         if (options.dry_run) return;
-        if (options.shards > 1) {
+        if (!options.share.is_whole()) {
             report.line("part " + shard + " is done; run it without --shard to gather the parts");
             return;
         }
@@ -143,16 +143,6 @@ private:
         for (const char* ending : {".json", ".study"})
             if (name.ends_with(ending)) name = name.substr(0, name.size() - std::string_view(ending).size());
         return name + "-run";
-    }
-
-    std::pair<std::size_t, std::size_t> shard_of() const {
-        if (shard.empty()) return {0, 1};
-        const std::size_t slash = shard.find('/');
-        const auto k = whole_of(shard.substr(0, slash));
-        const auto n = slash == std::string::npos ? std::nullopt : whole_of(shard.substr(slash + 1));
-        if (!k || !n || *k < 1 || *n < *k)
-            fail_usage("--shard is '" + printable(shard, 60) + "'", "give K/N with K from 1 to N, such as 3/64");
-        return {static_cast<std::size_t>(*k - 1), static_cast<std::size_t>(*n)};
     }
 
     FileInput study;

@@ -10,7 +10,13 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
              "folder for tables, plots and the report; what is done is kept there and not done again")
         .flag();
     p.options("plots", plots_, "format of the plots", Choices{"svg", "png"}).unrecorded();
+    p.options(
+         "shard", shard_,
+         "K/N: do the K-th of N parts of the objects, on a machine of its own, and keep the results in the folder; without it "
+         "they are gathered")
+        .unrecorded();
     p.report.table("failed", text("name"), text("problem"));
+    p.report.values(integer("part.objects"), integer("part.failed"));
     if (!labels) return;
     p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
     p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
@@ -18,22 +24,36 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
 }
 
 void StudyFiles::check() const {
+    static_cast<void>(share_from_text(shard_));
     const Path &from = collection.sources.front().file, &to = output.sources.front().file;
     if (!from.empty() && !to.empty() && same_place(to, is_folder(from) ? from : from.parent_path()))
         fail_usage("--output is the folder of the collection", "name another one, so that results are not taken for objects");
     if (!truth_ && !truth_column_.empty()) fail_usage("--truth-column without --truth", "name the table as well");
 }
 
-Collection StudyFiles::read(Context& context) const {
+Collection StudyFiles::read(Context& context, bool all) const {
     Collection result;
     context.record([&] {
-        result = read_collection(collection.path());
+        result = read_collection(collection.path(), all ? Share() : share_from_text(shard_));
         if (truth_) set_labels(result, read_labels(truth_.path(), truth_column_), truth_.file());
     });
     output.open();
-    for (const auto& object : result.objects) context.record_input(object.name, object.checksum);
+    for (const auto& object : result.objects)
+        if (!object.checksum.empty() || !is_part()) context.record_input(object.name, object.checksum);
     context.notes("", result.notes);
     return result;
+}
+
+bool StudyFiles::ends_with_part(Report& report, const std::vector<ObjectResult>& results) const {
+    if (!is_part()) return false;
+    std::size_t objects = 0, failed = 0;
+    for (const ObjectResult& one : results)
+        if (!one.elsewhere) ++objects, failed += one.problem.empty() ? 0 : 1;
+    report("part.objects", objects)("part.failed", failed);
+    report.line("part " + shard_ + ": " + counted(objects, "object") +
+                (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") +
+                "; once all parts are done, run it without --shard to gather them");
+    return true;
 }
 
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results) {

@@ -14,12 +14,18 @@ public:
                   const std::string& collections = "folder of meshes, or a list of objects (.study.json)");
     /// Throws Error (usage) where the output folder is the collection's own.
     void check() const;
-    /// Reads the collection and its labels, notes what they say, records both in the provenance, opens the folder. Throws as
-    /// `read_collection`, `read_labels` and `set_labels` do.
-    Collection read(Context& context) const;
+    /// Reads the collection (of a part of the work only its objects, unless `all`) and its labels, notes what they say, records
+    /// both in the provenance, opens the folder. Throws as `read_collection`, `read_labels` and `set_labels` do.
+    Collection read(Context& context, bool all = false) const;
 
     /// Where results of single objects are kept from run to run; `kind` is a folder in the output folder.
-    [[nodiscard]] ResultStore store(const std::string& kind = "objects") const { return ResultStore(output.path() / kind); }
+    [[nodiscard]] ResultStore store(const std::string& kind = "objects") const {
+        return ResultStore(output.path() / kind, share_from_text(shard_));
+    }
+    /// Whether this run does a part of the objects only (--shard): then it says what became of them, and nothing is gathered.
+    bool ends_with_part(Report& report, const std::vector<ObjectResult>& results) const;
+    [[nodiscard]] bool is_part() const { return !share_from_text(shard_).is_whole(); }
+    [[nodiscard]] const std::string& shard() const { return shard_; }
     [[nodiscard]] Path in(const std::string& name) const { return output.in(name); }
     /// A plot in the output folder, with the ending that was asked for.
     [[nodiscard]] Path plot(const std::string& name) const { return in(name + (plots_ == PlotFormat::png ? ".png" : ".svg")); }
@@ -30,7 +36,7 @@ public:
 private:
     enum class PlotFormat { svg, png };
     FileInput truth_;
-    std::string truth_column_;
+    std::string truth_column_, shard_;
     PlotFormat plots_ = PlotFormat::svg;
 };
 

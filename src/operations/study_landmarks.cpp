@@ -31,6 +31,7 @@ struct StudyLandmarks final : StudyOperation {
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
         const std::vector<ObjectResult> read = read_object_landmarks(collection, files.store("landmarks"));
+        if (files.ends_with_part(report, read)) return;
         report_failures(report, collection, read);
         LandmarkShapes shapes = common_landmarks(collection, read, options.scaling, files.collection.file());
         report.notes(shapes.notes);

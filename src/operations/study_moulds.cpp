@@ -32,15 +32,24 @@ struct StudyMoulds final : StudyOperation {
     }
 
     void run(Context& context, Report& report) override {
-        const Collection collection = files.read(context);
+        const Collection collection = files.read(context, true);
         const PreparedCollection prepared = prepare_collection(collection, compare, leave_out, files.store("features"));
+        if (!prepared.waits_for.empty()) {
+            report.line("part " + files.shard() + ": its " + prepared.waits_for +
+                        " are done; once all parts have theirs, run them again for what depends on all");
+            return;
+        }
         const std::size_t failed = report_failures(report, collection, prepared.results);
         if (prepared.heads.size() < 2)
             fail_input(files.collection.file(), std::to_string(prepared.heads.size()) + " of its objects can be compared",
                        "a study of moulds needs at least two");
-        const MouldStudy study = study_moulds(
-            compare_heads(prepared.names, prepared.heads, prepared.options, files.store("pairs"), prepared.checksums), similarity,
-            group, stability);
+        MouldMatrices compared =
+            compare_heads(prepared.names, prepared.heads, prepared.options, files.store("pairs"), prepared.checksums);
+        if (files.is_part()) {
+            report.line("part " + files.shard() + ": its pairs are compared; once all parts have theirs, run it without --shard");
+            return;
+        }
+        const MouldStudy study = study_moulds(std::move(compared), similarity, group, stability);
         std::vector<std::string> answers;
         for (const std::size_t i : prepared.objects) answers.push_back(collection.objects[i].label);
         const KnownAnswers known(answers);

@@ -153,6 +153,7 @@ struct StudyProportions final : StudyOperation {
         } else {
             const Collection collection = files.read(context);
             const std::vector<ObjectResult> taken = take_measures(collection, definitions(), files.store());
+            if (files.ends_with_part(report, taken)) return;
             failures = report_failures(report, collection, taken);
             table = measure_table(collection, taken, definitions(), notes, files.collection.file());
         }

@@ -35,6 +35,7 @@ struct StudyOfTechnique final : StudyOperation {
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
         const auto measured = measure_technique(collection, up.value(), slices, files.store());
+        if (files.ends_with_part(report, measured)) return;
         report.notes(notes_on_directions(collection, measured));
         const std::vector<TechniqueObject> objects = technique_objects(collection, measured);
         const std::size_t left_out = report_failures(report, collection, measured);

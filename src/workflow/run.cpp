@@ -118,7 +118,7 @@ private:
             const std::string& name = plan_.study.steps[instance(i).step].name;
             if (!options_.only.empty() && std::find(options_.only.begin(), options_.only.end(), name) == options_.only.end())
                 continue;
-            if (options_.shards > 1 && (is_taken[i] || leaf++ % options_.shards != options_.shard)) continue;
+            if (!options_.share.is_whole() && (is_taken[i] || !options_.share.has(leaf++))) continue;
             wanted.push_back(i);
         }
         while (!wanted.empty()) {

@@ -229,6 +229,31 @@ TEST_F(MouldStudy, ASecondRunTakesAllFromTheStore) {
     EXPECT_EQ(times(*scratch / "again"), before);
 }
 
+TEST_F(MouldStudy, SharesMakeWhatOneRunMakes) {
+    Collection collection = read_collection(*scratch / "heads");
+    collection.objects.resize(5);
+    const MouldMatrices expected = compare(prepare_collection(collection, {}, {}, ResultStore()), ResultStore());
+    const Path folder = *scratch / "shares";
+    const auto part = [&](const Share& share) {
+        const auto prepared = prepare_collection(collection, {}, {}, ResultStore(folder / "features", share));
+        if (prepared.waits_for.empty()) (void)compare(prepared, ResultStore(folder / "pairs", share));
+        return prepared.waits_for;
+    };
+    EXPECT_EQ(part({0, 3}), "sizes");
+    EXPECT_EQ(part({0, 3}), "sizes") << "others have not begun";
+    EXPECT_EQ(part({1, 3}), "sizes");
+    EXPECT_EQ(part({2, 3}), "features") << "all sizes are there";
+    EXPECT_EQ(part({0, 3}), "features");
+    for (const std::size_t k : {1, 2, 0}) EXPECT_EQ(part({k, 3}), "");
+    const auto before = times(folder);
+    const auto prepared = prepare_collection(collection, {}, {}, ResultStore(folder / "features"));
+    const MouldMatrices gathered = compare(prepared, ResultStore(folder / "pairs"));
+    EXPECT_EQ(times(folder), before) << "nothing is done again";
+    EXPECT_EQ(gathered.matches, expected.matches);
+    EXPECT_EQ(gathered.registration, expected.registration);
+    EXPECT_EQ(gathered.scale, expected.scale);
+}
+
 TEST_F(MouldStudy, AFurtherHeadCostsItsOwnPairsOnly) {
     const Collection all = read_collection(*scratch / "heads");
     Collection some = all, more = all;

@@ -248,6 +248,35 @@ TEST(ForEachObject, WhatIsDoneIsNotDoneAgain) {
     EXPECT_EQ(calls, 3);
 }
 
+TEST(ForEachObject, SharesAreGatheredWithoutWork) {
+    const Scratch scratch;
+    std::filesystem::create_directory(scratch / "in");
+    for (const char* name : {"in/a.ply", "in/b.ply", "in/c.ply", "in/d.ply", "in/e.ply"}) sphere_file(scratch, name, 1);
+    std::atomic<int> calls = 0;
+    const auto run = [&](const Share& share) {
+        calls = 0;
+        const Collection collection = read_collection(scratch / "in", share);
+        EXPECT_EQ(std::count_if(collection.objects.begin(), collection.objects.end(),
+                                [](const auto& one) { return one.checksum.empty(); }),
+                  share.is_whole()   ? 0
+                  : share.index == 0 ? 2
+                                     : 3);
+        return for_each_object(collection, ResultStore(scratch / "out", share), {"faces"}, [&](const CollectionObject& object) {
+            ++calls;
+            return faces_of(object);
+        });
+    };
+    const auto odd = run({0, 2});
+    EXPECT_EQ(calls, 3);
+    EXPECT_FALSE(odd[2].elsewhere);
+    EXPECT_TRUE(odd[3].elsewhere);
+    EXPECT_TRUE(odd[3].problem.empty());
+    run({1, 2});
+    EXPECT_EQ(calls, 2);
+    for (const auto& one : run({})) EXPECT_TRUE(one.resumed);
+    EXPECT_EQ(calls, 0);
+}
+
 TEST(ResultStore, KeepsAtOnceAndKnowsWhatWasChanged) {
     const Scratch scratch;
     const ResultStore store(scratch.path());

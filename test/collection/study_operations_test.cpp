@@ -71,6 +71,28 @@ TEST(StudyOperations, TheFolderOfTheCollectionIsNoOutput) {
     EXPECT_THROW(call.run(context), Error);
 }
 
+TEST(StudyOperations, PartsAreGatheredToWhatOneRunMakes) {
+    const MemoryFolder folder;
+    for (int i = 1; i <= 5; ++i) write_file(folder.path / (std::to_string(i) + ".mrk.json"), markups(i));
+    const Path one = folder.path / "one", parts = folder.path / "parts";
+    const auto run = [&](const Path& output, const std::string& shard) {
+        Context context;
+        Call call(find_operation("study landmarks"));
+        call.set_file("collection", folder.path);
+        call.set_file("output", output);
+        if (!shard.empty()) call.set("shard", shard);
+        return to_text(call.run(context).result());
+    };
+    const std::string expected = run(one, "");
+    EXPECT_NE(run(parts, "2/2").find("\"objects\": 2"), std::string::npos);
+    EXPECT_FALSE(file_exists(parts / "objects.csv"));
+    run(parts, "1/2");
+    EXPECT_EQ(run(parts, ""), expected);
+    EXPECT_EQ(read_file(parts / "objects.csv"), read_file(one / "objects.csv"));
+    EXPECT_THROW(run(parts, "3/2"), Error);
+    EXPECT_THROW(run(parts, "all"), Error);
+}
+
 TEST(LandmarkShapes, AreOfTheLandmarksInCommon) {
     const MemoryFolder folder;
     write_file(folder.path / "a.mrk.json", markups(1));

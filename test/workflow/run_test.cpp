@@ -128,7 +128,7 @@ TEST(RunStudy, GivesTheSameBytesForAnyNumberOfThreadsAndParts) {
     set_threads(before);
     for (const std::size_t shards : {2, 7}) {
         const Path out = scratch / ("shards-" + std::to_string(shards));
-        for (std::size_t k = shards; k-- > 0;) run_all(plan, out, {.shard = k, .shards = shards});
+        for (std::size_t k = shards; k-- > 0;) run_all(plan, out, {.share = {k, shards}});
         const auto gathered = run_all(plan, out);
         EXPECT_EQ(count(gathered, InstanceState::unchanged), plan.instances.size());
     }

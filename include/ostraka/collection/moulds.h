@@ -44,7 +44,8 @@ struct MouldMatrices {
 };
 
 /// Compares every pair; pairs whose results are kept in `store` are not compared again. Results are kept for each head as soon as
-/// it was compared with all after it. Same matrices for any number of threads.
+/// it was compared with all after it. With a store of a share, only its heads are compared with those after them. Same matrices
+/// for any number of threads.
 MouldMatrices compare_heads(const std::vector<std::string>& names, const std::vector<PreparedHead>& heads,
                             const CompareOptions& options, const ResultStore& store = ResultStore(),
                             const std::vector<std::string>& checksums = {});
@@ -56,11 +57,14 @@ struct PreparedCollection {
     std::vector<PreparedHead> heads;
     std::vector<ObjectResult> results;  ///< of all objects; those that could not are reported with their problem
     CompareOptions options;             ///< with the size that was used
+    std::string waits_for;              ///< "sizes" or "features" of other shares that are not there yet: no heads
 };
 
 /// Reads the meshes, without the faces that bear one of the labels `leave_out` (of what is left, the largest piece), and finds
 /// their features. Without a size in the options it is the median of the square roots of the areas, to the nearest power of 1.1,
-/// so that another head seldom changes it. Features are kept in `store`, sizes in its part "sizes". Throws as `for_each_object`.
+/// so that another head seldom changes it. Features are kept in `store`, sizes in its part "sizes". With a store of a
+/// share, the sizes of the share are made first; its features once all sizes are there, and heads once all features are. Throws
+/// as `for_each_object`.
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
                                       const std::vector<int>& leave_out, const ResultStore& store);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ostraka/core/json.h"
+#include "ostraka/core/share.h"
 
 #include <functional>
 #include <map>
@@ -19,7 +20,7 @@ struct CollectionObject {
     Path landmarks;     ///< 3D Slicer markups (.mrk.json); empty where there are none
     std::string unit;   ///< of the coordinates, where the collection says so
     std::string label;  ///< the known answer; empty where it is not known
-    /// SHA-256 over the contents of its files; empty where one cannot be read.
+    /// SHA-256 over the contents of its files; empty where one cannot be read, and of objects that are not in the share.
     std::string checksum;
 };
 
@@ -37,9 +38,10 @@ void check_new_collection(const Path& folder);
 /// two files differ in the ending only); NAME.ant.json and NAME.mrk.json beside it belong to it; markups without a mesh are
 /// objects of landmarks; names that results cannot be kept under (longer than 200 bytes, with control characters or a backslash,
 /// no UTF-8) are left out. A file *.study.json (doc/schema/study.schema.json): the objects that it lists, with their files
-/// relative to it; such a name in it is an error. Throws Error (input) for what is neither, a collection without objects, or two
-/// objects of one name. A file that is missing or damaged is found out only by the work on that object.
-Collection read_collection(const Path& folder_or_file);
+/// relative to it; such a name in it is an error. Files of objects outside the `share` are not read. Throws Error (input) for
+/// what is neither, a collection without objects, or two objects of one name. A file that is missing or damaged is found out only
+/// by the work on that object.
+Collection read_collection(const Path& folder_or_file, const Share& share = {});
 
 /// Labels of objects from a CSV file whose first row names the columns: "name" and `column` (by default "label"). Throws Error
 /// (input) for a missing column, a name that comes twice or an empty table.
@@ -56,7 +58,7 @@ class ResultStore {
 public:
     /// Makes the folder when the first result is kept. Without a folder nothing is kept. Temporary files that killed runs left in
     /// the folder are removed (core/file.h: after a day).
-    explicit ResultStore(Path folder = {});
+    explicit ResultStore(Path folder = {}, const Share& share = {});
     /// A store in a folder within this one, for another kind of result under the same names.
     [[nodiscard]] ResultStore part(const std::string& kind) const;
     /// SHA-256 of texts one after the other; the toolkit's version goes in as well.
@@ -64,9 +66,12 @@ public:
 
     [[nodiscard]] std::optional<Json> find(const std::string& name, const std::string& key) const;
     void keep(const std::string& name, const std::string& key, const JsonValue& result) const;
+    /// Of the objects that are worked on here; results of others are found, not made.
+    [[nodiscard]] const Share& share() const { return share_; }
 
 private:
     Path folder_;
+    Share share_;
 };
 
 /// What became of one object.
@@ -74,12 +79,14 @@ struct ObjectResult {
     Json result;          ///< null where the work failed
     std::string problem;  ///< why it failed, in words with place and remedy; empty where it did not
     bool resumed = false;
+    bool elsewhere = false;  ///< another share's, and not there yet
 };
 
 /// Does `work` on every object, several at a time, and gives the results in the order of the collection, the same for any number
 /// of threads (within the work, loops run on one thread). Errors of kind input and failure, and a lack of memory, are kept as the
 /// object's problem; an Error of kind usage is thrown. Results are looked up and kept in `store` under a key of the object's
-/// contents and name and of `what`: the work's name and all options it depends on. Failures are not kept. Objects without a
+/// contents and name and of `what`: the work's name and all options it depends on. Failures are not kept. Objects outside of the
+/// store's share are looked up, and not worked on. Objects without a
 /// checksum (unreadable) are worked on, so that the error says why.
 std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,
                                           const std::vector<std::string>& what,

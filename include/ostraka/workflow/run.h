@@ -1,6 +1,7 @@
 // Runs the instances of a study: what has not changed is not run again, what is independent runs side by side.
 #pragma once
 
+#include "ostraka/core/share.h"
 #include "ostraka/workflow/record.h"
 
 namespace ostraka {
@@ -9,8 +10,8 @@ struct RunStudyOptions {
     std::vector<std::string> only = {};  ///< steps, with what they need; empty: all
     bool dry_run = false;                ///< says what would run, and runs nothing
     bool again = false;                  ///< as if nothing had run before
-    double memory = 0;                  ///< bytes of the process below which a further instance starts beside others; 0: no limit
-    std::size_t shard = 0, shards = 1;  ///< of the instances that nothing takes, every n-th, with what these need
+    double memory = 0;  ///< bytes of the process below which a further instance starts beside others; 0: no limit
+    Share share = {};   ///< of the instances that nothing takes, with what these need
     Path program_folder = {};
 };
 

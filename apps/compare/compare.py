@@ -1,0 +1,251 @@
+"""Measures the same work by this toolkit and by others, whole processes side by side, and writes a table.
+
+usage: compare.py BUILD_FOLDER [--vertices N] [--laps N]
+Each row is a fresh process that reads its files and writes its results; the laps of all peers of a task take turns. Seconds and
+memory are those of the median lap. Errors come from one measure for all.
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+
+here = pathlib.Path(__file__).resolve().parent
+
+
+def measured(words):
+    """Wall seconds, peak memory in MB, and what the process printed."""
+    begin = time.perf_counter()
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    printed, problems = process.communicate()
+    return time.perf_counter() - begin, process.returncode, printed, problems
+
+
+def with_memory(words):
+    """GNU time measures the peak of the process that it waits for."""
+    with tempfile.NamedTemporaryFile("r") as file:
+        seconds, code, printed, problems = measured(["/usr/bin/time", "-f", "%M", "-o", file.name, *map(str, words)])
+        if code not in (0, 3):
+            sys.exit(f"compare: {' '.join(map(str, words))} ended with {code}: {problems[-600:]}")
+        return {"seconds": seconds, "MB": int(file.read().split()[-1]) / 1024, "printed": printed}
+
+
+def own(told):
+    """What a peer prints of itself: our reports (run.seconds) or a line of JSON."""
+    begin = told["printed"].find("{")
+    try:
+        document = json.loads(told["printed"][begin:]) if begin >= 0 else {}
+    except ValueError:
+        document = {}
+    return document
+
+
+class Task:
+    def __init__(self, title, note=""):
+        self.title, self.note, self.peers = title, note, {}
+
+    def peer(self, name, words, error=None):
+        """`error`: from what the process told, a text for the last column."""
+        self.peers[name] = (words, error)
+        return self
+
+    def run(self, laps):
+        told = {name: [] for name in self.peers}
+        for _ in range(laps):
+            for name, (words, _) in self.peers.items():
+                told[name].append(with_memory(words))
+        rows = []
+        for name, (_, error) in self.peers.items():
+            several = sorted(told[name], key=lambda one: one["seconds"])
+            one = several[len(several) // 2]
+            document = own(one)
+            work = document.get("work")
+            rows.append([name, f"{one['seconds']:.2f}", "" if work is None else f"{work + document.get('build', 0):.3f}",
+                         f"{one['MB']:.0f}", error(document) if error else ""])
+        best = min(float(row[1]) for row in rows)
+        print(f"### {self.title}\n\n{self.note}{chr(10) * 2 if self.note else ''}"
+              "| by | whole process, s | work alone, s | MB | result |\n|---|---:|---:|---:|---|")
+        for row in rows:
+            print("| " + " | ".join(row) + " |")
+        print(flush=True)
+        return {"task": self.title, "fastest": next(row[0] for row in rows if float(row[1]) == best)}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--vertices", type=int, default=1_000_000)
+    parser.add_argument("--laps", type=int, default=3)
+    arguments = parser.parse_args()
+    build = arguments.build.resolve()
+    ostraka, peers, vtk = build / "ostraka", build / "ostraka_peers", ["/usr/bin/python3", here / "peer_vtk.py"]
+    sys.path.insert(0, str(build / "python"))
+    import ostraka as module
+
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="ostraka-compare-"))
+    os.chdir(folder)
+
+    def make(name, object_name, vertices, seed=1):
+        subprocess.run([ostraka, "mesh", "make", object_name, name, "--vertices", str(vertices), "--seed", str(seed), "--labels",
+                        name.replace(".ply", ".labels"), "--quiet"], check=True, stdout=subprocess.DEVNULL)
+
+    n = arguments.vertices
+    make("large.ply", "statuette", n)
+    make("middle.ply", "statuette", max(300, n // 10), 2)
+    make("small.ply", "statuette", max(300, n // 20), 3)
+    # Others read plain geometry.
+    for name in ("large", "middle", "small"):
+        subprocess.run([peers, "convert", "cgal", f"{name}.ply", f"{name}-plain.ply"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([ostraka, "cage", "make", "small-plain.ply", "cage.ply", "--vertices", "200", "--quiet"], check=True,
+                   stdout=subprocess.DEVNULL)
+    recipe = here.parent.parent / "data/statuette.recipe.json"
+    for name in ("small", "large"):
+        subprocess.run([ostraka, "annotation", "apply", f"{name}.ply", recipe, f"{name}.ant.json", "--quiet"], check=True,
+                       stdout=subprocess.DEVNULL)
+    large, middle, small = "large-plain.ply", "middle-plain.ply", "small-plain.ply"
+    meshlab = shutil.which("meshlabserver")
+    screen = ["xvfb-run", "-a", "meshlabserver"]
+
+    def by_meshlab(task, name, words, error=None):
+        if meshlab:
+            task.peer(name, [*screen, *words], error)
+
+    def filter_script(name, text):
+        pathlib.Path(name).write_text(f"<!DOCTYPE FilterScript>\n<FilterScript>\n{text}\n</FilterScript>\n")
+        return name
+
+    counts = f"{n:,} vertices"
+    convert = Task(f"A mesh of {counts} read and written (binary PLY)")
+    convert.peer("Ostraka", [ostraka, "mesh", "convert", large, "o.ply", "--quiet"])
+    convert.peer("CGAL 5.5", [peers, "convert", "cgal", large, "c.ply"])
+    convert.peer("OpenMesh 9", [peers, "convert", "openmesh", large, "m.ply"])
+    convert.peer("VTK 9.1", [*vtk, "convert", large, "v.ply"])
+    by_meshlab(convert, "MeshLab 2020.09", ["-i", large, "-o", "l.ply"])
+
+    def length(document):
+        return f"contours {document['length']:.5g} mm"
+
+    slicing = Task(f"100 slices of {counts}", "Ostraka also computes 37 descriptors of each slice and writes their table.")
+    slicing.peer("Ostraka", [ostraka, "slice", large, "--count", "100", "--output", "o.csv", "--quiet", "--json"],
+                 lambda document: "contours {:.5g} mm".format(sum(one["descriptors"]["perimeter"] for one in document["result"]["slices"])))
+    slicing.peer("CGAL 5.5", [peers, "slice", "cgal", large, "100"], length)
+    slicing.peer("VTK 9.1", [*vtk, "slice", large, "100"], length)
+
+    def off(file):
+        def told(_):
+            words = subprocess.run([peers, "closest", "ours", file, large], capture_output=True, text=True, check=True)
+            distances = json.loads(words.stdout)
+            return f"mean {distances['mean']:.2e}, maximum {distances['maximum']:.2e} mm off"
+        return told
+
+    wanted = max(300, n // 20)
+    simplify = Task(f"{counts} simplified to {wanted:,}", "Off: distance of the original's vertices from what is left.")
+    simplify.peer("Ostraka", [ostraka, "mesh", "simplify", large, "so.ply", "--vertices", str(wanted), "--quiet"], off("so.ply"))
+    simplify.peer("CGAL 5.5, Garland-Heckbert", [peers, "simplify", "cgal", large, "sc.ply", str(wanted)], off("sc.ply"))
+    simplify.peer("OpenMesh 9, quadrics", [peers, "simplify", "openmesh", large, "sm.ply", str(wanted)], off("sm.ply"))
+    simplify.peer("VTK 9.1, quadrics", [*vtk, "simplify", large, "sv.ply", str(wanted)], off("sv.ply"))
+    script = filter_script("simplify.mlx", '<filter name="Simplification: Quadric Edge Collapse Decimation">'
+                           f'<Param type="RichInt" name="TargetFaceNum" value="{2 * wanted}"/></filter>')
+    by_meshlab(simplify, "MeshLab 2020.09, quadrics", ["-i", large, "-o", "sl.ply", "-s", script], off("sl.ply"))
+
+    def distances(document):
+        return f"mean {document['mean']:.6g}, maximum {document['maximum']:.6g} mm"
+
+    closest = Task(f"Nearest places on {counts} to the vertices of {max(300, n // 10):,}",
+                   "Work alone: tree and queries. VTK's queries are asked from Python one by one.")
+    closest.peer("Ostraka (library, 2 threads)", [peers, "closest", "ours", large, middle], distances)
+    closest.peer("CGAL 5.5 (1 thread)", [peers, "closest", "cgal", large, middle], distances)
+    closest.peer("VTK 9.1", [*vtk, "closest", large, middle], distances)
+
+    farthest = Task(f"Farthest place of {wanted:,} vertices from {max(300, n // 10):,} (one-sided Hausdorff distance)",
+                    "Ostraka and VTK ask from vertices; CGAL bounds the distance of whole surfaces to 0.1 % of the diagonal.")
+    largest = lambda document: f"{document['maximum']:.5g} mm"
+    farthest.peer("Ostraka (library, from vertices)", [peers, "closest", "ours", middle, small], largest)
+    farthest.peer("CGAL 5.5, bounded error", [peers, "hausdorff", "cgal", small, middle], largest)
+    farthest.peer("VTK 9.1, from vertices", [*vtk, "hausdorff", small, middle], largest)
+    script = filter_script("hausdorff.mlx", '<filter name="Hausdorff Distance">'
+                           '<Param type="RichMesh" name="SampledMesh" value="0"/><Param type="RichMesh" name="TargetMesh" value="1"/>'
+                           '<Param type="RichBool" name="SampleVert" value="true"/><Param type="RichBool" name="SampleEdge" value="false"/>'
+                           '<Param type="RichBool" name="SampleFace" value="false"/><Param type="RichAbsPerc" name="MaxDist" value="50" min="0" max="100"/>'
+                           "</filter>")
+    by_meshlab(farthest, "MeshLab 2020.09, from vertices", ["-i", small, middle, "-s", script])
+
+    def reproduction(file):
+        def told(_):
+            values = numpy.load(file)
+            corners, points = module.Mesh("cage.ply").points, module.Mesh(small).points
+            return f"off by {numpy.linalg.norm(values @ corners - points, axis=1).max():.1e} mm at most"
+        return told
+
+    weights = Task(f"Mean value coordinates of {wanted:,} vertices in a cage of 200",
+                   "Off: distance of W c from the vertex. VTK is asked from Python one by one.")
+    weights.peer("Ostraka (2 threads)", [ostraka, "cage", "weights", small, "cage.ply", "wo.npy", "--quiet"], reproduction("wo.npy"))
+    weights.peer("VTK 9.1 (1 thread)", [*vtk, "weights", small, "cage.ply", "wv.npy"], reproduction("wv.npy"))
+
+    pathlib.Path("raise.edit.json").write_text(json.dumps({"format": "ostraka-edit", "version": 1, "steps": raise_steps(module, small)}))
+
+    def strained(file):
+        def told(_):
+            faces, before, after = (module.Mesh(small).faces, module.Mesh(small).points, module.Mesh(file).points)
+            edges = numpy.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+            lengths = [numpy.linalg.norm(p[edges[:, 0]] - p[edges[:, 1]], axis=1) for p in (before, after)]
+            strain = lengths[1] / lengths[0] - 1
+            return f"edges stretched by {numpy.sqrt((strain**2).mean()):.2%} rms"
+        return told
+
+    raising = Task(f"The head of {wanted:,} vertices raised, its base held",
+                   "CGAL: as rigid as possible (spokes and rims), 10 iterations. Ostraka: Laplacian displacements to convergence, "
+                   "with its checks of what moved and of the constraints.")
+    raising.peer("Ostraka", [ostraka, "deform", small, "raise.edit.json", "do.ply", "--quiet"], strained("do.ply"))
+    raising.peer("CGAL 5.5", [peers, "raise", "cgal", small, "dc.ply"], strained("dc.ply"))
+
+    def wrong(labels_of):
+        def told(_):
+            truth = numpy.loadtxt("large.labels", dtype=int)
+            return f"{(labels_of() != truth).mean():.3%} of the faces wrong"
+        return told
+
+    def ours():
+        return region_labels(module, "transferred.ant.json", "large.ply", len(numpy.loadtxt("large.labels", dtype=int)))
+
+    labels = Task(f"Parts of {wanted:,} vertices carried to {counts}",
+                  "Wrong: against the parts that the object was made of. Ostraka carries outlines and scores them; VTK gives each face "
+                  "the part of the face nearest to its centroid, from Python one by one.")
+    labels.peer("Ostraka", [ostraka, "annotation", "transfer", "small.ply", "small.ant.json", "large.ply", "transferred.ant.json",
+                            "--quiet"], wrong(ours))
+    labels.peer("VTK 9.1", [*vtk, "labels", small, "small.labels", large, "vtk.labels"],
+                wrong(lambda: numpy.loadtxt("vtk.labels", dtype=int)))
+
+    summary = [task.run(arguments.laps) for task in (convert, slicing, simplify, closest, farthest, weights, raising, labels)]
+    print("| work | fastest |\n|---|---|")
+    for one in summary:
+        print(f"| {one['task']} | {one['fastest']} |")
+    shutil.rmtree(folder)
+
+
+def raise_steps(module, file):
+    points = module.Mesh(file).points
+    low, high = points.min(axis=0), points.max(axis=0)
+    height = float(high[2] - low[2])
+    box = lambda a, b: {"box": {"min": [float(low[0]) - 1, float(low[1]) - 1, float(low[2]) + a * height],
+                                "max": [float(high[0]) + 1, float(high[1]) + 1, float(low[2]) + b * height]}}
+    return [{"select": box(0.85, 1.1), "translate": [0, 0, 0.1 * height]}, {"select": box(-0.1, 0.1), "translate": [0, 0, 0]}]
+
+
+def region_labels(module, annotations, mesh, faces):
+    """The recipe's regions of labels 0 to 6 are the annotations 1 to 7."""
+    values = numpy.full(faces, -1)
+    for identity, list_of_faces in module.Annotations(annotations).faces(mesh).items():
+        if 1 <= identity <= 7:
+            values[list_of_faces] = identity - 1
+    return values
+
+
+if __name__ == "__main__":
+    main()
