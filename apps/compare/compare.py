@@ -8,6 +8,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -64,7 +65,7 @@ class Task:
         for name, (_, error) in self.peers.items():
             several = sorted(told[name], key=lambda one: one["seconds"])
             one = several[len(several) // 2]
-            document = own(one)
+            document = own(one) | {"printed": one["printed"]}
             work = document.get("work")
             rows.append([name, f"{one['seconds']:.2f}", "" if work is None else f"{work + document.get('build', 0):.3f}",
                          f"{one['MB']:.0f}", error(document) if error else ""])
@@ -116,9 +117,21 @@ def main():
         if meshlab:
             task.peer(name, [*screen, *words], error)
 
-    def filter_script(name, text):
-        pathlib.Path(name).write_text(f"<!DOCTYPE FilterScript>\n<FilterScript>\n{text}\n</FilterScript>\n")
-        return name
+    def filter_script(file, title, **parameters):
+        """MeshLab wants all parameters of a filter, each with its type."""
+        text = "".join(f'<Param type="{kind}" name="{name}" value="{value}" min="0" max="1000000"/>'
+                       for name, (kind, value) in parameters.items())
+        pathlib.Path(file).write_text(f'<!DOCTYPE FilterScript><FilterScript><filter name="{title}">{text}</filter></FilterScript>')
+        return file
+
+    def whole(value):
+        return ("RichInt", value)
+
+    def real(value):
+        return ("RichFloat", value)
+
+    def flag(value):
+        return ("RichBool", "true" if value else "false")
 
     counts = f"{n:,} vertices"
     convert = Task(f"A mesh of {counts} read and written (binary PLY)")
@@ -150,8 +163,11 @@ def main():
     simplify.peer("CGAL 5.5, Garland-Heckbert", [peers, "simplify", "cgal", large, "sc.ply", str(wanted)], off("sc.ply"))
     simplify.peer("OpenMesh 9, quadrics", [peers, "simplify", "openmesh", large, "sm.ply", str(wanted)], off("sm.ply"))
     simplify.peer("VTK 9.1, quadrics", [*vtk, "simplify", large, "sv.ply", str(wanted)], off("sv.ply"))
-    script = filter_script("simplify.mlx", '<filter name="Simplification: Quadric Edge Collapse Decimation">'
-                           f'<Param type="RichInt" name="TargetFaceNum" value="{2 * wanted}"/></filter>')
+    script = filter_script("simplify.mlx", "Simplification: Quadric Edge Collapse Decimation", TargetFaceNum=whole(2 * wanted),
+                           TargetPerc=real(0), QualityThr=real(0.3), PreserveBoundary=flag(False), BoundaryWeight=real(1),
+                           PreserveNormal=flag(False), PreserveTopology=flag(False), OptimalPlacement=flag(True),
+                           PlanarQuadric=flag(False), PlanarWeight=real(0.001), QualityWeight=flag(False), AutoClean=flag(True),
+                           Selected=flag(False))
     by_meshlab(simplify, "MeshLab 2020.09, quadrics", ["-i", large, "-o", "sl.ply", "-s", script], off("sl.ply"))
 
     def distances(document):
@@ -169,12 +185,15 @@ def main():
     farthest.peer("Ostraka (library, from vertices)", [peers, "closest", "ours", middle, small], largest)
     farthest.peer("CGAL 5.5, bounded error", [peers, "hausdorff", "cgal", small, middle], largest)
     farthest.peer("VTK 9.1, from vertices", [*vtk, "hausdorff", small, middle], largest)
-    script = filter_script("hausdorff.mlx", '<filter name="Hausdorff Distance">'
-                           '<Param type="RichMesh" name="SampledMesh" value="0"/><Param type="RichMesh" name="TargetMesh" value="1"/>'
-                           '<Param type="RichBool" name="SampleVert" value="true"/><Param type="RichBool" name="SampleEdge" value="false"/>'
-                           '<Param type="RichBool" name="SampleFace" value="false"/><Param type="RichAbsPerc" name="MaxDist" value="50" min="0" max="100"/>'
-                           "</filter>")
-    by_meshlab(farthest, "MeshLab 2020.09, from vertices", ["-i", small, middle, "-s", script])
+    script = filter_script("hausdorff.mlx", "Hausdorff Distance", SampledMesh=("RichMesh", 0), TargetMesh=("RichMesh", 1),
+                           SaveSample=flag(False), SampleVert=flag(True), SampleEdge=flag(False), SampleFauxEdge=flag(False),
+                           SampleFace=flag(False), SampleNum=whole(wanted), MaxDist=("RichAbsPerc", 50))
+
+    def logged(document):
+        found = re.search(r"max\s*:?\s*([0-9.e+-]+)", document["printed"])
+        return f"{float(found[1]):.5g} mm" if found else ""
+
+    by_meshlab(farthest, "MeshLab 2020.09, from vertices", ["-l", "/dev/stdout", "-i", small, middle, "-s", script], logged)
 
     def reproduction(file):
         def told(_):

@@ -5,7 +5,7 @@ import time
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import mutable, vtkDoubleArray
+from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkMeanValueCoordinatesInterpolator, vtkPlane, vtkStaticCellLocator
 from vtkmodules.vtkFiltersCore import vtkCutter, vtkQuadricDecimation
 from vtkmodules.vtkFiltersModeling import vtkHausdorffDistancePointSetFilter
@@ -128,13 +128,10 @@ def weights(source, cage, output):
     """Mean value coordinates, one call a point: VTK has no call for many."""
     points, cage = vtk_to_numpy(read(source).GetPoints().GetData()).astype(float), read(cage)
     told = {"read": lap()}
-    corners, triangles, row = cage.GetPoints(), cage.GetPolys(), vtkDoubleArray()
-    row.SetNumberOfTuples(corners.GetNumberOfPoints())
-    view = vtk_to_numpy(row)
+    corners, triangles = cage.GetPoints(), cage.GetPolys()
     values = numpy.empty((len(points), corners.GetNumberOfPoints()))
-    for i, point in enumerate(points):
+    for point, row in zip(points, values):
         vtkMeanValueCoordinatesInterpolator.ComputeInterpolationWeights(point, corners, triangles, row)
-        values[i] = view
     told |= {"work": lap()}
     numpy.save(output, values)
     return told
