@@ -1,6 +1,7 @@
 // The built command as a whole: wall time, processor time, peak memory.
 #include "benchmarks.h"
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/file.h"
 #include "ostraka/io/mesh_file.h"
 
 #include <fcntl.h>
@@ -148,6 +149,40 @@ void mesh_command(benchmark::State& state, std::size_t vertices, std::vector<std
     measure_command(state, arguments, vertices, program);
 }
 
+/// Five operations on one mesh as a study, against the same five commands one after the other.
+void study_command(benchmark::State& state, std::size_t vertices) {
+    const std::string mesh = path_of(target_file(vertices)), study = path_of("five.study.json");
+    if (!make_teapot(target_file(vertices), vertices, 2)) {
+        state.SkipWithError("the input could not be made");
+        return;
+    }
+    const auto step = [&](const std::string& operation, const std::string& input, const std::string& output,
+                          const std::string& more) {
+        return R"({"operation": ")" + operation + R"(", "keep": [")" + output + R"("], "with": {")" + input + R"(": ")" + mesh +
+               R"(")" + more + "}}";
+    };
+    write_file(study, R"({"format": "ostraka-study", "version": 1, "title": "Five operations", "steps": {"curvature": )" +
+                          step("measure map", "mesh", "output", R"(, "of": "mean-curvature")") + R"(, "thickness": )" +
+                          step("measure map", "mesh", "output", R"(, "of": "gaussian-curvature")") + R"(, "slices": )" +
+                          step("slice", "mesh", "output", R"(, "count": 20)") + R"(, "small": )" +
+                          step("mesh simplify", "input", "output", R"(, "vertices": 100000)") + R"(, "picture": )" +
+                          step("render", "meshes", "picture", "") + "}}");
+    double bare = 0;
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"measure", "map", mesh, path_of("five-1.npy"), "--of", "mean-curvature", "--quiet"},
+          {"measure", "map", mesh, path_of("five-2.npy"), "--of", "gaussian-curvature", "--quiet"},
+          {"slice", mesh, "--output", path_of("five-3"), "--count", "20", "--quiet"},
+          {"mesh", "simplify", mesh, path_of("five-4.ply"), "--vertices", "100000", "--quiet"},
+          {"render", mesh, path_of("five-5.png"), "--quiet"}}) {
+        const CommandResult one = run_command(arguments);
+        if (one.exit_code != 0) state.SkipWithError((arguments.front() + " failed").c_str());
+        bare += one.seconds;
+    }
+    const CommandResult run =
+        measure_command(state, {"run", study, "--output", path_of("five-run"), "--again", "--quiet"}, vertices);
+    state.counters["of_bare_commands"] = run.seconds / bare;
+}
+
 }  // namespace
 
 int run_read_mesh(const std::string& file) { return read_mesh(file).mesh.is_empty() ? 1 : 0; }
@@ -181,6 +216,8 @@ void register_command_benchmarks() {
             set_aim(name, "peak_B_per_vertex", 600);
         }
     }
+    set_aim(add("run_of_five_steps/1000000", [](benchmark::State& state) { study_command(state, 1'000'000); }),
+            "of_bare_commands", 1.05);
     for (const std::size_t vertices : {1'000'000, 8'000'000, 27'000'000}) {
         const auto add_mesh = [&](const std::string& name, const std::vector<std::string>& arguments,
                                   const std::vector<std::string>& more, const std::string& program = OSTRAKA_COMMAND) {

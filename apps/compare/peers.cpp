@@ -1,4 +1,5 @@
-// The same work by CGAL's own functions, by OpenMesh and by this library, one task a process: prints what it took and what came out.
+// The same work by CGAL's own functions, by OpenMesh and by this library, one task a process: prints what it took and what came
+// out.
 //     ostraka_peers TASK PEER ARGUMENTS...
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/parallel.h"
@@ -150,8 +151,8 @@ void closest_by_us(const Words& words) {
     const double build = lap();
     std::vector<double> distances(other.number_of_vertices());
     parallel_for(
-        distances.size(), [&](std::size_t i) { distances[i] = search.closest(other.point(Vertex(static_cast<Index>(i)))).distance; },
-        64);
+        distances.size(),
+        [&](std::size_t i) { distances[i] = search.closest(other.point(Vertex(static_cast<Index>(i)))).distance; }, 64);
     told(read, build, lap(), distances);
 }
 
