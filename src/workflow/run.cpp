@@ -249,6 +249,13 @@ private:
         work.stage = Work::Stage::running;
         work.context = std::make_unique<Context>();
         work.context->share_objects(root_);
+        // One that runs a second time may have ended without having been joined yet.
+        if (const auto before = workers_.find(i); before != workers_.end()) {
+            std::erase(ended_, i);
+            before->second.join();
+            workers_.erase(before);
+            --running_;
+        }
         workers_.emplace(i, std::thread([this, i, share] { do_work(i, share); }));
         return true;
     }
