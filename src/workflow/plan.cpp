@@ -44,10 +44,10 @@ bool fits(Kind given, Kind asked) {
     return asked == Kind::collection && is_any_of(given, {Kind::mesh, Kind::annotations, Kind::landmarks});
 }
 
-/// Fragments and members are named by mesh files, and bring the annotations of their name along.
+/// Fragments and members are named by mesh files, and bring the annotations of their name along, as the words about them say.
 bool reads_beside(const Slot& slot) {
     return dynamic_cast<const FileInput*>(&slot) != nullptr && slot.role == Role::input &&
-           (slot.kind == Kind::mesh || slot.kind == Kind::collection);
+           slot.help.find("NAME.ant.json") != std::string::npos;
 }
 
 std::string StudyInstance::title(const Study& study) const {
