@@ -186,6 +186,8 @@ private:
             if (other.stage != Work::Stage::final) continue;
             other.stage = Work::Stage::waiting;
             other.again = true;
+            // What it takes is kept until it has run once more.
+            for (const std::size_t need : instance(input.instance).needs) ++works_[need].open_takers;
             results_[input.instance].why = "what it makes is needed again by " + instance(i).title(plan_.study);
             to_consider_.insert(input.instance);
         }
@@ -217,8 +219,7 @@ private:
                 if (!input.file.empty() && --file_uses_[input.file] == 0) root_.forget(input.file);
         }
         for (const std::size_t need : instance(i).needs) {
-            if (first) --works_[need].open_takers;
-            if (works_[need].open_takers == 0) release(need);
+            if (--works_[need].open_takers == 0) release(need);
         }
         if (work.open_takers == 0) release(i);
         else if (state != InstanceState::done) works_[i].context.reset();
