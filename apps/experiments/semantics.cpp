@@ -3,13 +3,13 @@
 #include "convergence.h"
 
 #include "ostraka/annotation/colouring.h"
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
 #include "ostraka/synthetic/make_mesh.h"
-#include "ostraka/workflow/program.h"
 
 #include <Eigen/SVD>
 

@@ -1,41 +1,31 @@
 // Programs that are judged: started for each case, or once.
 #include "ostraka/conformance/kit.h"
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/words.h"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <csignal>
-#include <cstring>
 #include <mutex>
-#include <thread>
-
-extern char** environ;
 
 namespace ostraka {
 
 namespace {
 
-std::vector<char*> pointers(std::vector<std::string>& words) {
-    std::vector<char*> all;
-    for (std::string& word : words) all.push_back(word.data());
-    all.push_back(nullptr);
-    return all;
+bool is_told_to_stop() {
+    const Watch* watch = current_watch();
+    return watch != nullptr && watch->is_cancelled();
 }
 
-[[noreturn]] void cannot_start(const std::string& program, int reason) {
-    fail_work(program, std::string("cannot be started: ") + std::strerror(reason), "check its name and its rights");
-}
-
-std::string ended_by(int status) {
-    return WIFSIGNALED(status) ? "ended by signal " + std::to_string(WTERMSIG(status))
-                               : "ended with code " + std::to_string(WEXITSTATUS(status));
+/// Reads "result" of a report or an answer into the answer.
+void take_result(Answer& answer, const Json& report) {
+    const JsonValue* result = find_member(report, "result");
+    if (result == nullptr) return;
+    auto copy = std::make_shared<Json>();
+    copy->CopyFrom(*result, copy->GetAllocator());
+    answer.result = copy;
 }
 
 class CommandBackend final : public Backend {
@@ -46,42 +36,22 @@ public:
     Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& folder) override {
         std::vector<std::string> words = words_;
         for (const std::string& word : arguments_(one.operation, settings)) words.push_back(word);
-        const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string();
-        posix_spawn_file_actions_t actions;
-        posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-        posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-        pid_t child = 0;
+        const Path out = folder / "stdout", err = folder / "stderr";
         const Stopwatch clock;
-        const int failed = ::posix_spawnp(&child, words.front().c_str(), &actions, nullptr, pointers(words).data(), environ);
-        posix_spawn_file_actions_destroy(&actions);
-        if (failed != 0) cannot_start(words.front(), failed);
+        ChildProcess program(std::move(words), {.output = out, .errors = err});
         Answer answer;
-        int status = 0;
-        while (::waitpid(child, &status, WNOHANG) == 0) {
-            const Watch* watch = current_watch();
-            if (clock.seconds() > time_limit_ || (watch != nullptr && watch->is_cancelled())) {
-                ::kill(child, SIGKILL);
-                ::waitpid(child, &status, 0);
-                check_cancelled();
-                answer.message = "took more than " + digits(time_limit_, 4) + " s";
-                return answer;
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (!program.wait([&] { return clock.seconds() > time_limit_ || is_told_to_stop(); })) {
+            check_cancelled();
+            answer.message = "took more than " + digits(time_limit_, 4) + " s";
+            return answer;
         }
         answer.seconds = clock.seconds();
-        answer.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        answer.code = program.code();
         answer.message = printable(std::string(trimmed(read_file(err))), 400);
-        if (answer.code < 0) answer.message = ended_by(status) + " " + answer.message;
+        if (answer.code > 128) answer.message = program.ending() + " " + answer.message;
         if (answer.code == 0 || answer.code == 3) {
             try {
-                const Json report = parse_json(read_file(out), "its report");
-                if (const JsonValue* result = find_member(report, "result")) {
-                    auto copy = std::make_shared<Json>();
-                    copy->CopyFrom(*result, copy->GetAllocator());
-                    answer.result = copy;
-                }
+                take_result(answer, parse_json(read_file(out), "its report"));
             } catch (const Error& error) {
                 answer.message = error.what();
             }
@@ -100,12 +70,17 @@ public:
     LinesBackend(std::vector<std::string> words, double time_limit) : words_(std::move(words)), time_limit_(time_limit) {
         start();
     }
-    ~LinesBackend() override { stop(); }
+    ~LinesBackend() override {
+        if (!program_) return;
+        program_->close_input();  // the end of its input is the end of its work
+        const Stopwatch since;
+        program_->wait([&] { return since.seconds() > 1; });
+    }
 
     Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& /*folder*/) override {
         const std::lock_guard lock(mutex_);
         Answer answer;
-        if (child_ == 0) start();
+        if (!program_) start();
         Json request(rapidjson::kObjectType);
         auto& allocator = request.GetAllocator();
         add_member(request, "id", one.id, allocator);
@@ -124,11 +99,7 @@ public:
                 fail_input("its answer", "has no code", "answer {\"code\": 0, \"result\": {...}}");
             answer.code = code->GetInt();
             answer.message = text_in(reply, "message");
-            if (const JsonValue* result = find_member(reply, "result")) {
-                auto copy = std::make_shared<Json>();
-                copy->CopyFrom(*result, copy->GetAllocator());
-                answer.result = copy;
-            }
+            take_result(answer, reply);
         } catch (const Error& error) {
             answer.code = -1;
             answer.message = error.what();
@@ -137,39 +108,11 @@ public:
     }
 
 private:
-    void start() {
-        int to[2], from[2];
-        if (::pipe2(to, O_CLOEXEC) != 0 || ::pipe2(from, O_CLOEXEC) != 0) cannot_start(words_.front(), errno);
-        posix_spawn_file_actions_t actions;
-        posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_adddup2(&actions, to[0], 0);
-        posix_spawn_file_actions_adddup2(&actions, from[1], 1);
-        const int failed = ::posix_spawnp(&child_, words_.front().c_str(), &actions, nullptr, pointers(words_).data(), environ);
-        posix_spawn_file_actions_destroy(&actions);
-        ::close(to[0]);
-        ::close(from[1]);
-        to_ = to[1];
-        from_ = from[0];
-        if (failed != 0) {
-            child_ = 0;
-            cannot_start(words_.front(), failed);
-        }
-    }
-    void stop() {
-        if (child_ == 0) return;
-        ::close(to_);  // the end of its input is the end of its work
-        int status = 0;
-        for (int i = 0; i < 100 && ::waitpid(child_, &status, WNOHANG) == 0; ++i) {
-            if (i == 50) ::kill(child_, SIGKILL);
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        ::close(from_);
-        child_ = 0;
-        left_.clear();
-    }
+    void start() { program_ = std::make_unique<ChildProcess>(words_, ChildOptions{.pipes = true}); }
+    /// It is started again for the next case.
     Answer crashed(const std::string& how) {
-        if (child_ != 0) ::kill(child_, SIGKILL);
-        stop();
+        program_.reset();
+        left_.clear();
         check_cancelled();
         Answer answer;
         answer.message = how;
@@ -177,7 +120,7 @@ private:
     }
     bool send(std::string_view bytes) const {
         while (!bytes.empty()) {
-            const ssize_t sent = ::write(to_, bytes.data(), bytes.size());
+            const ssize_t sent = ::write(program_->to(), bytes.data(), bytes.size());
             if (sent <= 0) return false;
             bytes.remove_prefix(static_cast<std::size_t>(sent));
         }
@@ -190,12 +133,11 @@ private:
                 left_.erase(0, end + 1);
                 return line;
             }
-            const Watch* watch = current_watch();
-            if (clock.seconds() > time_limit_ || (watch != nullptr && watch->is_cancelled())) return {};
-            pollfd waiting{from_, POLLIN, 0};
+            if (clock.seconds() > time_limit_ || is_told_to_stop()) return {};
+            pollfd waiting{program_->from(), POLLIN, 0};
             if (::poll(&waiting, 1, 100) <= 0) continue;
             char buffer[65536];
-            const ssize_t got = ::read(from_, buffer, sizeof buffer);
+            const ssize_t got = ::read(program_->from(), buffer, sizeof buffer);
             if (got <= 0) return {};
             left_.append(buffer, static_cast<std::size_t>(got));
         }
@@ -203,8 +145,7 @@ private:
 
     std::vector<std::string> words_;
     double time_limit_;
-    pid_t child_ = 0;
-    int to_ = -1, from_ = -1;
+    std::unique_ptr<ChildProcess> program_;  ///< none after one that crashed
     std::string left_;
     std::mutex mutex_;
 };

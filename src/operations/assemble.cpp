@@ -29,7 +29,8 @@ struct Assemble final : Operation {
              "fragments", Kind::collection, files,
              "mesh files, or points without faces, and folders of such files; NAME.ant.json beside one with regions \"outer\", "
              "\"inner\", \"fracture\" overrides what is found of its facets")
-            .many();
+            .many()
+            .with_annotations_beside();
         p.output(
              "output", Kind::folder, output,
              "folder for assembly.json and, of each group, group-N.ply (face labels: the number of the fragment), group-N.png, "

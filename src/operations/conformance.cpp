@@ -2,11 +2,11 @@
 #include "operations.h"
 
 #include "ostraka/conformance/kit.h"
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/transaction.h"
 #include "ostraka/operations/command_words.h"
-#include "ostraka/workflow/program.h"
 
 #include <unistd.h>
 

@@ -23,7 +23,8 @@ struct Fit final : Operation {
              "fragments", Kind::mesh, files,
              "a mesh file, or points without faces, for each fragment; NAME.ant.json beside it are its annotations: points with "
              "the template's tags are landmarks, regions \"outer\", \"inner\", \"fracture\" its facets")
-            .many();
+            .many()
+            .with_annotations_beside();
         p.output("output", Kind::folder, output,
                  "folder for completed.ply, completed.ant.json and fit.assembly.json; made if it is missing")
             .flag();

@@ -11,8 +11,12 @@ namespace {
 
 struct PairFragments final : Operation {
     void describe(Parameters& p) override {
-        p.input("first", Kind::mesh, first, "mesh file, or points without faces; it stays where it is");
-        p.input("second", Kind::mesh, second, "the fragment that is moved");
+        p.input("first", Kind::mesh, first,
+                "mesh file, or points without faces; it stays where it is; NAME.ant.json beside it with regions \"outer\", "
+                "\"inner\", "
+                "\"fracture\" overrides what is found of its facets")
+            .with_annotations_beside();
+        p.input("second", Kind::mesh, second, "the fragment that is moved; the same of it").with_annotations_beside();
         p.output("output", Kind::folder, output,
                  "folder for second.ply (the second fragment where it belongs; face labels 0 outer, 1 inner, 2 fracture) and "
                  "pair.json; made if it is missing")

@@ -1,10 +1,10 @@
 // run: the steps of a study file; replay: the same again, compared.
 #include "operations.h"
 
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/workflow/collect.h"
 #include "ostraka/workflow/crate.h"
-#include "ostraka/workflow/program.h"
 
 #include <unistd.h>
 

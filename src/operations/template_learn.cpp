@@ -19,12 +19,14 @@ struct TemplateLearn final : Operation {
         p.input("members", Kind::mesh, members,
                 "a mesh file for each member; NAME.ant.json beside it are its annotations; or files of the same landmarks")
             .many()
+            .with_annotations_beside()
             .optional();
         p.input_option(
              "strangers", Kind::mesh, strangers,
              "objects that do not belong to the class, such as members of other classes: they say how unlike the members "
              "an object may be that is recognised; one file each time it is given")
-            .many();
+            .many()
+            .with_annotations_beside();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; made if it is missing").flag();
         p.options("name", name, "of the class; else as the template says");
         p.options("given", given, "the same as --correspondence given");

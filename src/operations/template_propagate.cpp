@@ -13,7 +13,8 @@ struct TemplatePropagate final : Operation {
     void describe(Parameters& p) override {
         p.input("template", Kind::template_package, known, "template (.template.json)");
         p.input("members", Kind::mesh, members, "a mesh file for each member; NAME.ant.json beside it are its annotations")
-            .many();
+            .many()
+            .with_annotations_beside();
         p.output("output", Kind::folder, output,
                  "folder for NAME.ant.json, NAME.fitted.ply and NAME.fitted.ant.json; made if it is missing")
             .flag();

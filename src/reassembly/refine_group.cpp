@@ -80,6 +80,7 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
         if (problem.NumResidualBlocks() < 6) break;
         ceres::Solver::Options options;
         options.linear_solver_type = n < 12 ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
+        options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // no BLAS: several threads may be here
         options.max_num_iterations = 12;
         options.num_threads = 1;  // so that sums have one order
         options.logging_type = ceres::SILENT;

@@ -2,17 +2,49 @@
 
 #include "ostraka/core/error.h"
 
+#include <dlfcn.h>
 #include <suitesparse/cholmod.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <mutex>
 #include <string>
 
-// A threaded BLAS may add up in another order with another number of threads: OpenBLAS is held to one where it is in use. The
-// symbol is resolved when the program is loaded, and is null where the BLAS is another one.
-extern "C" __attribute__((weak)) void openblas_set_num_threads(int threads);
-
 namespace ostraka::solver {
+
+namespace {
+
+/// Symbols that the BLAS in use may have.
+template <class Function>
+Function* of_blas(const char* name) {
+    return reinterpret_cast<Function*>(::dlsym(RTLD_DEFAULT, name));
+}
+
+bool comes_from_openblas(const char* function) {
+    Dl_info place{};
+    if (::dladdr(::dlsym(RTLD_DEFAULT, function), &place) == 0 || place.dli_fname == nullptr) return false;
+    std::error_code code;
+    return std::filesystem::weakly_canonical(place.dli_fname, code).string().find("openblas") != std::string::npos;
+}
+
+/// OpenBLAS without threads, as the distribution builds it, gives wrong results when several threads call it at once: they share
+/// its buffers. Where it is the BLAS or the LAPACK in use, one thread at a time calls it.
+std::unique_lock<std::mutex> one_at_a_time() {
+    static const bool is_needed = [] {
+        auto* const parallel = of_blas<int()>("openblas_get_parallel");
+        return (comes_from_openblas("dgemm_") || comes_from_openblas("dpotrf_")) && (parallel == nullptr || parallel() == 0);
+    }();
+    static std::mutex mutex;
+    return is_needed ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
+}
+
+/// A threaded BLAS may add up in another order with another number of threads: OpenBLAS is held to one.
+void use_one_thread() {
+    if (auto* const set_threads = of_blas<void(int)>("openblas_set_num_threads")) set_threads(1);
+}
+
+}  // namespace
 
 struct SparseCholesky::State {
     cholmod_common common;
@@ -20,7 +52,7 @@ struct SparseCholesky::State {
     cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
     State() {
-        if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+        use_one_thread();
         cholmod_start(&common);
         common.print = 0;
         common.final_ll = 1;  // supernodal where there is enough to do in it (CHOLMOD_AUTO), else simplicial; always L L^T
@@ -103,6 +135,8 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
     done = true;
     if (!sparse.empty()) {
         constexpr std::size_t few = 1000;
+        static std::mutex random;  // METIS draws from the random numbers of the process, which it seeds itself
+        const std::lock_guard lock(random);
         done = sparse.size() < few ? cholmod_amd(&pattern, nullptr, 0, order.data(), &common) != 0
                                    : cholmod_metis(&pattern, nullptr, 0, 1, order.data(), &common) != 0;
     }
@@ -132,6 +166,7 @@ void SparseCholesky::analyse(const LowerTriangle& matrix) {
 bool SparseCholesky::factor(const LowerTriangle& matrix) {
     if (matrix.rows() == 0) return true;
     cholmod_sparse a = view(matrix);
+    const auto lock = one_at_a_time();
     const bool done = cholmod_factorize(&a, state_->factor, &state_->common) != 0;
     if (state_->common.status == CHOLMOD_NOT_POSDEF || (done && state_->factor->minor < state_->factor->n)) return false;
     state_->check(done, "the factorisation");
@@ -153,6 +188,7 @@ void SparseCholesky::solve(Eigen::MatrixXd& columns) {
     b.x = columns.data();
     b.xtype = CHOLMOD_REAL;
     b.dtype = CHOLMOD_DOUBLE;
+    const auto lock = one_at_a_time();
     const bool done = cholmod_solve2(CHOLMOD_A, state_->factor, &b, nullptr, &state_->solution, nullptr, &state_->work_y,
                                      &state_->work_e, &state_->common) != 0;
     state_->check(done, "solving");

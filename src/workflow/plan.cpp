@@ -44,12 +44,6 @@ bool fits(Kind given, Kind asked) {
     return asked == Kind::collection && is_any_of(given, {Kind::mesh, Kind::annotations, Kind::landmarks});
 }
 
-/// Fragments and members are named by mesh files, and bring the annotations of their name along, as the words about them say.
-bool reads_beside(const Slot& slot) {
-    return dynamic_cast<const FileInput*>(&slot) != nullptr && slot.role == Role::input &&
-           slot.help.find("NAME.ant.json") != std::string::npos;
-}
-
 std::string StudyInstance::title(const Study& study) const {
     return study.steps[step].name + (label.empty() ? "" : " (" + label + ")");
 }
@@ -290,7 +284,7 @@ void StudyPlan::add_output(StudyInstance& instance, const StudySetting& setting,
         if (all && !asked->repeated && asked->kind != Kind::collection)
             fail_input(study.at(place), "'" + setting.name + "' takes one " + to_string(asked->kind),
                        "give it one: ${" + reference.name + "." + reference.member + "}");
-        on_disk = given->kind == Kind::mesh && reads_beside(*asked);
+        on_disk = given->kind == Kind::mesh && asked->reads_beside;
         if (on_disk && !other.keep.contains(reference.member))
             fail_input(study.at(place),
                        "'" + std::string(step.operation->name) + "' reads what stands beside a file too (NAME.ant.json), and '" +

@@ -1,18 +1,19 @@
 #include "ostraka/workflow/run.h"
 
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/transaction.h"
 #include "ostraka/core/words.h"
 #include "ostraka/operation/object_files.h"
-#include "ostraka/workflow/program.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <ctime>
 #include <fstream>
 #include <set>
@@ -395,15 +396,23 @@ private:
                 return input.instance == no_instance ? input.file : file_of(input);
             },
             folder);
-        const Path program = find_program(words.front(), options_.program_folder, plan_.study.steps[one.step].name);
-        const int exit_code =
-            run_program(std::filesystem::absolute(program), words, folder, share, [&] { return watch.is_cancelled(); });
-        if (watch.is_cancelled()) throw Error(ErrorKind::cancelled, "", "cancelled", "nothing was written");
+        std::vector<std::string> started = words;
+        started.front() =
+            std::filesystem::absolute(find_program(words.front(), options_.program_folder, plan_.study.steps[one.step].name))
+                .string();
+        ChildProcess program(
+            started, {.folder = folder, .output = folder / "output.txt", .errors = folder / "output.txt", .threads = share});
+        if (!program.wait([&] { return watch.is_cancelled(); })) {
+            program.signal(SIGTERM);
+            const Stopwatch since;
+            program.wait([&] { return since.seconds() > 2; });
+            throw Error(ErrorKind::cancelled, "", "cancelled", "nothing was written");
+        }
+        const int exit_code = program.code();
         if (exit_code != 0 && exit_code != 3) {
             std::string text = read_file(folder / "output.txt");
             if (text.size() > 600) text = "..." + text.substr(text.size() - 600);
-            fail_work(words.front(),
-                      "ended with exit code " + std::to_string(exit_code) + ": " + printable(std::string(trimmed(text)), 700),
+            fail_work(words.front(), program.ending() + ": " + printable(std::string(trimmed(text)), 700),
                       "see " + (folder / "output.txt").string());
         }
         record.holds = exit_code == 0;

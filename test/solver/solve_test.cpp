@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <random>
+#include <thread>
 
 namespace ostraka {
 namespace {
@@ -261,6 +263,27 @@ TEST(MeshSpace, IsTheSameForAnyNumberOfThreads) {
     set_threads(0);
     EXPECT_EQ(results[0], results[1]);
     EXPECT_EQ(results[0], results[2]);
+}
+
+TEST(MeshSpace, SolversOfSeveralThreadsDoNotDisturbEachOther) {
+    const int n = 40;  // large enough for dense blocks in the factor: BLAS is called
+    const Points rest = grid(n);
+    const auto solved = [&] {
+        MeshSpaceSolver solver(mixed(n, rest), rest);
+        Points x = rest;
+        solver.solve(x, steps(5));
+        return x;
+    };
+    const Points alone = solved();
+    std::vector<std::thread> threads;
+    std::atomic<int> wrong = 0;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&] {
+            set_threads(1);
+            for (int lap = 0; lap < 5; ++lap) wrong += solved() != alone ? 1 : 0;
+        });
+    for (std::thread& one : threads) one.join();
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(MeshSpace, PartsThatNothingHoldsKeepTheirMean) {

@@ -176,6 +176,66 @@ TEST(RunStudy, LosesOnlyTheStepUnderWayWhenKilled) {
     EXPECT_EQ(files_of(scratch / "KILL"), files_of(scratch / "INT"));
 }
 
+namespace {
+
+/// Two pots that are not kept, a transfer between them that is not kept either, and what is made of it.
+const char* const resumed_study = R"("steps": {
+    "pot": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 3000}},
+    "annotated": {"operation": "annotation apply", "with": {"mesh": "${pot.output}", "recipe": "teapot.recipe.json"}},
+    "fine": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 4000}},
+    "transfer": {"operation": "annotation transfer",
+      "with": {"source": "${pot.output}", "annotations": "${annotated.output}", "target": "${fine.output}"}},
+    "look": {"operation": "annotation list", "with": {"mesh": "${fine.output}", "annotations": "${transfer.output}"}},
+    "later": {"operation": "annotation edit", "keep": ["output"],
+      "with": {"mesh": "${fine.output}", "annotations": "${transfer.output}", "edits": "edit.json"}},
+    "last": {"operation": "annotation list", "with": {"mesh": "${fine.output}", "annotations": "${later.output}"}}})";
+
+const char* const right_edit =
+    R"({"format": "ostraka-annotation-edits", "version": 1, "edits": [{"annotation": "lid", "tag": "cover"}]})";
+
+}  // namespace
+
+TEST(RunStudy, WhatIsNotKeptIsMadeAgainForWhatFailed) {
+    const Scratch scratch;
+    furnish_teapot(scratch);
+    const Path file = scratch.file("r.study.json", study_text_of(resumed_study));
+    write_file(scratch / "edit.json", "{");
+    const auto run = [&] {
+        return run_command("run " + file.string() + " --json --output " + (scratch / "out").string(), "timeout 120");
+    };
+    for (int lap = 0; lap < 3; ++lap) {
+        const auto failing = run();
+        ASSERT_EQ(failing.code, 3) << failing.err;
+        const Json report = parse_json(failing.out, "report");
+        EXPECT_EQ(report["result"]["failed"].GetInt(), 1) << failing.out;
+        EXPECT_EQ(report["result"]["skipped"].GetInt(), 1) << failing.out;
+        EXPECT_FALSE(file_exists(scratch / "out/steps/later/later.ant.json"));
+    }
+    write_file(scratch / "edit.json", right_edit);
+    const auto mended = run();
+    ASSERT_EQ(mended.code, 0) << mended.err << mended.out;
+    EXPECT_NE(read_file(scratch / "out/steps/later/later.ant.json").find("\"cover\""), std::string::npos);
+    const Json again = parse_json(run().out, "report");
+    EXPECT_EQ(again["result"]["unchanged"].GetInt(), 7);
+    EXPECT_EQ(again["result"]["done"].GetInt(), 0);
+}
+
+TEST(RunStudy, IsTheSameHoweverOftenItIsKilled) {
+    const Scratch scratch;
+    furnish_teapot(scratch);
+    const Path file = scratch.file("r.study.json", study_text_of(resumed_study));
+    write_file(scratch / "edit.json", right_edit);
+    ASSERT_EQ(run_command("run " + file.string() + " --quiet --output " + (scratch / "whole").string()).code, 0);
+    int code = -1, laps = 0;
+    for (double seconds = 0.05; code != 0 && laps < 60; seconds *= 1.1, ++laps)
+        code = run_command("run " + file.string() + " --quiet --output " + (scratch / "killed").string(),
+                           "timeout --foreground -s KILL " + std::to_string(seconds))
+                   .code;
+    ASSERT_EQ(code, 0);
+    EXPECT_GT(laps, 1);
+    EXPECT_EQ(files_of(scratch / "killed"), files_of(scratch / "whole"));
+}
+
 TEST(RunStudy, WritesTablesPlotsAPageAndACrateThatReplays) {
     const Scratch scratch;
     const Path file =

@@ -41,7 +41,6 @@ struct ConformanceKit {
 
 /// FOLDER/conformance.json. Throws Error (input) with the case that is wrong: operations, settings and outputs are checked
 /// against the table.
-using FindOperation = std::function<const OperationEntry&(const std::string&)>;
 ConformanceKit read_kit(const Path& folder, const FindOperation& find);
 
 /// What a backend answered.

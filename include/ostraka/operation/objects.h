@@ -124,6 +124,7 @@ public:
     Slot* updated = nullptr;    ///< of an output: the input that it brings up to date
     bool is_named = false;      ///< files are given as NAME=FILE
     bool takes_none = false;    ///< the word "none" holds the place of one that is not there
+    bool reads_beside = false;  ///< of mesh files: NAME.ant.json beside NAME.ply is read too
     std::vector<Source> sources;
 
     /// The modifiers of a declaration.
@@ -137,6 +138,9 @@ public:
     Slot& named() { return is_named = true, *this; }  ///< NAME=FILE
     /// Repeated, and "none" may be given for one: `has` tells.
     Slot& many_or_none() { return repeated = takes_none = true, *this; }
+
+    /// Mesh files that bring the annotations of their name along.
+    Slot& with_annotations_beside() { return reads_beside = true, *this; }
 
     /// Something was given.
     explicit operator bool() const { return !sources.empty(); }

@@ -76,6 +76,9 @@ struct OperationEntry {
     int version = 1;  ///< raised when the same inputs give other results: what was done before is done again
 };
 
+/// The line of that name; throws Error (usage) with the nearest name where there is none.
+using FindOperation = std::function<const OperationEntry&(const std::string&)>;
+
 /// What operations share within one process: objects that were read, files that are held in memory.
 class Context {
 public:

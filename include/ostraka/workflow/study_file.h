@@ -82,7 +82,6 @@ struct StudyOptions {
 
 /// Reads a study file and checks what can be checked without running: the schema, names, references, circles. Operations are
 /// looked up by `find`. Throws Error (input) with the file, the place in it and a remedy.
-using FindOperation = std::function<const OperationEntry&(const std::string&)>;
 Study read_study(const Path& file, const FindOperation& find, const StudyOptions& options = {});
 
 /// How a value of a parameter stands in a text.

@@ -1,0 +1,351 @@
+// Objects of the toolkit as Python sees them: meshes and arrays, without a copy where the layout allows it.
+#include "objects.h"
+
+#include "ostraka/annotation/label_file.h"
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+#include "ostraka/io/mesh_of_polygons.h"
+#include "ostraka/operation/operation.h"
+#include "ostraka/render/values.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::python {
+
+/// Text of files may hold bytes that are no UTF-8.
+py::str text_of_bytes(const std::string& text) {
+    return py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
+}
+
+/// A name of a file as Python gives it: bytes, as os.fsencode makes them.
+Path path_of(const py::bytes& name) {
+    const std::string text = name;
+    if (text.empty()) fail_usage("the name of a file is empty", "name a file");
+    if (text.find('\0') != std::string::npos) fail_usage("the name of a file holds a zero byte", "name another file");
+    if (is_memory(text)) fail_usage("'" + printable(text, 60) + "' names a file in memory", "give the object itself");
+    return text;
+}
+
+namespace {
+
+/// Which class of Python shows it.
+std::string type_of(const Held& held) {
+    const Object& object = held.object;
+    if (object.as<MeshFile>() || object.as<PolygonSoup>() || object.as<Mesh>()) return "mesh";
+    if (object.as<AnnotationSet>()) return "annotations";
+    if (object.as<RelationGraph>() || object.as<Json>()) return "document";
+    if (object.as<std::vector<double>>() || object.as<Coordinates>() || object.as<IndexMap>()) return "array";
+    if (object.as<Path>()) return "folder";
+    if (object.as<std::string>()) return "bytes";
+    return "other";
+}
+
+/// A name for a file in memory whose folder is removed at the end.
+struct InMemory {
+    explicit InMemory(const std::string& name) : folder("memory:.python-" + std::to_string(++count)), file(folder / name) {}
+    ~InMemory() { forget_memory(folder); }
+    InMemory(const InMemory&) = delete;
+    InMemory& operator=(const InMemory&) = delete;
+    static inline std::atomic<std::size_t> count{0};
+    Path folder, file;
+};
+
+/// Writes the object as files, all together or not at all.
+void write_object(const Object& object, const Path& file) {
+    OutputTransaction transaction;
+    if (const auto folder = object.as<Path>()) {
+        make_folder(file);
+        for (const std::string& name : files_in(*folder)) write_file(file / name, read_file(*folder / name));
+    } else if (object.write) {
+        object.write(file);
+    } else if (const auto bytes = object.as<std::string>()) {
+        write_file(file, *bytes);
+    } else if (const auto document = object.as<Json>()) {
+        write_json(file, *document);
+    } else {
+        throw Error(ErrorKind::usage, object.name, "cannot be written as a file");
+    }
+    transaction.commit();
+}
+
+void save(const Held& held, const py::bytes& name) {
+    const Path file = path_of(name);
+    unlocked([&] { return write_object(held.object, file), true; });
+}
+
+py::bytes bytes_of(const Held& held) {
+    if (const auto bytes = held.object.as<std::string>()) return *bytes;
+    return unlocked([&] {
+        const InMemory place(Path(held.object.name).filename().string());
+        write_object(held.object, place.file);
+        return read_file(place.file);
+    });
+}
+
+/// An array that shows memory of the toolkit, without a copy; it keeps the owner alive and cannot be written to.
+template <class Number>
+py::array view_of(const std::shared_ptr<const void>& owner, const Number* numbers, std::vector<py::ssize_t> shape) {
+    const py::capsule keeps(new std::shared_ptr<const void>(owner),
+                            [](void* kept) { delete static_cast<std::shared_ptr<const void>*>(kept); });
+    py::array array(py::dtype::of<Number>(), std::move(shape), numbers, keeps);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+/// The same of a list that is made for it.
+template <class Number>
+py::array array_of(std::vector<Number> numbers, std::vector<py::ssize_t> shape) {
+    const auto owner = std::make_shared<const std::vector<Number>>(std::move(numbers));
+    return view_of(owner, owner->data(), std::move(shape));
+}
+py::ssize_t size_of(std::size_t count) { return static_cast<py::ssize_t>(count); }
+
+// ---- meshes ----
+
+/// As a manifold where it is one of triangles, since operations want that most often; else as it stands.
+Object mesh_object(PolygonSoup soup, std::string name, const std::string& sha256) {
+    const std::size_t count = soup.polygon_count();
+    bool triangles = count > 0;
+    for (std::size_t i = 0; triangles && i < count; ++i) triangles = soup.polygon_begin[i + 1] == 3 * (i + 1);
+    std::shared_ptr<const MeshFile> mesh;
+    if (triangles) try {
+            mesh = std::make_shared<const MeshFile>(mesh_of_polygons(soup, name));
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input) throw;
+        }
+    Object object;
+    if (mesh) {
+        object = Object(mesh, std::move(name), sha256);
+        object.write = [mesh](const Path& file) { write_mesh(file, mesh->mesh, mesh->extras); };
+    } else {
+        const auto polygons = std::make_shared<const PolygonSoup>(std::move(soup));
+        object = Object(polygons, std::move(name), sha256);
+        object.write = [polygons](const Path& file) {
+            const TriangulatedSoup made = triangulate(PolygonSoup(*polygons));
+            write_triangles(file, made.soup, made.extras);
+        };
+    }
+    return object;
+}
+
+Held read_mesh_object(const py::bytes& name) {
+    const Path file = path_of(name);
+    return unlocked([&]() -> Held {
+        const ReadRecord record;
+        PolygonSoup soup = read_polygons(file);
+        return {mesh_object(std::move(soup), file.string(), record.files.at(0).sha256)};
+    });
+}
+
+template <class Number>
+using Numbers = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+
+template <class Entry, class Number>
+void take_extra(const py::dict& extras, const char* name, std::size_t count, std::vector<Entry>& list) {
+    if (!extras.contains(name)) return;
+    const auto given = extras[name].cast<Numbers<Number>>();
+    if (static_cast<std::size_t>(given.size()) * sizeof(Number) != count * sizeof(Entry))
+        fail_input(name, "has another size than the mesh", "give one entry an element");
+    list.resize(count);
+    std::copy_n(given.data(), given.size(), reinterpret_cast<Number*>(list.data()));
+}
+
+/// Of points (n x 3), corners of all polygons one after another, and where each polygon begins among them.
+Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>& begin, const Numbers<std::int64_t>& corners,
+                      const py::dict& extras, const std::string& name) {
+    check_mesh_extension(name);
+    PolygonSoup soup;
+    if (points.ndim() != 2 || points.shape(1) != 3) fail_input("points", "is no array of n x 3 numbers", "give x, y, z");
+    const auto count = static_cast<std::size_t>(points.shape(0));
+    if (count >= no_index || static_cast<std::size_t>(corners.size()) >= no_index)
+        fail_work(name, "has more than four thousand million corners", "split it");
+    soup.points.resize(count);
+    std::copy_n(points.data(), points.size(), reinterpret_cast<double*>(soup.points.data()));
+    for (std::size_t i = 0; i < count; ++i)
+        for (const double x : soup.points[i])
+            if (!std::isfinite(x))
+                fail_input("points", "point " + std::to_string(i) + " is not finite", "leave it out, or give its place");
+    const auto ends = static_cast<std::size_t>(begin.size());
+    soup.polygon_begin.resize(std::max<std::size_t>(ends, 1));
+    for (std::size_t i = 0; i < ends; ++i) {
+        const std::int64_t least = i == 0 ? 0 : begin.data()[i - 1];
+        if (begin.data()[i] < least || begin.data()[i] > corners.size() || (i == 0 && begin.data()[0] != 0) ||
+            (i + 1 == ends && begin.data()[i] != corners.size()))
+            fail_input("faces", "polygon " + std::to_string(i) + " begins at no place of the corners", "count corners from 0");
+        soup.polygon_begin[i] = static_cast<Index>(begin.data()[i]);
+    }
+    soup.corners.resize(static_cast<std::size_t>(corners.size()));
+    for (std::size_t i = 0; i < soup.corners.size(); ++i) {
+        const std::int64_t corner = corners.data()[i];
+        if (corner < 0 || corner >= static_cast<std::int64_t>(count)) {
+            const auto face =
+                std::upper_bound(soup.polygon_begin.begin(), soup.polygon_begin.end(), i) - soup.polygon_begin.begin();
+            fail_input("faces",
+                       "face " + std::to_string(face - 1) + " names vertex " + std::to_string(corner) + ", and there are " +
+                           std::to_string(count),
+                       "count vertices from 0");
+        }
+        soup.corners[i] = static_cast<Index>(corner);
+    }
+    const std::size_t faces = soup.polygon_count();
+    take_extra<Colour, std::uint8_t>(extras, "vertex_colours", count, soup.extras.vertex_colours);
+    take_extra<Colour, std::uint8_t>(extras, "face_colours", faces, soup.extras.face_colours);
+    take_extra<std::int32_t, std::int32_t>(extras, "vertex_labels", count, soup.extras.vertex_labels);
+    take_extra<std::int32_t, std::int32_t>(extras, "face_labels", faces, soup.extras.face_labels);
+    return unlocked([&]() -> Held { return {mesh_object(std::move(soup), name, {})}; });
+}
+
+static_assert(sizeof(Point) == 3 * sizeof(double), "points of a mesh are shown as they lie in memory");
+
+py::array points_view(const Held& held) {
+    if (const auto soup = held.object.as<PolygonSoup>())
+        return view_of(soup, reinterpret_cast<const double*>(soup->points.data()), {size_of(soup->points.size()), 3});
+    const auto file = held.object.as<MeshFile>();
+    if (!file) fail_usage("the object is no mesh", "give a mesh");
+    const std::size_t count = file->mesh.number_of_vertices();
+    if (count == 0 || file->mesh.has_garbage()) {
+        const TriangleSoup soup = to_soup(file->mesh);
+        const auto* first = reinterpret_cast<const double*>(soup.points.data());
+        return array_of(std::vector<double>(first, first + 3 * soup.points.size()), {size_of(soup.points.size()), 3});
+    }
+    return view_of(file, reinterpret_cast<const double*>(&file->mesh.point(Vertex(0))), {size_of(count), 3});
+}
+
+/// Where each polygon begins among the corners, and the corners.
+std::pair<py::array, py::array> polygons_of(const Held& held) {
+    if (const auto soup = held.object.as<PolygonSoup>())
+        return {view_of(soup, soup->polygon_begin.data(), {size_of(soup->polygon_begin.size())}),
+                view_of(soup, soup->corners.data(), {size_of(soup->corners.size())})};
+    const auto file = held.object.as<MeshFile>();
+    if (!file) fail_usage("the object is no mesh", "give a mesh");
+    std::vector<Index> begin(file->mesh.number_of_faces() + 1), corner_list;
+    corner_list.reserve(3 * file->mesh.number_of_faces());
+    for (std::size_t i = 0; i < begin.size(); ++i) begin[i] = static_cast<Index>(3 * i);
+    for (const auto& triangle : unlocked([&] { return to_soup(file->mesh); }).triangles)
+        corner_list.insert(corner_list.end(), triangle.begin(), triangle.end());
+    const py::ssize_t faces = size_of(begin.size()), corners = size_of(corner_list.size());
+    return {array_of(std::move(begin), {faces}), array_of(std::move(corner_list), {corners})};
+}
+
+/// What travels with the elements: arrays by name, without those that are empty.
+py::dict extras_of(const Held& held) {
+    const auto soup = held.object.as<PolygonSoup>();
+    const auto file = held.object.as<MeshFile>();
+    if (!soup && !file) fail_usage("the object is no mesh", "give a mesh");
+    const MeshExtras& extras = soup ? soup->extras : file->extras;
+    const std::shared_ptr<const void> owner = soup ? std::shared_ptr<const void>(soup) : file;
+    py::dict arrays;
+    const auto add = [&]<class Number>(const char* name, const auto& list, Number /*type*/, py::ssize_t columns) {
+        std::vector<py::ssize_t> shape{size_of(list.size())};
+        if (columns > 1) shape.push_back(columns);
+        if (!list.empty()) arrays[name] = view_of(owner, reinterpret_cast<const Number*>(list.data()), std::move(shape));
+    };
+    add("vertex_colours", extras.vertex_colours, std::uint8_t{}, 4);
+    add("face_colours", extras.face_colours, std::uint8_t{}, 4);
+    add("vertex_labels", extras.vertex_labels, std::int32_t{}, 1);
+    add("face_labels", extras.face_labels, std::int32_t{}, 1);
+    add("vertex_texture", extras.vertex_texture, float{}, 2);
+    add("corner_texture", extras.corner_texture, float{}, 2);
+    return arrays;
+}
+
+// ---- other objects ----
+
+Held make_bytes(const py::bytes& bytes, const std::string& name) { return {Object::of(std::string(bytes), name)}; }
+
+Held read_bytes(const py::bytes& name) {
+    const Path file = path_of(name);
+    return unlocked([&]() -> Held { return {Object::of(read_file(file), file.string())}; });
+}
+
+Held make_document(const std::string& text, const std::string& name) { return {Object::of(parse_json(text, name), name)}; }
+
+Held make_values(const Numbers<double>& array, const std::string& name) {
+    const auto values = std::make_shared<const std::vector<double>>(array.data(), array.data() + array.size());
+    Object object(values, name);
+    object.write = [values](const Path& file) { write_values(file, *values); };
+    return {object};
+}
+
+py::array array_of_object(const Held& held) {
+    if (const auto values = held.object.as<std::vector<double>>())
+        return view_of(values, values->data(), {size_of(values->size())});
+    if (const auto coordinates = held.object.as<Coordinates>())
+        return view_of(coordinates, coordinates->vertex.data(), {coordinates->vertex.rows(), coordinates->vertex.cols()});
+    const auto map = held.object.as<IndexMap>();
+    if (!map) fail_usage("the object is no array");
+    std::vector<std::int64_t> indices;
+    for (const Index i : map->map) indices.push_back(i == no_index ? -1 : static_cast<std::int64_t>(i));
+    const py::ssize_t count = size_of(indices.size());
+    return array_of(std::move(indices), {count});
+}
+
+py::object normals_of_coordinates(const Held& held) {
+    const auto coordinates = held.object.as<Coordinates>();
+    if (!coordinates || !coordinates->has_normals()) return py::none();
+    return view_of(coordinates, coordinates->normal.data(), {coordinates->normal.rows(), coordinates->normal.cols()});
+}
+
+py::dict files_of(const Held& held) {
+    const auto folder = held.object.as<Path>();
+    if (!folder) fail_usage("the object is no folder");
+    py::dict files;
+    for (const std::string& name : files_in(*folder))
+        if (name.front() != '.') files[text_of_bytes(name)] = Held{Object::of(read_file(*folder / name), name)};
+    return files;
+}
+
+/// The faces of each region, and a label per face: the id of the smallest region on it, -1 for none.
+std::pair<py::dict, py::array> faces_of(const Held& held, const Held& on) {
+    const auto file = on.object.as<MeshFile>();
+    if (!file) throw Error(ErrorKind::input, on.object.name, "is no oriented manifold of triangles", "use ostraka.mesh.repair");
+    auto [set, labels] = unlocked([&] {
+        AnnotationSet read;
+        if (const auto known = held.object.as<AnnotationSet>()) {
+            check_annotations(*known, file->mesh, held.object.name);
+            read = *known;
+        } else {
+            const InMemory place(Path(held.object.name).filename().string());
+            write_object(held.object, place.file);
+            read = read_annotations(place.file, file->mesh);
+        }
+        auto of_faces = labels_of(file->mesh, read);
+        return std::pair(std::move(read), std::move(of_faces));
+    });
+    py::dict faces;
+    for (Annotation& one : set.annotations) {
+        const py::ssize_t count = size_of(one.faces.size());
+        if (one.type == AnnotationType::region) faces[py::int_(one.id)] = array_of(std::move(one.faces), {count});
+    }
+    const py::ssize_t count = size_of(labels.size());
+    return {faces, array_of(std::move(labels), {count})};
+}
+
+}  // namespace
+
+void add_objects(py::module_& module) {
+    py::class_<Held>(module, "Object")
+        .def_property_readonly("type", type_of)
+        .def_property(
+            "name", [](const Held& held) { return text_of_bytes(held.object.name); },
+            [](Held& held, const std::string& name) { held.object.name = name; })
+        .def("save", save)
+        .def("bytes", bytes_of)
+        .def("points", points_view)
+        .def("polygons", polygons_of)
+        .def("extras", extras_of)
+        .def("is_manifold", [](const Held& held) { return held.object.as<MeshFile>() != nullptr; })
+        .def("array", array_of_object)
+        .def("normals", normals_of_coordinates)
+        .def("files", files_of)
+        .def("faces", faces_of);
+    module.def("read_mesh", read_mesh_object);
+    module.def("make_mesh", make_mesh_object);
+    module.def("check_mesh_name", [](const std::string& name) { check_mesh_extension(name); });
+    module.def("read_bytes", read_bytes);
+    module.def("make_bytes", make_bytes);
+    module.def("make_document", make_document);
+    module.def("make_values", make_values);
+}
+
+}  // namespace ostraka::python

@@ -1,0 +1,139 @@
+#include "ostraka/core/child_process.h"
+
+#include "ostraka/core/error.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+extern char** environ;
+
+namespace ostraka {
+
+namespace {
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+    std::vector<char*> all;
+    for (std::string& text : texts) all.push_back(text.data());
+    all.push_back(nullptr);
+    return all;
+}
+
+std::vector<std::string> variables_for(int threads) {
+    const std::string name = "OMP_NUM_THREADS=";
+    std::vector<std::string> variables;
+    for (char** one = environ; *one != nullptr; ++one)
+        if (threads == 0 || !std::string(*one).starts_with(name)) variables.emplace_back(*one);
+    if (threads > 0) variables.push_back(name + std::to_string(threads));
+    return variables;
+}
+
+void close_if_open(int& file) {
+    if (file >= 0) ::close(file);
+    file = -1;
+}
+
+/// What posix_spawn is told, freed at the end.
+struct SpawnSettings {
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    SpawnSettings() {
+        posix_spawn_file_actions_init(&actions);
+        posix_spawnattr_init(&attributes);
+    }
+    ~SpawnSettings() {
+        posix_spawn_file_actions_destroy(&actions);
+        posix_spawnattr_destroy(&attributes);
+    }
+    SpawnSettings(const SpawnSettings&) = delete;
+    SpawnSettings& operator=(const SpawnSettings&) = delete;
+
+    void print_to(int number, const Path& file) {
+        posix_spawn_file_actions_addopen(&actions, number, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    }
+};
+
+}  // namespace
+
+ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& options) {
+    const auto cannot_start = [&](int reason) {
+        fail_work(words.front(), std::string("cannot be started: ") + std::strerror(reason), "check its name and its rights");
+    };
+    int reads[2] = {-1, -1}, prints[2] = {-1, -1};
+    if (options.pipes && (::pipe2(reads, O_CLOEXEC) != 0 || ::pipe2(prints, O_CLOEXEC) != 0)) {
+        const int reason = errno;
+        for (int& end : reads) close_if_open(end);
+        cannot_start(reason);
+    }
+    SpawnSettings settings;
+    if (options.pipes) {
+        posix_spawn_file_actions_adddup2(&settings.actions, reads[0], 0);
+        posix_spawn_file_actions_adddup2(&settings.actions, prints[1], 1);
+    } else {
+        posix_spawn_file_actions_addopen(&settings.actions, 0, "/dev/null", O_RDONLY, 0);
+    }
+    if (!options.output.empty()) settings.print_to(1, options.output);
+    if (!options.errors.empty() && options.errors == options.output) posix_spawn_file_actions_adddup2(&settings.actions, 1, 2);
+    else if (!options.errors.empty()) settings.print_to(2, options.errors);
+    if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&settings.actions, options.folder.c_str());
+    posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETPGROUP);
+    std::vector<std::string> variables = variables_for(options.threads);
+    const int failed = ::posix_spawnp(&id_, words.front().c_str(), &settings.actions, &settings.attributes,
+                                      pointers(words).data(), pointers(variables).data());
+    close_if_open(reads[0]);
+    close_if_open(prints[1]);
+    to_ = reads[1];
+    from_ = prints[0];
+    if (failed == 0) return;
+    close_if_open(to_);
+    close_if_open(from_);
+    cannot_start(failed);
+}
+
+ChildProcess::~ChildProcess() {
+    if (id_ != 0) {
+        signal(SIGKILL);
+        ::waitpid(id_, &status_, 0);
+    }
+    close_if_open(to_);
+    close_if_open(from_);
+}
+
+bool ChildProcess::wait(const std::function<bool()>& stop) {
+    while (id_ != 0) {
+        if (::waitpid(id_, &status_, WNOHANG) == id_) {
+            id_ = 0;
+            break;
+        }
+        if (stop()) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+}
+
+void ChildProcess::signal(int number) const {
+    if (id_ != 0) ::kill(-id_, number);
+}
+
+int ChildProcess::code() const { return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_); }
+
+std::string ChildProcess::ending() const {
+    return WIFSIGNALED(status_) ? "ended by signal " + std::to_string(WTERMSIG(status_))
+                                : "ended with code " + std::to_string(WEXITSTATUS(status_));
+}
+
+void ChildProcess::close_input() { close_if_open(to_); }
+
+Path own_program_folder() {
+    std::error_code code;
+    const Path program = std::filesystem::read_symlink("/proc/self/exe", code);
+    return code ? Path(".") : program.parent_path();
+}
+
+}  // namespace ostraka
