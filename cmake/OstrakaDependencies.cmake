@@ -6,6 +6,8 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(meshoptimizer REQUIRED)
 pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
 # By path: what their packages define for the compiler is of use to one file only.
 find_library(CERES_LIBRARY NAMES ceres REQUIRED)

@@ -93,6 +93,20 @@ int Builder::add_accessor(const std::string& bytes, int target, int stride, int 
     return accessor(add_view(bytes, target, stride), component, count, type, min, max);
 }
 
+int Builder::add_compressed_accessor(const Compressed& data, int target, int component, std::size_t count, const char* type,
+                                     JsonValue* min, JsonValue* max) {
+    const int stored = add_view(data.bytes);
+    JsonValue& entry = views_[static_cast<rapidjson::SizeType>(stored)];
+    JsonValue packed(entry, allocator());
+    const bool attributes = std::string_view(data.mode) == "ATTRIBUTES";
+    add_members(packed, allocator(), "byteStride", data.stride, "count", data.count, "mode", data.mode);
+    entry = json_object(allocator(), "buffer", 1, "byteOffset", decoded_size_, "byteLength", data.count * data.stride,
+                        "extensions", json_object(allocator(), "EXT_meshopt_compression", std::move(packed)));
+    add_given(entry, allocator(), "byteStride", attributes ? static_cast<int>(data.stride) : 0, "target", target);
+    decoded_size_ += (data.count * data.stride + 7) / 8 * 8;
+    return accessor(stored, component, count, type, min, max);
+}
+
 int Builder::announce_accessor(std::size_t size, int target, int component, std::size_t count, const char* type, JsonValue* min,
                                JsonValue* max) {
     return accessor(view(size, target, 0), component, count, type, min, max);
@@ -105,8 +119,13 @@ void Builder::mark_normalised(int accessor) {
 std::string Builder::head(const std::string& where, const std::string& remedy) {
     size_ = (size_ + alignment_ - 1) / alignment_ * alignment_;
     if (!binary_.empty()) binary_.resize(size_, '\0');
+    JsonValue buffers = json_list_of(json_object(allocator(), "byteLength", size_), allocator());
+    if (decoded_size_ > 0) {
+        JsonValue none = json_object(allocator(), "EXT_meshopt_compression", json_object(allocator(), "fallback", true));
+        buffers.PushBack(json_object(allocator(), "byteLength", decoded_size_, "extensions", std::move(none)), allocator());
+    }
     add_members(document_, allocator(), "accessors", std::move(accessors_), "bufferViews", std::move(views_), "buffers",
-                json_list_of(json_object(allocator(), "byteLength", size_), allocator()));
+                std::move(buffers));
     std::string json = to_compact_text(document_);
     if (escapes_) json = with_markup_escaped(json);
     while ((12 + 8 + json.size() + 8) % alignment_ != 0) json += ' ';

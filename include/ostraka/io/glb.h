@@ -37,6 +37,14 @@ public:
     /// As above, of a view of `size` bytes, a multiple of the alignment, that the caller writes.
     int announce_accessor(std::size_t size, int target, int component, std::size_t count, const char* type,
                           JsonValue* min = nullptr, JsonValue* max = nullptr);
+    /// An encoded view (EXT_meshopt_compression): what it decodes to is `count` elements of `stride` bytes.
+    struct Compressed {
+        const std::string& bytes;
+        std::size_t count, stride;
+        const char* mode;  ///< "ATTRIBUTES", "TRIANGLES" or "INDICES"
+    };
+    int add_compressed_accessor(const Compressed& data, int target, int component, std::size_t count, const char* type,
+                                JsonValue* min = nullptr, JsonValue* max = nullptr);
     /// Whole numbers of the accessor stand for 0 to 1.
     void mark_normalised(int accessor);
     /// The file up to the first byte of the buffer. Throws Error (failure), naming `where`, beyond four gigabytes.
@@ -52,6 +60,7 @@ private:
     JsonValue views_{rapidjson::kArrayType}, accessors_{rapidjson::kArrayType};
     std::string binary_;
     std::size_t alignment_, size_ = 0;
+    std::size_t decoded_size_ = 0;  ///< of the buffer that nobody writes, which compressed views stand in once decoded
     bool escapes_;
 };
 

@@ -1,0 +1,12 @@
+// The page without its data.
+#pragma once
+
+#include <string>
+
+namespace ostraka {
+
+/// web/report.html, built, with the data (JSON, escaped for HTML) and the bytes (base64) in their places. Throws Error (failure)
+/// where the built page has not each place once.
+std::string viewer_with(const std::string& data, const std::string& bytes);
+
+}  // namespace ostraka

@@ -1,0 +1,314 @@
+// Pages: what is within them is what was given, in its order, and text stays text.
+#include "ostraka/page/page.h"
+#include "meshes.h"
+#include "ostraka/core/error.h"
+#include "ostraka/io/glb.h"
+#include "scratch.h"
+
+#include <meshoptimizer.h>
+#include <zlib.h>
+
+#include <cmath>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+/// What stands between the tags of an element of a page.
+std::string inside(const std::string& html, const std::string& id) {
+    const std::size_t begin = html.find('>', html.find("id=\"" + id + "\"")) + 1;
+    return html.substr(begin, html.find("</script>", begin) - begin);
+}
+
+std::string from_base64(const std::string& text) {
+    const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    std::uint32_t word = 0;
+    int bits = 0;
+    for (const char c : text) {
+        if (c == '=') break;
+        word = word << 6U | static_cast<std::uint32_t>(letters.find(c));
+        bits += 6;
+        if (bits >= 8) bytes += static_cast<char>(word >> static_cast<unsigned>(bits -= 8) & 255U);
+    }
+    return bytes;
+}
+
+/// A page taken apart by means of its own.
+struct ReadPage {
+    Json data;
+    std::string bytes;
+
+    explicit ReadPage(const std::string& html) : data(parse_json(inside(html, "ostraka-data"), "data")) {
+        const std::string packed = from_base64(inside(html, "ostraka-bytes"));
+        std::size_t size = 1024;
+        for (int done = Z_BUF_ERROR; done == Z_BUF_ERROR;) {
+            bytes.resize(size *= 4);
+            uLongf got = size;
+            done = ::uncompress(reinterpret_cast<Bytef*>(bytes.data()), &got, reinterpret_cast<const Bytef*>(packed.data()),
+                                packed.size());
+            if (done == Z_OK) bytes.resize(got);
+        }
+    }
+    [[nodiscard]] std::string blob(const JsonValue& index) const {
+        const JsonValue& place = data["blobs"][index.GetUint()];
+        return bytes.substr(place[0].GetUint64(), place[1].GetUint64());
+    }
+};
+
+std::string bytes_of_view(const std::string& glb, const JsonValue& packed) {
+    const std::uint32_t json_size = *reinterpret_cast<const std::uint32_t*>(glb.data() + 12);
+    return glb.substr(20 + json_size + 8 + packed["byteOffset"].GetUint64(), packed["byteLength"].GetUint64());
+}
+
+/// A sphere far from the origin with a region, a region in it, a line and a point.
+struct Annotated {
+    TriangleSoup soup = octahedron_sphere(4);
+    Mesh mesh;
+    AnnotationSet set;
+
+    explicit Annotated(const std::string& tag = "cap") {
+        for (auto& p : soup.points)
+            for (std::size_t k = 0; k < 3; ++k) p[k] = 7 * p[k] + 1000.0 * static_cast<double>(k + 1);
+        mesh = build_mesh(soup, "sphere");
+        set.unit = "mm";
+        Annotation& upper = set.annotations.emplace_back();
+        upper.id = 4;
+        upper.tag = tag;
+        for (Index f = 0; f < soup.triangles.size(); ++f)
+            if (soup.points[soup.triangles[f][0]][2] > 3002) upper.faces.push_back(f);
+        Attribute& measure = upper.attributes.emplace_back();
+        measure.type = AttributeType::measure;
+        measure.name = "width";
+        measure.measure.tool = "ruler";
+        measure.measure.points = {0, 1};
+        measure.measure.value = 14;
+        measure.measure.unit = "mm";
+        Annotation& top = set.annotations.emplace_back();
+        top.id = 9;
+        top.tag = "top";
+        for (const Index f : upper.faces)
+            if (soup.points[soup.triangles[f][0]][2] > 3006) top.faces.push_back(f);
+        Annotation& line = set.annotations.emplace_back();
+        line.id = 11;
+        line.type = AnnotationType::line;
+        line.polylines = {{soup.triangles[0][0], soup.triangles[0][1]}};
+        Annotation& point = set.annotations.emplace_back();
+        point.id = 12;
+        point.type = AnnotationType::point;
+        point.points = {5};
+    }
+    [[nodiscard]] PageObject object() const {
+        PageObject one;
+        one.name = "sphere";
+        one.mesh = &mesh;
+        one.annotations = &set;
+        return one;
+    }
+};
+
+}  // namespace
+
+TEST(Page, HoldsTheShapeInItsOrderWithinTheQuantisation) {
+    const Annotated one;
+    Page page("a sphere");
+    page.add(one.object());
+    const ReadPage read(page.html("made by a test"));
+    const JsonValue& object = read.data["objects"][0];
+    EXPECT_EQ(object["vertices"].GetUint64(), one.soup.points.size());
+    const std::string glb = read.blob(object["geometry"]);
+    const Json document = glb::Reader(glb, "glb").document().GetObject().MemberCount() > 0
+                              ? parse_json(glb.substr(20, *reinterpret_cast<const std::uint32_t*>(glb.data() + 12)), "glb")
+                              : Json();
+    const auto packed = [&](const char* accessor) -> const JsonValue& {
+        const JsonValue& primitive = document["meshes"][0]["primitives"][0];
+        const auto index =
+            std::string(accessor) == "POSITION" ? primitive["attributes"]["POSITION"].GetUint() : primitive["indices"].GetUint();
+        const auto view = document["accessors"][index]["bufferView"].GetUint();
+        return document["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+    };
+    std::vector<std::array<std::uint16_t, 4>> points(one.soup.points.size());
+    const std::string point_bytes = bytes_of_view(glb, packed("POSITION"));
+    ASSERT_EQ(meshopt_decodeVertexBuffer(points.data(), points.size(), 8,
+                                         reinterpret_cast<const unsigned char*>(point_bytes.data()), point_bytes.size()),
+              0);
+    const double step = document["nodes"][0]["scale"][0].GetDouble();
+    EXPECT_NEAR(step, 14.0 / 65535, 1e-12);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_NEAR(object["origin"][static_cast<rapidjson::SizeType>(k)].GetDouble() + step * points[i][k],
+                        one.soup.points[i][k], 0.5001 * step);
+    std::vector<std::array<Index, 3>> triangles(one.soup.triangles.size());
+    const std::string index_bytes = bytes_of_view(glb, packed("indices"));
+    ASSERT_EQ(meshopt_decodeIndexBuffer(triangles.front().data(), 3 * triangles.size(), 4,
+                                        reinterpret_cast<const unsigned char*>(index_bytes.data()), index_bytes.size()),
+              0);
+    for (std::size_t f = 0; f < triangles.size(); ++f) {
+        auto turned = triangles[f];  // the codec may turn the corners
+        for (int k = 0; k < 3 && turned != one.soup.triangles[f]; ++k)
+            std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+        EXPECT_EQ(turned, one.soup.triangles[f]);
+    }
+}
+
+TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
+    const Annotated one;
+    Page page("a sphere");
+    page.add(one.object());
+    page.add(annotation_table(one.mesh, one.set, 0, "sphere"));
+    const ReadPage read(page.html(""));
+    const JsonValue& list = read.data["objects"][0]["annotations"];
+    ASSERT_EQ(list.Size(), 4U);
+    EXPECT_EQ(list[0]["parent"].GetInt(), -1);
+    EXPECT_EQ(list[1]["parent"].GetInt(), 0);
+    for (rapidjson::SizeType i = 0; i < 2; ++i) {
+        const std::string runs = read.blob(list[i]["faces"]["blob"]);
+        std::vector<Index> faces;
+        std::size_t at = 0;
+        Index face = 0;
+        const auto next = [&] {
+            std::size_t value = 0;
+            for (std::size_t scale = 1;; scale *= 128) {
+                const auto byte = static_cast<unsigned char>(runs.at(at++));
+                value += byte % 128 * scale;
+                if (byte < 128) return static_cast<Index>(value);
+            }
+        };
+        while (at < runs.size()) {
+            face += next();
+            for (Index run = next(); run > 0; --run) faces.push_back(face++);
+        }
+        EXPECT_EQ(faces, one.set.annotations[i].faces);
+    }
+    const JsonValue& pins = list[0]["measures"][0]["pins"];
+    const JsonValue& origin = read.data["objects"][0]["origin"];
+    EXPECT_NEAR(pins[0][0].GetDouble() + origin[0].GetDouble(), 1007, 1e-9);
+    EXPECT_NEAR(pins[1][0].GetDouble() + origin[0].GetDouble(), 993, 1e-9);
+    EXPECT_EQ(list[2]["lines"][0][1].GetUint(), one.soup.triangles[0][1]);
+    EXPECT_EQ(list[3]["points"][0].GetUint(), 5U);
+    const JsonValue& rows = read.data["tables"][0]["rows"];
+    EXPECT_NEAR(rows[0][4].GetDouble(), area_of(one.mesh, one.set.annotations[0].faces), 1e-9);
+    EXPECT_EQ(read.data["tables"][0]["annotations"][1].GetInt(), 1);
+}
+
+TEST(Page, QuantisesMapsAndTellsWhatHasNoValue) {
+    const Annotated one;
+    PageObject object = one.object();
+    PageMap& map = object.maps.emplace_back();
+    map.name = "height";
+    for (const auto& p : one.soup.points) map.values.push_back(p[2]);
+    map.values[3] = std::nan("");
+    Page page("a sphere");
+    page.add(object);
+    const ReadPage read(page.html(""));
+    const JsonValue& shown = read.data["objects"][0]["maps"][0];
+    const std::string bytes = read.blob(shown["blob"]);
+    ASSERT_EQ(bytes.size(), 2 * map.values.size());
+    const auto* steps = reinterpret_cast<const std::uint16_t*>(bytes.data());
+    const double low = shown["minimum"].GetDouble(), range = shown["maximum"].GetDouble() - low;
+    EXPECT_EQ(steps[3], 65535);
+    for (std::size_t i = 0; i < map.values.size(); ++i)
+        if (i != 3) EXPECT_NEAR(low + steps[i] / 65534.0 * range, map.values[i], range / 131068 * 1.001);
+    std::size_t counted = 0;
+    for (const auto& count : shown["histogram"].GetArray()) counted += count.GetUint64();
+    EXPECT_EQ(counted, map.values.size() - 1);
+}
+
+TEST(Page, TextsStayTexts) {
+    const std::string evil = "</script><img src=x onerror=alert(1)><!--";
+    Annotated one(evil);
+    one.set.unit = evil;
+    one.set.annotations[0].note = evil;
+    one.set.annotations[0].attributes[0].name = evil;
+    Page page(evil);
+    PageObject object = one.object();
+    object.name = evil;
+    page.add(object);
+    page.add(annotation_table(one.mesh, one.set, 0, evil));
+    page.add_drawing(evil, "<svg/>");
+    page.note(evil);
+    const std::string html = page.html(evil), plain = Page("").html("");
+    EXPECT_EQ(html.find(evil), std::string::npos);
+    const auto count = [](const std::string& text, const std::string& what) {
+        std::size_t n = 0;
+        for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+        return n;
+    };
+    EXPECT_EQ(count(html, "</script"), count(plain, "</script"));
+    EXPECT_EQ(count(html, "<img"), count(plain, "<img"));
+    EXPECT_EQ(count(html, "<!--"), count(plain, "<!--"));
+    const ReadPage read(html);
+    EXPECT_EQ(read.data["objects"][0]["annotations"][0]["tag"].GetString(), evil);
+    EXPECT_EQ(read.data["notes"][0].GetString(), evil);
+}
+
+TEST(Page, TellsWhichObjectsHaveTheSameTriangles) {
+    const Annotated one;
+    Annotated moved;
+    for (const Vertex v : moved.mesh.vertices()) moved.mesh.point(v) = moved.mesh.point(v) + Vector(0, 0, 0.1 * v.idx());
+    const Mesh other = build_mesh(octahedron_sphere(3), "other");
+    Page page("three");
+    page.add(one.object());
+    PageObject third;
+    third.name = "other";
+    third.mesh = &other;
+    page.add(third);
+    page.add(moved.object());
+    const ReadPage read(page.html(""));
+    EXPECT_EQ(read.data["objects"][0]["blend"].GetInt(), 0);
+    EXPECT_FALSE(read.data["objects"][1].HasMember("blend"));
+    EXPECT_EQ(read.data["objects"][2]["blend"].GetInt(), 0);
+}
+
+TEST(Page, RefusesWhatItCannotShow) {
+    Page page("none");
+    const Mesh empty;
+    PageObject object;
+    object.name = "empty";
+    object.mesh = &empty;
+    EXPECT_THROW(page.add(object), Error);
+    const Annotated one;
+    PageObject mapped = one.object();
+    mapped.maps.push_back({"short", "", {1, 2, 3}});
+    EXPECT_THROW(page.add(mapped), Error);
+}
+
+TEST(Page, OneTriangleAndAFlatObjectAreShown) {
+    TriangleSoup soup;
+    soup.points = {{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}};
+    soup.triangles = {{0, 1, 2}};
+    const Mesh mesh = build_mesh(soup, "triangle");
+    PageObject object;
+    object.name = "triangle";
+    object.mesh = &mesh;
+    Page page("one");
+    page.add(object);
+    const ReadPage read(page.html(""));
+    EXPECT_EQ(read.data["objects"][0]["faces"].GetInt(), 1);
+    EXPECT_EQ(page.html(""), page.html(""));
+}
+
+TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
+    const Scratch scratch;
+    const std::string data = std::string(OSTRAKA_SOURCE_DIR) + "/data/";
+    const auto make = [&](const std::string& words) { return run_command("report " + words); };
+    ASSERT_EQ(make(data + "vase.ply " + (scratch / "a.html").string()).code, 0);
+    ASSERT_EQ(make(data + "vase.ply " + (scratch / "b.html").string()).code, 0);
+    EXPECT_EQ(read_file(scratch / "a.html"), read_file(scratch / "b.html"));
+    const ReadPage read(read_file(scratch / "a.html"));
+    EXPECT_GT(read.data["objects"][0]["annotations"].Size(), 0U) << "annotations beside the mesh";
+    const auto refuse = [&](const std::string& words, int code, const std::string& says) {
+        const auto result = make(words + " " + (scratch / "c.html").string());
+        EXPECT_EQ(result.code, code) << words << ": " << result.err;
+        EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+        EXPECT_FALSE(file_exists(scratch / "c.html"));
+    };
+    refuse((scratch / "none.ply").string(), 1, "none.ply");
+    refuse(data + "vase.ant.json", 1, "comes before any mesh");
+    refuse(data + "vase.recipe.json", 1, "nothing that a page can show");
+    refuse(data + "vase.ply " + data + "teapot.ant.json", 1, "teapot.ant.json");
+    std::filesystem::create_directory(scratch / "empty");
+    refuse((scratch / "empty").string(), 1, "nothing that a page can show");
+    EXPECT_EQ(make(data + "vase.ply " + (scratch / "c.png").string()).code, 2);
+}

@@ -1,0 +1,239 @@
+import { gradient } from "./colours";
+import type { Blobs, Language } from "./data";
+import { Details } from "./details";
+import { Legend } from "./legend";
+import { address } from "./main";
+import { Picture, view } from "./picture";
+import * as state from "./state";
+import { numberText, page, word } from "./state";
+import { Tables } from "./tables";
+
+function Choice(props: { label: string; value: string; options: [string, string][]; onChange: (value: string) => void }) {
+  return (
+    <label>
+      {props.label}{" "}
+      <select value={props.value} onChange={(event) => props.onChange(event.currentTarget.value)}>
+        {props.options.map(([value, text]) => (
+          <option key={value} value={value}>
+            {text}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+function Check(props: { label: string; checked: boolean; onChange: (value: boolean) => void }) {
+  return (
+    <label>
+      <input type="checkbox" checked={props.checked} onChange={(event) => props.onChange(event.currentTarget.checked)} /> {props.label}
+    </label>
+  );
+}
+
+function Slider(props: { label: string; value: number; min: number; max: number; onChange: (value: number) => void }) {
+  return (
+    <label class="slider">
+      {props.label}{" "}
+      <input
+        type="range"
+        min={props.min}
+        max={props.max}
+        step={(props.max - props.min) / 200}
+        value={props.value}
+        onInput={(event) => props.onChange(+event.currentTarget.value)}
+      />
+    </label>
+  );
+}
+
+function ColourBar() {
+  const map = page.objects[state.object.value].maps[state.map.value];
+  if (!map) return null;
+  const most = Math.max(1, ...map.histogram);
+  const middle = (map.minimum + map.maximum) / 2;
+  return (
+    <div class="bar" role="img" aria-label={`${map.label}: ${numberText(map.minimum)} – ${numberText(map.maximum)}`}>
+      <div class="histogram">
+        {map.histogram.map((count, i) => (
+          <span key={i} style={{ height: `${(100 * count) / most}%` }} title={numberText(count)} />
+        ))}
+      </div>
+      <div class="colours" style={{ background: gradient(map.diverging) }} />
+      <div class="ends">
+        <span>{numberText(map.minimum)}</span>
+        <span>{numberText(middle)}</span>
+        <span>{numberText(map.maximum)}</span>
+      </div>
+      <div class="quiet">{map.label}</div>
+    </div>
+  );
+}
+
+function savePicture() {
+  if (!view) return;
+  view.paint();
+  view.canvas.toBlob((blob) => {
+    if (!blob) return;
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(blob);
+    link.download = `${page.title.replace(/[^\p{L}\p{N}._-]+/gu, "-")}.png`;
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }, "image/png");
+}
+
+function keepAddress() {
+  history.replaceState(null, "", address());
+  state.message.value = word("copied");
+  void navigator.clipboard?.writeText(location.href).catch(() => {});
+}
+
+function Toolbar() {
+  const about = page.objects[state.object.value];
+  const views: [state.Word, number, number][] = [
+    ["front", 0, 0],
+    ["right", 90, 0],
+    ["back", 180, 0],
+    ["left", 270, 0],
+    ["top", 0, 89.9],
+    ["bottom", 0, -89.9],
+  ];
+  const partner = state.blendPartner.value;
+  return (
+    <div class="toolbar" role="toolbar" aria-label={word("view")}>
+      {page.objects.length > 1 && (
+        <>
+          <Choice
+            label={word("objects")}
+            value={String(state.object.value)}
+            options={page.objects.map((one, i) => [String(i), one.name])}
+            onChange={(value) => {
+              state.object.value = +value;
+              state.chosen.value = -1;
+            }}
+          />
+          <Check label={word("sideBySide")} checked={state.sideBySide.value} onChange={(value) => (state.sideBySide.value = value)} />
+        </>
+      )}
+      {about.maps.length > 0 && (
+        <Choice
+          label={word("map")}
+          value={String(state.map.value)}
+          options={[["-1", word("byAnnotation")], ...about.maps.map((m, i) => [String(i), m.name] as [string, string])]}
+          onChange={(value) => (state.map.value = +value)}
+        />
+      )}
+      {partner >= 0 && (
+        <Slider
+          label={word("blend", about.name, page.objects[partner].name)}
+          value={state.blend.value}
+          min={0}
+          max={1}
+          onChange={(value) => (state.blend.value = value)}
+        />
+      )}
+      {about.cage && <Check label={word("cage")} checked={state.cage.value} onChange={(value) => (state.cage.value = value)} />}
+      <span class="group">
+        <button type="button" onClick={() => view?.home()}>
+          {word("fit")}
+        </button>
+        {views.map(([key, azimuth, elevation]) => (
+          <button key={key} type="button" onClick={() => view?.look(azimuth, elevation)}>
+            {word(key)}
+          </button>
+        ))}
+      </span>
+      <Slider label={word("clip")} value={state.clip.value} min={-1} max={1} onChange={(value) => (state.clip.value = value)} />
+      <Choice
+        label={word("clipAxis")}
+        value={String(state.clipAxis.value)}
+        options={["x", "y", "z"].map((name, i) => [String(i), name])}
+        onChange={(value) => (state.clipAxis.value = +value)}
+      />
+      <Check
+        label={word("measure")}
+        checked={state.measuring.value}
+        onChange={(value) => {
+          state.measuring.value = value;
+          state.message.value = value ? word("measureOn") : "";
+        }}
+      />
+      <Check label={word("patterns")} checked={state.patterns.value} onChange={(value) => (state.patterns.value = value)} />
+      <button type="button" onClick={savePicture}>
+        {word("picture")}
+      </button>
+      <button type="button" onClick={keepAddress}>
+        {word("link")}
+      </button>
+    </div>
+  );
+}
+
+export function App({ blobs }: { blobs: Blobs }) {
+  const about = page.objects[state.object.value];
+  const { simplified } = about ?? {};
+  return (
+    <>
+      <header>
+        <h1>{page.title}</h1>
+        <Choice
+          label={word("language")}
+          value={state.language.value}
+          options={[
+            ["en", "English"],
+            ["de", "Deutsch"],
+            ["it", "Italiano"],
+          ]}
+          onChange={(value) => state.setLanguage(value as Language)}
+        />
+        <Choice
+          label={word("theme")}
+          value={state.theme.value}
+          options={(["system", "light", "dark"] as const).map((name) => [name, word(name)])}
+          onChange={state.setTheme}
+        />
+      </header>
+      <main>
+        {about && (
+          <div class="stage">
+            <div class="left">
+              {view && <Toolbar />}
+              <Picture />
+              <p class="quiet status" role="status">
+                {about.name}: {numberText(about.vertices)} {word("vertices")}, {numberText(about.faces)} {word("faces")}
+                {simplified &&
+                  `. ${word("shown", numberText(simplified.vertices), numberText(about.vertices), numberText(simplified.deviation) + (about.unit ? " " + about.unit : ""))}`}
+                {state.message.value && ` – ${state.message.value}`}
+              </p>
+            </div>
+            <aside>
+              <ColourBar />
+              <Legend />
+              <Details />
+            </aside>
+          </div>
+        )}
+        <Tables blobs={blobs} />
+        {page.notes.length > 0 && (
+          <section aria-labelledby="notes-title">
+            <h2 id="notes-title">{word("notes")}</h2>
+            <ul>
+              {page.notes.map((note, i) => (
+                <li key={i}>{note}</li>
+              ))}
+            </ul>
+          </section>
+        )}
+        <section aria-labelledby="about-title">
+          <details>
+            <summary>
+              <h2 id="about-title">{word("about")}</h2>
+            </summary>
+            <pre tabIndex={0}>{page.provenance}</pre>
+          </details>
+        </section>
+      </main>
+    </>
+  );
+}

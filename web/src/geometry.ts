@@ -1,0 +1,297 @@
+// Objects as they are drawn: triangles with a colour of their own, regions, lines and points on them.
+import * as THREE from "three";
+import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
+import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
+import { MeshBVH } from "three-mesh-bvh";
+import { readRuns, type Blobs, type PageObject } from "./data";
+
+/** Vertices and triangles in the order of the object's file. */
+export interface Shape {
+  positions: Float32Array;
+  triangles: Uint32Array;
+}
+
+const loader = new GLTFLoader();
+loader.setMeshoptDecoder(MeshoptDecoder);
+
+export async function readShape(bytes: Uint8Array): Promise<Shape> {
+  const copy = bytes.slice();
+  const { scene } = await loader.parseAsync(copy.buffer, "");
+  scene.updateMatrixWorld(true);
+  let shape: Shape | undefined;
+  scene.traverse((node) => {
+    const geometry = (node as THREE.Mesh).geometry as THREE.BufferGeometry | undefined;
+    if (!geometry || shape) return;
+    const given = geometry.getAttribute("position");
+    const positions = new Float32Array(3 * given.count);
+    const point = new THREE.Vector3();
+    for (let i = 0; i < given.count; ++i) {
+      point.fromBufferAttribute(given, i).applyMatrix4(node.matrixWorld);
+      positions.set([point.x, point.y, point.z], 3 * i);
+    }
+    shape = { positions, triangles: Uint32Array.from(geometry.index?.array ?? []) };
+  });
+  if (!shape) throw new Error("the page holds no shape");
+  return shape;
+}
+
+function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Array {
+  const normals = new Float32Array(positions.length);
+  for (let i = 0; i < triangles.length; i += 3) {
+    const a = 3 * triangles[i];
+    const b = 3 * triangles[i + 1];
+    const c = 3 * triangles[i + 2];
+    const ux = positions[b] - positions[a];
+    const uy = positions[b + 1] - positions[a + 1];
+    const uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[c] - positions[a];
+    const vy = positions[c + 1] - positions[a + 1];
+    const vz = positions[c + 2] - positions[a + 2];
+    const nx = uy * vz - uz * vy;
+    const ny = uz * vx - ux * vz;
+    const nz = ux * vy - uy * vx;
+    for (const v of [a, b, c]) {
+      normals[v] += nx;
+      normals[v + 1] += ny;
+      normals[v + 2] += nz;
+    }
+  }
+  for (let i = 0; i < normals.length; i += 3) {
+    const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+    normals[i] /= length;
+    normals[i + 1] /= length;
+    normals[i + 2] /= length;
+  }
+  return normals;
+}
+
+/** One value for each corner of each triangle, from one for each vertex. */
+function spread(values: Float32Array, triangles: Uint32Array): Float32Array {
+  const made = new Float32Array(3 * triangles.length);
+  for (let i = 0; i < triangles.length; ++i) {
+    const v = 3 * triangles[i];
+    made[3 * i] = values[v];
+    made[3 * i + 1] = values[v + 1];
+    made[3 * i + 2] = values[v + 2];
+  }
+  return made;
+}
+
+/** How the surface is lit and marked; the same for all objects, so that it is compiled once. */
+function surfaceMaterial(blend: { value: number }, patterns: { value: number }): THREE.MeshStandardMaterial {
+  const material = new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.85, metalness: 0, side: THREE.DoubleSide });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.blend = blend;
+    shader.uniforms.patterns = patterns;
+    shader.vertexShader = shader.vertexShader
+      .replace(
+        "#include <common>",
+        "#include <common>\nattribute vec3 otherPosition;\nattribute vec3 otherNormal;\nattribute float pattern;\nuniform float blend;\nflat varying float vPattern;",
+      )
+      .replace("#include <beginnormal_vertex>", "vec3 objectNormal = normalize(mix(normal, otherNormal, blend) + 1e-9);")
+      .replace("#include <begin_vertex>", "vec3 transformed = mix(position, otherPosition, blend);\nvPattern = pattern;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nuniform float patterns;\nflat varying float vPattern;")
+      .replace(
+        "#include <color_fragment>",
+        `#include <color_fragment>
+        if (patterns > 0.5 && vPattern > 0.5) {
+          vec2 at = gl_FragCoord.xy;
+          float kind = mod(vPattern - 1.0, 6.0), period = 9.0 + 3.0 * floor((vPattern - 1.0) / 6.0);
+          float along = kind < 0.5 ? at.x + at.y : kind < 1.5 ? at.x - at.y : kind < 2.5 ? at.x : at.y;
+          bool mark = kind < 3.5 ? mod(along, period) < 1.5
+                    : kind < 4.5 ? min(mod(at.x, period), mod(at.y, period)) < 1.2
+                    : length(mod(at, period) - 0.5 * period) < 1.8;
+          if (mark) diffuseColor.rgb *= 0.45;
+        }`,
+      );
+  };
+  return material;
+}
+
+export const blendShare = { value: 0 };
+export const patternShare = { value: 0 };
+const surface = surfaceMaterial(blendShare, patternShare);
+
+const clay: [number, number, number] = [201, 184, 160];
+
+/** sRGB bytes to the linear numbers that three.js shades with. */
+const linear = Float32Array.from({ length: 256 }, (_, i) => new THREE.Color().setRGB(i / 255, 0, 0, THREE.SRGBColorSpace).r);
+
+export class DrawnObject {
+  readonly group = new THREE.Group();
+  readonly mesh: THREE.Mesh;
+  readonly regions: (Uint32Array | undefined)[];
+  /** Annotations whose type is line or point, by their index. */
+  readonly marks = new Map<number, THREE.Object3D>();
+  readonly pins = new THREE.Group();
+  readonly chosen = new THREE.Group();
+  /** The smallest visible region of each triangle; -1: none. */
+  readonly top: Int32Array;
+  cage: THREE.Object3D | undefined;
+  private bvhMade: MeshBVH | undefined;
+  private other: Shape | undefined;
+
+  constructor(
+    readonly index: number,
+    readonly about: PageObject,
+    readonly shape: Shape,
+    private readonly blobs: Blobs,
+  ) {
+    const { positions, triangles } = shape;
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(spread(positions, triangles), 3));
+    geometry.setAttribute("normal", new THREE.BufferAttribute(spread(normalsOf(positions, triangles), triangles), 3));
+    geometry.setAttribute("otherPosition", geometry.getAttribute("position"));
+    geometry.setAttribute("otherNormal", geometry.getAttribute("normal"));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * triangles.length), 3));
+    geometry.setAttribute("pattern", new THREE.BufferAttribute(new Uint8Array(triangles.length), 1));
+    this.mesh = new THREE.Mesh(geometry, surface);
+    this.mesh.frustumCulled = false;
+    this.regions = about.annotations.map((one) => (one.faces ? readRuns(blobs.get(one.faces.blob)) : undefined));
+    this.top = new Int32Array(triangles.length / 3);
+    this.group.add(this.mesh, this.pins, this.chosen);
+    about.annotations.forEach((one, i) => {
+      const mark = one.lines ? this.line(one.lines, one.colour) : one.points ? this.dots(one.points, one.colour) : undefined;
+      if (!mark) return;
+      this.marks.set(i, mark);
+      this.group.add(mark);
+    });
+    this.paint(() => true);
+  }
+
+  /** Made when it is first asked for: triangles keep their numbers. */
+  get bvh(): MeshBVH {
+    if (!this.bvhMade) {
+      const indexed = new THREE.BufferGeometry();
+      indexed.setAttribute("position", new THREE.BufferAttribute(this.shape.positions, 3));
+      indexed.setIndex(new THREE.BufferAttribute(this.shape.triangles, 1));
+      this.bvhMade = new MeshBVH(indexed, { indirect: true });
+    }
+    return this.bvhMade;
+  }
+
+  vertex(index: number): THREE.Vector3 {
+    return new THREE.Vector3().fromArray(this.shape.positions, 3 * index);
+  }
+
+  private line(lines: number[][], colour: [number, number, number]): THREE.Object3D {
+    const group = new THREE.Group();
+    const material = new THREE.LineBasicMaterial({ color: new THREE.Color(...(colour.map((c) => linear[c]) as [number, number, number])) });
+    const lift = this.lift();
+    for (const one of lines) {
+      const geometry = new THREE.BufferGeometry().setFromPoints(one.map((v) => this.vertex(v).addScaledVector(lift(v), 1)));
+      group.add(new THREE.Line(geometry, material));
+    }
+    return group;
+  }
+
+  private dots(points: number[], colour: [number, number, number]): THREE.Object3D {
+    const lift = this.lift();
+    const geometry = new THREE.BufferGeometry().setFromPoints(points.map((v) => this.vertex(v).add(lift(v))));
+    const material = new THREE.PointsMaterial({
+      color: new THREE.Color(...(colour.map((c) => linear[c]) as [number, number, number])),
+      size: 11,
+      sizeAttenuation: false,
+    });
+    return new THREE.Points(geometry, material);
+  }
+
+  /** A little away from the surface, so that lines and points are not half within it. */
+  private lift(): (v: number) => THREE.Vector3 {
+    const step = 0.002 * Math.hypot(...this.about.size);
+    const normals = normalsOf(this.shape.positions, this.shape.triangles);
+    return (v) => new THREE.Vector3().fromArray(normals, 3 * v).multiplyScalar(step);
+  }
+
+  /** The shape that `blend` leads to; the same triangles. */
+  blendTo(other: DrawnObject | undefined) {
+    if (this.other === other?.shape) return;
+    this.other = other?.shape;
+    const geometry = this.mesh.geometry;
+    geometry.setAttribute("otherPosition", (other ?? this).mesh.geometry.getAttribute("position"));
+    geometry.setAttribute("otherNormal", (other ?? this).mesh.geometry.getAttribute("normal"));
+  }
+
+  /** Where a vertex is drawn now. */
+  drawn(vertex: number, share: number): THREE.Vector3 {
+    const at = this.vertex(vertex);
+    return this.other ? at.lerp(new THREE.Vector3().fromArray(this.other.positions, 3 * vertex), share) : at;
+  }
+
+  /** Colours by annotations, those that are shown; smaller ones over larger ones. `chosen`: the others are paler. */
+  paint(isShown: (annotation: number) => boolean, chosen = -1) {
+    const { about } = this;
+    this.top.fill(-1);
+    const order = about.annotations
+      .map((_, i) => i)
+      .filter((i) => this.regions[i] && isShown(i))
+      .sort((a, b) => this.regions[b]!.length - this.regions[a]!.length || a - b);
+    for (const i of order) for (const face of this.regions[i]!) this.top[face] = i;
+    const selected = chosen >= 0 && this.regions[chosen] ? new Set(this.regions[chosen]) : undefined;
+    const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
+    const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
+    const colours = colour.array as Float32Array;
+    const patterns = pattern.array as Uint8Array;
+    for (let face = 0; face < this.top.length; ++face) {
+      const i = this.top[face];
+      const [r, g, b] = i < 0 ? clay : about.annotations[i].colour;
+      let [x, y, z] = [linear[r], linear[g], linear[b]];
+      if (selected && !selected.has(face)) [x, y, z] = [0.35 * x + 0.4, 0.35 * y + 0.4, 0.35 * z + 0.4];
+      for (let k = 0; k < 3; ++k) {
+        colours.set([x, y, z], 9 * face + 3 * k);
+        patterns[3 * face + k] = i < 0 ? 0 : (i % 12) + 1;
+      }
+    }
+    colour.needsUpdate = true;
+    pattern.needsUpdate = true;
+    for (const [i, mark] of this.marks) mark.visible = isShown(i);
+  }
+
+  /** Colours by a map; what has no value is grey. */
+  paintMap(map: number, colourOf: (share: number) => [number, number, number]) {
+    const values = this.mapValues(map);
+    const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
+    const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
+    const colours = colour.array as Float32Array;
+    const table = Array.from({ length: 256 }, (_, i) => colourOf(i / 255).map((c) => linear[c]));
+    const { triangles } = this.shape;
+    for (let i = 0; i < triangles.length; ++i) {
+      const value = values[triangles[i]];
+      const entry = value === 65535 ? [0.5, 0.5, 0.5] : table[Math.round((255 * value) / 65534)];
+      colours.set(entry, 3 * i);
+    }
+    (pattern.array as Uint8Array).fill(0);
+    colour.needsUpdate = true;
+    pattern.needsUpdate = true;
+  }
+
+  mapValues(map: number): Uint16Array {
+    const bytes = this.blobs.get(this.about.maps[map].blob);
+    return new Uint16Array(bytes.slice().buffer);
+  }
+
+  /** What a map says at a vertex; undefined: nothing. */
+  mapValue(map: number, vertex: number): number | undefined {
+    const { minimum, maximum } = this.about.maps[map];
+    const step = this.mapValues(map)[vertex];
+    return step === 65535 ? undefined : minimum + (step / 65534) * (maximum - minimum);
+  }
+
+  /** All shown regions on a triangle, the smallest first. */
+  annotationsOn(face: number): number[] {
+    const found: number[] = [];
+    this.regions.forEach((faces, i) => {
+      if (!faces) return;
+      let low = 0;
+      let high = faces.length;
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if (faces[middle] < face) low = middle + 1;
+        else high = middle;
+      }
+      if (faces[low] === face) found.push(i);
+    });
+    return found.sort((a, b) => this.regions[a]!.length - this.regions[b]!.length || a - b);
+  }
+}

@@ -1,0 +1,308 @@
+// The objects in 3D, with names and measures over them, and what the pointer and the keys do there.
+import { effect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import * as THREE from "three";
+import { colourOf } from "./colours";
+import type { DrawnObject } from "./geometry";
+import * as state from "./state";
+import { numberText, page, withUnit, word } from "./state";
+import type { View } from "./view";
+
+export let view: View | undefined;
+export let drawn: DrawnObject[] = [];
+export function setScene(made: View | undefined, objects: DrawnObject[]) {
+  view = made;
+  drawn = objects;
+}
+
+/** The middle of an annotation, on it. */
+function anchor(of: DrawnObject, annotation: number): THREE.Vector3 | undefined {
+  const one = of.about.annotations[annotation];
+  const faces = of.regions[annotation];
+  const vertices = faces
+    ? Array.from(faces, (f) => of.shape.triangles[3 * f])
+    : (one.points ?? one.lines?.flat() ?? []);
+  if (vertices.length === 0) return undefined;
+  const middle = new THREE.Vector3();
+  for (const v of vertices) middle.add(of.vertex(v));
+  middle.divideScalar(vertices.length);
+  let best = vertices[0];
+  for (const v of vertices) if (of.vertex(v).distanceToSquared(middle) < of.vertex(best).distanceToSquared(middle)) best = v;
+  return of.vertex(best);
+}
+const anchors = new Map<string, THREE.Vector3 | undefined>();
+
+interface Label {
+  text: string;
+  x: number;
+  y: number;
+  atX: number;
+  atY: number;
+  strong: boolean;
+}
+
+/** Names beside the object, on both sides, in the order of their places: leader lines do not cross. */
+function labelPlaces(width: number, height: number): Label[] {
+  if (!view || !state.labels.value) return [];
+  const list: Label[] = [];
+  const share = 1 / state.panes.value.length;
+  state.panes.value.forEach((o, pane) => {
+    const of = drawn[o];
+    const mine: Label[] = [];
+    of.about.annotations.forEach((one, i) => {
+      if (!state.isShown(o, i) || !one.tag) return;
+      const chosen = state.chosen.value === i && o === state.object.value;
+      const whole = one.faces && one.faces.count >= 0.95 * of.top.length;
+      if (whole && !chosen) return;
+      const key = state.keyOf(o, i);
+      if (!anchors.has(key)) anchors.set(key, anchor(of, i));
+      const at = anchors.get(key);
+      const place = at && view!.place(of, at);
+      if (!place) return;
+      mine.push({ text: one.tag, x: 0, y: place.y, atX: place.x, atY: place.y, strong: chosen });
+    });
+    const middle = (pane + 0.5) * share * width;
+    for (const side of [0, 1]) {
+      const row = 17;
+      const column = mine.filter((one) => (one.atX < middle ? 0 : 1) === side).sort((a, b) => a.atY - b.atY);
+      const room = Math.max(1, Math.floor((height - 16) / row));
+      const kept = column.filter((one, i) => one.strong || i < room).slice(0, room);
+      kept.forEach((one, i) => (one.y = Math.max(one.atY, i === 0 ? 12 : kept[i - 1].y + row)));
+      for (let i = kept.length - 1; i >= 0; --i)
+        kept[i].y = Math.min(kept[i].y, i === kept.length - 1 ? height - 8 : kept[i + 1].y - row);
+      for (const one of kept) one.x = side === 0 ? pane * share * width + 8 : (pane + 1) * share * width - 8;
+      list.push(...kept.map((one) => ({ ...one, side })));
+    }
+  });
+  return list;
+}
+
+/** Lines of measures: of the chosen annotation, and what was measured by hand. */
+function rulers(): { from: { x: number; y: number }; to: { x: number; y: number }; text: string }[] {
+  if (!view) return [];
+  const list: ReturnType<typeof rulers> = [];
+  const add = (o: number, pins: THREE.Vector3[], text: string) => {
+    for (let i = 1; i < pins.length; ++i) {
+      const from = view!.place(drawn[o], pins[i - 1]);
+      const to = view!.place(drawn[o], pins[i]);
+      if (from && to) list.push({ from, to, text: i === 1 ? text : "" });
+    }
+  };
+  const one = page.objects[state.object.value].annotations[state.chosen.value];
+  for (const m of one?.measures ?? [])
+    add(
+      state.object.value,
+      m.pins.map((p) => new THREE.Vector3(...p)),
+      m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
+    );
+  const { object, places } = state.measured.value;
+  if (object >= 0 && places.length > 0) {
+    const pins = places.map((p) => new THREE.Vector3(p.x, p.y, p.z));
+    if (pins.length === 1) pins.push(pins[0]);
+    const text = places.length < 2 ? "" : withUnit(pins[0].distanceTo(pins[1]), page.objects[object].unit);
+    add(object, pins, text);
+  }
+  return list;
+}
+
+const namespace = "http://www.w3.org/2000/svg";
+function element(name: string, attributes: Record<string, string | number>, text?: string): SVGElement {
+  const made = document.createElementNS(namespace, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+function drawOverlay(svg: SVGSVGElement) {
+  const { clientWidth: width, clientHeight: height } = svg;
+  const made: SVGElement[] = [];
+  for (const one of labelPlaces(width, height) as (Label & { side: number })[]) {
+    const css = one.strong ? "label strong" : "label";
+    const end = one.side === 0 ? one.x + 4 + one.text.length * 6.4 : one.x - 4 - one.text.length * 6.4;
+    made.push(element("line", { class: css, x1: end, y1: one.y, x2: one.atX, y2: one.atY }));
+    made.push(element("circle", { class: css, cx: one.atX, cy: one.atY, r: 2.2 }));
+    made.push(
+      element("text", { class: css, x: one.x, y: one.y + 4, "text-anchor": one.side === 0 ? "start" : "end" }, one.text),
+    );
+  }
+  for (const { from, to, text } of rulers()) {
+    made.push(element("line", { class: "ruler", x1: from.x, y1: from.y, x2: to.x, y2: to.y }));
+    for (const pin of [from, to]) made.push(element("circle", { class: "ruler", cx: pin.x, cy: pin.y, r: 3.5 }));
+    if (text) made.push(element("text", { class: "ruler", x: (from.x + to.x) / 2 + 6, y: (from.y + to.y) / 2 - 6 }, text));
+  }
+  const count = state.panes.value.length;
+  if (count > 1)
+    state.panes.value.forEach((o, i) => {
+      const x = ((i + 0.5) * width) / count;
+      made.push(element("text", { class: "title", x, y: height - 10, "text-anchor": "middle" }, page.objects[o].name));
+      if (i > 0) made.push(element("line", { class: "border", x1: (i * width) / count, y1: 0, x2: (i * width) / count, y2: height }));
+    });
+  svg.replaceChildren(...made);
+}
+
+function step(by: number) {
+  const { annotations } = page.objects[state.object.value];
+  const list = annotations.map((_, i) => i).filter((i) => state.isShown(state.object.value, i));
+  if (list.length === 0) return;
+  const at = list.indexOf(state.chosen.value);
+  state.choose(list[(at + by + list.length) % list.length]);
+}
+
+function onKey(event: KeyboardEvent) {
+  if (!view || event.ctrlKey || event.metaKey || event.altKey) return;
+  const turn = Math.PI / 18;
+  const actions: Record<string, () => void> = {
+    ArrowLeft: () => void view!.controls.rotate(-turn, 0, true),
+    ArrowRight: () => void view!.controls.rotate(turn, 0, true),
+    ArrowUp: () => void view!.controls.rotate(0, -turn, true),
+    ArrowDown: () => void view!.controls.rotate(0, turn, true),
+    "+": () => void view!.controls.zoom(view!.camera.zoom * 0.25, true),
+    "=": () => void view!.controls.zoom(view!.camera.zoom * 0.25, true),
+    "-": () => void view!.controls.zoom(-view!.camera.zoom * 0.2, true),
+    "0": () => view!.home(),
+    n: () => step(1),
+    p: () => step(-1),
+    Escape: () => {
+      state.choose(-1);
+      state.measured.value = { object: -1, places: [] };
+    },
+  };
+  const action = actions[event.key] ?? actions[event.key.toLowerCase()];
+  if (!action) return;
+  event.preventDefault();
+  action();
+  view.draw();
+}
+
+export function repaint() {
+  if (!view) return;
+  const chosen = state.chosen.value;
+  for (const o of state.panes.value) {
+    const of = drawn[o];
+    const map = state.map.value;
+    if (map >= 0 && map < of.about.maps.length)
+      of.paintMap(map, (share) => colourOf(share, of.about.maps[map].diverging));
+    else of.paint((i) => state.isShown(o, i), o === state.object.value ? chosen : -1);
+    if (of.cage) of.cage.visible = state.cage.value;
+  }
+  const partner = state.blendPartner.value;
+  for (const of of drawn) of.blendTo(of.index === state.object.value && partner >= 0 ? drawn[partner] : undefined);
+  view.show(state.panes.value.map((o) => drawn[o]));
+}
+
+export function Picture() {
+  const overlay = useRef<SVGSVGElement>(null);
+  const holder = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    if (!view || !holder.current || !overlay.current) return;
+    const canvas = view.canvas;
+    holder.current.prepend(canvas);
+    const svg = overlay.current;
+    view.onMove = () => drawOverlay(svg);
+    const stops = [
+      effect(() => {
+        repaint();
+      }),
+      effect(() => {
+        view!.clip = state.clip.value;
+        view!.clipAxis = state.clipAxis.value;
+        view!.blend = state.blend.value;
+        view!.draw();
+      }),
+      effect(() => {
+        void [state.labels.value, state.measured.value, state.chosen.value, state.language.value];
+        view!.draw();
+      }),
+    ];
+    const sized = new ResizeObserver(() => view!.draw());
+    sized.observe(canvas);
+    let down = { x: 0, y: 0 };
+    const at = (event: PointerEvent | MouseEvent) => {
+      const box = canvas.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    let waiting = false;
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons !== 0 || waiting) return;
+      waiting = true;
+      const place = at(event);
+      requestAnimationFrame(() => {
+        waiting = false;
+        hover(place.x, place.y);
+      });
+    });
+    canvas.addEventListener("pointerleave", () => (state.hovered.value = undefined));
+    canvas.addEventListener("pointerdown", (event) => (down = at(event)));
+    canvas.addEventListener("click", (event) => {
+      const place = at(event);
+      if (Math.hypot(place.x - down.x, place.y - down.y) > 4) return;
+      click(place.x, place.y);
+    });
+    canvas.addEventListener("keydown", onKey);
+    return () => {
+      stops.forEach((stop) => stop());
+      sized.disconnect();
+    };
+  }, []);
+  if (!view) return <p class="nothing">{word("noWebgl")}</p>;
+  return (
+    <div class="picture" ref={holder}>
+      <svg ref={overlay} aria-hidden="true" />
+      <Tip />
+    </div>
+  );
+}
+
+/** The smallest annotation under a place of the canvas that is shown, and those around it. */
+export function hover(x: number, y: number) {
+  const hit = view?.pick(x, y);
+  if (!hit) {
+    state.hovered.value = undefined;
+    return;
+  }
+  const list = drawn[hit.object].annotationsOn(hit.face).filter((i) => state.isShown(hit.object, i));
+  state.hovered.value = { object: hit.object, annotations: list, vertex: hit.vertex, x, y };
+}
+
+export function click(x: number, y: number) {
+  const hit = view?.pick(x, y);
+  if (state.measuring.value) {
+    if (!hit) return;
+    const { object, places } = state.measured.value;
+    const fresh = object !== hit.object || places.length >= 2;
+    const place = { x: hit.point.x, y: hit.point.y, z: hit.point.z };
+    state.measured.value = { object: hit.object, places: fresh ? [place] : [...places, place] };
+    return;
+  }
+  if (!hit) {
+    state.choose(-1);
+    return;
+  }
+  const list = drawn[hit.object].annotationsOn(hit.face).filter((i) => state.isShown(hit.object, i));
+  // Clicked again, what is around it is chosen.
+  const at = hit.object === state.object.value ? list.indexOf(state.chosen.value) : -1;
+  state.choose(list[at + 1] ?? (at >= 0 ? list[0] : -1), hit.object);
+}
+
+function Tip() {
+  const at = state.hovered.value;
+  if (!at) return null;
+  const about = page.objects[at.object];
+  const map = about.maps[state.map.value];
+  const value = map ? drawn[at.object].mapValue(state.map.value, at.vertex) : undefined;
+  if (at.annotations.length === 0 && !map) return null;
+  return (
+    <div class="tip" style={{ left: `${at.x + 14}px`, top: `${at.y + 14}px` }} data-annotation={at.annotations[0] ?? -1}>
+      {at.annotations.map((i, k) => (
+        <div key={i} class={k === 0 ? "first" : "quiet"}>
+          {about.annotations[i].tag || `#${about.annotations[i].id}`}
+        </div>
+      ))}
+      {map && (
+        <div>
+          {map.name}: {value === undefined ? word("noValue") : numberText(value)}
+        </div>
+      )}
+    </div>
+  );
+}

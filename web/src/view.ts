@@ -1,0 +1,223 @@
+// The picture: one canvas, one camera, a pane for each object shown.
+import CameraControls from "camera-controls";
+import * as THREE from "three";
+import { blendShare, type DrawnObject } from "./geometry";
+
+CameraControls.install({ THREE });
+
+/** What is under the pointer. */
+export interface Hit {
+  object: number;
+  face: number;
+  /** The corner of the face nearest to the place. */
+  vertex: number;
+  point: THREE.Vector3;
+}
+
+export class View {
+  readonly renderer: THREE.WebGLRenderer;
+  readonly controls: CameraControls;
+  readonly camera: THREE.OrthographicCamera;
+  private readonly scene = new THREE.Scene();
+  private readonly clock = new THREE.Clock();
+  private readonly light = new THREE.DirectionalLight(0xffffff, 2.1);
+  private readonly plane = new THREE.Plane();
+  private panes: DrawnObject[] = [];
+  private frames: { centre: THREE.Vector3; scale: number; turn: THREE.Quaternion }[] = [];
+  private wanted = true;
+  private running = false;
+  clip = 1;
+  clipAxis = 2;
+  background = 0xffffff;
+  onMove: () => void = () => {};
+  onDrawn: () => void = () => {};
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    private readonly objects: DrawnObject[],
+    reducedMotion: boolean,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.autoClear = false;
+    this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -20, 20);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new CameraControls(this.camera, canvas);
+    this.controls.smoothTime = reducedMotion ? 0.001 : 0.12;
+    this.controls.draggingSmoothTime = reducedMotion ? 0.001 : 0.06;
+    this.controls.dollyToCursor = true;
+    this.controls.addEventListener("update", () => this.draw());
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8d8478, 1.5), this.light);
+    this.frame();
+    for (const one of objects) {
+      const { centre, scale, turn } = this.frames[one.index];
+      one.group.quaternion.copy(turn);
+      one.group.scale.setScalar(scale);
+      one.group.position.copy(centre).applyQuaternion(turn).multiplyScalar(-scale);
+      one.group.updateMatrixWorld(true);
+      this.scene.add(one.group);
+    }
+    this.home(false);
+  }
+
+  /** Objects of one place are drawn in one frame, so that a difference is seen; others each in the middle. */
+  private frame() {
+    const boxes = this.objects.map((one) => {
+      const { origin, size } = one.about;
+      return { low: new THREE.Vector3(...origin), size: new THREE.Vector3(...size) };
+    });
+    boxes.forEach((box, i) => {
+      let like = i;
+      for (let k = 0; k < i && like === i; ++k) {
+        const apart = box.low.clone().addScaledVector(box.size, 0.5).distanceTo(boxes[k].low.clone().addScaledVector(boxes[k].size, 0.5));
+        const ratio = box.size.length() / boxes[k].size.length();
+        if (apart < 0.25 * boxes[k].size.length() && ratio > 0.5 && ratio < 2) like = k;
+      }
+      const of = boxes[like];
+      const up = new THREE.Vector3(...this.objects[like].about.up).normalize();
+      this.frames.push({
+        // Positions are relative to their own origin.
+        centre: of.low.clone().addScaledVector(of.size, 0.5).sub(box.low),
+        scale: 2 / (of.size.length() || 1),
+        turn: new THREE.Quaternion().setFromUnitVectors(up, new THREE.Vector3(0, 0, 1)),
+      });
+    });
+  }
+
+  show(panes: DrawnObject[]) {
+    this.panes = panes;
+    this.draw();
+  }
+
+  home(moves = true) {
+    void this.controls.setLookAt(1.5, -2.6, 1.1, 0, 0, 0, moves);
+    void this.controls.zoomTo(1, moves);
+    this.draw();
+  }
+
+  look(azimuth: number, elevation: number) {
+    const a = (azimuth * Math.PI) / 180;
+    const e = (elevation * Math.PI) / 180;
+    const away = 3.2;
+    void this.controls.setLookAt(away * Math.sin(a) * Math.cos(e), -away * Math.cos(a) * Math.cos(e), away * Math.sin(e), 0, 0, 0, true);
+    this.draw();
+  }
+
+  /** So that a place of an object is in the middle. */
+  lookAt(object: DrawnObject, place: THREE.Vector3) {
+    const at = object.group.localToWorld(place.clone());
+    void this.controls.moveTo(at.x, at.y, at.z, true);
+    this.draw();
+  }
+
+  /** A picture is drawn soon; many wishes make one picture. */
+  draw() {
+    this.wanted = true;
+    if (this.running) return;
+    this.running = true;
+    requestAnimationFrame(this.step);
+  }
+
+  private readonly step = () => {
+    const moving = this.controls.update(this.clock.getDelta());
+    if (this.wanted || moving) {
+      this.wanted = false;
+      this.paint();
+      this.onMove();
+    }
+    if (moving || this.wanted) requestAnimationFrame(this.step);
+    else {
+      this.running = false;
+      this.clock.getDelta();
+    }
+  };
+
+  /** Width and height of a pane, in pixels of the page. */
+  private paneSize(): [number, number] {
+    const { clientWidth, clientHeight } = this.canvas;
+    return [clientWidth / Math.max(1, this.panes.length), clientHeight];
+  }
+
+  paint() {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    const { renderer } = this;
+    const ratio = Math.min(2, window.devicePixelRatio);
+    const size = renderer.getSize(new THREE.Vector2());
+    if (size.x !== clientWidth || size.y !== clientHeight || renderer.getPixelRatio() !== ratio) {
+      renderer.setPixelRatio(ratio);
+      renderer.setSize(clientWidth, clientHeight, false);
+    }
+    const [width, height] = this.paneSize();
+    const half = 1.06;
+    const aspect = width / height;
+    const [x, y] = aspect > 1 ? [half * aspect, half] : [half, half / aspect];
+    if (this.camera.right !== x || this.camera.top !== y) {
+      Object.assign(this.camera, { left: -x, right: x, top: y, bottom: -y });
+      this.camera.updateProjectionMatrix();
+    }
+    this.camera.updateMatrixWorld();
+    this.light.position.set(0.5, 0.9, 1.6).applyQuaternion(this.camera.quaternion);
+    renderer.setClearColor(this.background);
+    renderer.setScissorTest(false);
+    renderer.clear();
+    renderer.setScissorTest(true);
+    const normal = new THREE.Vector3().setComponent(this.clipAxis, -1);
+    this.plane.set(normal, this.clip);
+    renderer.clippingPlanes = this.clip < 1 ? [this.plane] : [];
+    this.panes.forEach((pane, i) => {
+      for (const one of this.objects) one.group.visible = one === pane;
+      renderer.setViewport(i * width, 0, width, height);
+      renderer.setScissor(i * width, 0, width, height);
+      renderer.render(this.scene, this.camera);
+    });
+    this.onDrawn();
+  }
+
+  /** Where a point of an object is on the page, relative to the canvas; undefined: in no pane. */
+  place(object: DrawnObject, point: THREE.Vector3): { x: number; y: number; depth: number } | undefined {
+    const pane = this.panes.indexOf(object);
+    if (pane < 0) return undefined;
+    const [width, height] = this.paneSize();
+    const at = object.group.localToWorld(point.clone()).project(this.camera);
+    return { x: (pane + 0.5 + at.x / 2) * width, y: (0.5 - at.y / 2) * height, depth: at.z };
+  }
+
+  pick(x: number, y: number): Hit | undefined {
+    const [width, height] = this.paneSize();
+    const pane = this.panes[Math.floor(x / width)];
+    if (!pane) return undefined;
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2((2 * (x % width)) / width - 1, 1 - (2 * y) / height), this.camera);
+    ray.ray.applyMatrix4(pane.group.matrixWorld.clone().invert());
+    // The picture looks through the whole depth: the ray starts before everything.
+    ray.ray.origin.addScaledVector(ray.ray.direction, -4 * Math.hypot(...pane.about.size));
+    const toWorld = pane.group.matrixWorld;
+    const hits = pane.bvh.raycast(ray.ray, THREE.DoubleSide).sort((a, b) => a.distance - b.distance);
+    const hit = hits.find((one) => this.clip >= 1 || this.plane.distanceToPoint(one.point.clone().applyMatrix4(toWorld)) >= 0);
+    if (!hit || hit.faceIndex == null) return undefined;
+    const corners = [0, 1, 2].map((k) => pane.shape.triangles[3 * hit.faceIndex! + k]);
+    corners.sort((a, b) => pane.vertex(a).distanceToSquared(hit.point) - pane.vertex(b).distanceToSquared(hit.point));
+    return { object: pane.index, face: hit.faceIndex, vertex: corners[0], point: hit.point };
+  }
+
+  set blend(share: number) {
+    blendShare.value = share;
+    this.draw();
+  }
+
+  /** Camera as a short text, for addresses. */
+  get where(): string {
+    const eye = this.controls.getPosition(new THREE.Vector3());
+    const target = this.controls.getTarget(new THREE.Vector3());
+    return [...eye.toArray(), ...target.toArray(), this.camera.zoom].map((x) => +x.toFixed(3)).join(",");
+  }
+
+  set where(text: string) {
+    const numbers = text.split(",").map(Number);
+    if (numbers.length !== 7 || !numbers.every(Number.isFinite) || numbers[6] <= 0) return;
+    const [ex, ey, ez, tx, ty, tz, zoom] = numbers;
+    void this.controls.setLookAt(ex, ey, ez, tx, ty, tz, false);
+    void this.controls.zoomTo(zoom, false);
+    this.draw();
+  }
+}

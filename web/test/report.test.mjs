@@ -1,0 +1,243 @@
+// The page in a real browser, opened from its file. usage: node report.test.mjs COMMAND PROJECT
+// Needs the distribution's Chromium, and playwright-core and axe-core (npm ci in web/).
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import assert from "node:assert/strict";
+import { chromium } from "playwright-core";
+
+const [command, project] = process.argv.slice(2);
+const folder = mkdtempSync(join(tmpdir(), "ostraka-page-"));
+const at = (name) => join(folder, name);
+const ostraka = (...words) => execFileSync(command, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+const require = createRequire(import.meta.url);
+
+const browser = await chromium.launch({
+  executablePath: process.env.OSTRAKA_CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
+});
+
+const failures = [];
+let count = 0;
+async function test(name, work) {
+  ++count;
+  try {
+    await work();
+    console.log(`ok ${count} - ${name}`);
+  } catch (error) {
+    failures.push(name);
+    console.log(`not ok ${count} - ${name}\n${error.stack}`);
+  }
+}
+
+/** A page opened from its file; what it asks of a network or says on the console is remembered. */
+async function open(file, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1100, height: 800 }, ...options });
+  const page = await context.newPage();
+  const told = [];
+  page.on("console", (message) => told.push(message.text()));
+  page.on("pageerror", (error) => told.push(String(error)));
+  page.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) told.push("request: " + request.url());
+  });
+  await page.goto("file://" + file + (options.hash ?? ""));
+  await page.waitForFunction(() => globalThis.ostraka !== undefined, undefined, { timeout: 60000 });
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  return { page, told, close: () => context.close() };
+}
+
+/** A number of places where an object is, with what the command's own data says is there. */
+const probe = (page, wanted) =>
+  page.evaluate((n) => {
+    const { view, objects, state } = globalThis.ostraka;
+    const canvas = view.canvas;
+    const found = [];
+    let seed = 12345;
+    const random = () => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648;
+    for (let k = 0; k < 20000 && found.length < n; ++k) {
+      const x = random() * canvas.clientWidth;
+      const y = random() * canvas.clientHeight;
+      // Without the tree: every triangle is asked, in screen coordinates.
+      const of = objects[state.object.value];
+      let best;
+      const project = (v) => view.place(of, of.vertex(v));
+      const all = (globalThis.projected ??= Array.from({ length: of.shape.positions.length / 3 }, (_, v) => project(v)));
+      const t = of.shape.triangles;
+      for (let f = 0; f < t.length / 3; ++f) {
+        const [a, b, c] = [all[t[3 * f]], all[t[3 * f + 1]], all[t[3 * f + 2]]];
+        const area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+        if (area === 0) continue;
+        const u = ((b.x - x) * (c.y - y) - (c.x - x) * (b.y - y)) / area;
+        const v = ((c.x - x) * (a.y - y) - (a.x - x) * (c.y - y)) / area;
+        const w = 1 - u - v;
+        if (u < 0 || v < 0 || w < 0) continue;
+        const depth = u * a.depth + v * b.depth + w * c.depth;
+        if (!best || depth < best.depth) best = { face: f, depth, edge: Math.min(u, v, w) };
+      }
+      if (!best || best.edge < 0.02) continue;
+      const names = of.annotationsOn(best.face).filter((i) => state.isShown(of.index, i));
+      found.push({ x, y, face: best.face, annotation: names[0] ?? -1 });
+    }
+    return found;
+  }, wanted);
+
+try {
+  ostraka("mesh", "make", "flowered-teapot", at("pot.ply"), "--vertices", "8000");
+  ostraka("annotation", "apply", at("pot.ply"), join(project, "data/teapot.recipe.json"), at("pot.ant.json"));
+  ostraka("measure", "map", at("pot.ply"), at("curvature.npy"), "--what", "mean-curvature");
+  ostraka("report", at("pot.ply"), at("pot.ant.json"), at("curvature.npy"), at("pot.html"));
+
+  await test("draws the object, says nothing on the console, asks no network", async () => {
+    const { page, told, close } = await open(at("pot.html"));
+    const drawn = await page.evaluate(() => {
+      const { view } = globalThis.ostraka;
+      view.paint();
+      const gl = view.renderer.getContext();
+      const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+      const pixels = new Uint8Array(4 * w * h);
+      gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      let other = 0;
+      for (let i = 0; i < pixels.length; i += 4) other += pixels[i] < 250 || pixels[i + 1] < 250 || pixels[i + 2] < 250 ? 1 : 0;
+      return other / (w * h);
+    });
+    assert.ok(drawn > 0.05 && drawn < 0.9, `${drawn} of the picture is drawn`);
+    assert.deepEqual(told, []);
+    await close();
+  });
+
+  await test("hover names the right annotation at 50 places", async () => {
+    const { page, close } = await open(at("pot.html"));
+    const places = await probe(page, 50);
+    assert.equal(places.length, 50);
+    const box = await page.locator("canvas").boundingBox();
+    for (const place of places) {
+      await page.mouse.move(box.x + place.x, box.y + place.y);
+      await page.waitForFunction(
+        ({ x, y, n }) => {
+          const at = globalThis.ostraka.state.hovered.value;
+          return at && Math.abs(at.x - x) < 1 && Math.abs(at.y - y) < 1 ? (at.annotations[0] ?? -1) === n : false;
+        },
+        { x: place.x, y: place.y, n: place.annotation },
+        { timeout: 5000 },
+      );
+    }
+    await close();
+  });
+
+  await test("vertices are where the file has them, within the quantisation", async () => {
+    const { page, close } = await open(at("pot.html"));
+    const shown = await page.evaluate(() => {
+      const { objects } = globalThis.ostraka;
+      const { origin, size } = objects[0].about;
+      return { points: Array.from(objects[0].shape.positions, (x, i) => x + origin[i % 3]), step: Math.max(...size) / 65535 };
+    });
+    ostraka("mesh", "convert", at("pot.ply"), at("pot.obj"));
+    const given = readFileSync(at("pot.obj"), "utf8").split("\n").filter((l) => l.startsWith("v ")).flatMap((l) => l.split(" ").slice(1, 4).map(Number));
+    assert.equal(shown.points.length, given.length);
+    for (let i = 0; i < given.length; ++i)
+      assert.ok(Math.abs(shown.points[i] - given[i]) <= 0.51 * shown.step, `coordinate ${i}: ${shown.points[i]} for ${given[i]}`);
+    await close();
+  });
+
+  await test("tables, list and picture choose each other", async () => {
+    const { page, close } = await open(at("pot.html"));
+    await page.locator("tbody tr").nth(3).locator("button").click();
+    assert.equal(await page.evaluate(() => globalThis.ostraka.state.chosen.value), 3);
+    assert.equal(await page.locator('[data-annotation="3"][aria-pressed="true"]').count(), 1);
+    const [place] = (await probe(page, 20)).filter((one) => one.annotation > 0);
+    const box = await page.locator("canvas").boundingBox();
+    await page.keyboard.press("Home");
+    await page.evaluate(() => (globalThis.ostraka.state.chosen.value = -1));
+    await page.mouse.click(box.x + place.x, box.y + place.y);
+    assert.equal(await page.evaluate(() => globalThis.ostraka.state.chosen.value), place.annotation);
+    assert.equal(await page.locator("tbody tr.chosen").count(), 1);
+    await close();
+  });
+
+  await test("a map is shown with its colour bar", async () => {
+    const { page, close } = await open(at("pot.html"), { hash: "#map=0" });
+    assert.equal(await page.locator(".bar .histogram span").count(), 40);
+    await close();
+  });
+
+  await test("the slider moves vertices to where they belong", async () => {
+    ostraka("mesh", "make", "flowered-teapot", at("noisy.ply"), "--vertices", "8000", "--noise", "0.5", "--seed", "3");
+    ostraka("report", at("pot.ply"), at("noisy.ply"), at("two.html"));
+    const { page, told, close } = await open(at("two.html"));
+    await page.locator('input[type="range"]').first().fill("1");
+    const far = await page.evaluate(() => {
+      const { objects, state } = globalThis.ostraka;
+      const other = objects[1];
+      const mesh = objects[0].mesh.geometry;
+      const target = mesh.getAttribute("otherPosition");
+      let most = 0;
+      for (let i = 0; i < other.shape.triangles.length; ++i) {
+        const v = other.vertex(other.shape.triangles[i]);
+        most = Math.max(most, Math.abs(target.getX(i) - v.x), Math.abs(target.getY(i) - v.y), Math.abs(target.getZ(i) - v.z));
+      }
+      return { most, blend: state.blend.value, partner: state.blendPartner.value };
+    });
+    assert.deepEqual(far, { most: 0, blend: 1, partner: 1 });
+    assert.deepEqual(told, []);
+    await close();
+  });
+
+  await test("keys turn, zoom and go through the annotations", async () => {
+    const { page, close } = await open(at("pot.html"));
+    await page.locator("canvas").focus();
+    const before = await page.evaluate(() => globalThis.ostraka.view.where);
+    await page.keyboard.press("ArrowLeft");
+    await page.keyboard.press("+");
+    await page.keyboard.press("n");
+    await page.waitForFunction((old) => globalThis.ostraka.view.where !== old, before);
+    assert.ok((await page.evaluate(() => globalThis.ostraka.state.chosen.value)) >= 0);
+    await page.keyboard.press("Escape");
+    assert.equal(await page.evaluate(() => globalThis.ostraka.state.chosen.value), -1);
+    await close();
+  });
+
+  await test("axe finds nothing serious, in each language and theme", async () => {
+    const source = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+    for (const [locale, colorScheme] of [["en-GB", "light"], ["de-DE", "dark"], ["it-IT", "light"]]) {
+      const { page, close } = await open(at("pot.html"), { locale, colorScheme });
+      assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
+      await page.evaluate(source);
+      const found = await page.evaluate(async () => (await globalThis.axe.run()).violations.map((v) => `${v.impact} ${v.id}: ${v.nodes[0].html}`));
+      assert.deepEqual(found.filter((line) => /^(serious|critical)/.test(line)), []);
+      await close();
+    }
+  });
+
+  await test("texts stay texts", async () => {
+    const evil = `</script><img src=x onerror="globalThis.broken=1"><b>&amp;`;
+    const set = JSON.parse(readFileSync(at("pot.ant.json"), "utf8"));
+    for (const one of set.annotations) {
+      one.tag = evil + one.id;
+      one.note = evil;
+      one.attributes = [{ id: 900, name: evil, type: "semantic", note: evil }];
+    }
+    set.class = evil;
+    set.unit = evil;
+    writeFileSync(at("evil.ant.json"), JSON.stringify(set));
+    writeFileSync(at("evil.csv"), `"${evil.replaceAll('"', '""')}",b\n"${evil.replaceAll('"', '""')}",2\n`);
+    writeFileSync(at("<img src=x onerror=globalThis.broken=1>.svg"),
+      `<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><script>globalThis.broken=1</script><rect width="9" height="9" onload="globalThis.broken=1"/></svg>`);
+    ostraka("report", at("pot.ply"), at("evil.ant.json"), at("evil.csv"), at("<img src=x onerror=globalThis.broken=1>.svg"), at("evil.html"), "--title", evil);
+    const { page, told, close } = await open(at("evil.html"));
+    await page.locator("canvas").focus();
+    await page.keyboard.press("n");
+    await page.waitForTimeout(300);
+    assert.equal(await page.evaluate(() => globalThis.broken), undefined);
+    assert.equal(await page.locator("img").count(), 1); // the drawing
+    assert.ok((await page.locator("body").innerText()).includes("<img src=x"));
+    assert.deepEqual(told, []);
+    await close();
+  });
+} finally {
+  await browser.close();
+  rmSync(folder, { recursive: true, force: true });
+}
+console.log(`1..${count}`);
+if (failures.length > 0) process.exitCode = 1;
