@@ -25,7 +25,7 @@ struct Extent {
     [[nodiscard]] Vector2d size() const { return high - low; }
 };
 
-constexpr double caption = 24, gap = 10, title_height = 30, foot = 40;
+constexpr double caption = 24, gap = 10, title_height = 30, foot_height = 40;
 
 /// Columns, rows and the width of a field that fill a sheet of about 3 : 2 best.
 struct Grid {
@@ -119,7 +119,7 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
         view_width = view_scale * side.size().x() + 60;
     }
     const double width = 2 * margin + view_width + grid.columns * (grid.width + gap) - gap;
-    const double height = 2 * margin + title_height + std::max(inner, has_view ? view_height : 0) + foot;
+    const double height = 2 * margin + title_height + std::max(inner, has_view ? view_height : 0) + foot_height;
     const double sheet_width = std::max(width, 300.0);
     write_sheet(file, [&](Sheet::Format format) {
         Sheet sheet(sheet_width, height, format);

@@ -194,6 +194,12 @@ export class DrawnObject {
       size: 11,
       sizeAttenuation: false,
     });
+    material.onBeforeCompile = (shader) => {
+      shader.fragmentShader = shader.fragmentShader.replace(
+        "#include <color_fragment>",
+        "#include <color_fragment>\nif (length(gl_PointCoord - 0.5) > 0.5) discard;",
+      );
+    };
     return new THREE.Points(geometry, material);
   }
 

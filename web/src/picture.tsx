@@ -15,22 +15,24 @@ export function setScene(made: View | undefined, objects: DrawnObject[]) {
   drawn = objects;
 }
 
-/** The middle of an annotation, on it. */
-function anchor(of: DrawnObject, annotation: number): THREE.Vector3 | undefined {
+/** Places of an annotation, the one nearest to its middle first; of a region where no smaller one covers it. */
+function anchorsOf(of: DrawnObject, annotation: number): THREE.Vector3[] {
   const one = of.about.annotations[annotation];
   const faces = of.regions[annotation];
-  const vertices = faces
-    ? Array.from(faces, (f) => of.shape.triangles[3 * f])
-    : (one.points ?? one.lines?.flat() ?? []);
-  if (vertices.length === 0) return undefined;
-  const middle = new THREE.Vector3();
-  for (const v of vertices) middle.add(of.vertex(v));
-  middle.divideScalar(vertices.length);
-  let best = vertices[0];
-  for (const v of vertices) if (of.vertex(v).distanceToSquared(middle) < of.vertex(best).distanceToSquared(middle)) best = v;
-  return of.vertex(best);
+  let vertices: ArrayLike<number> = one.points ?? one.lines?.flat() ?? [];
+  if (faces) {
+    const own = faces.filter((f) => of.top[f] === annotation);
+    vertices = (own.length > 0 ? own : faces).map((f) => of.shape.triangles[3 * f]);
+  }
+  if (vertices.length === 0) return [];
+  const most = one.points ? vertices.length : 48;
+  const some = Array.from({ length: Math.min(most, vertices.length) }, (_, i) =>
+    of.vertex(vertices[Math.floor((i * vertices.length) / Math.min(most, vertices.length))]),
+  );
+  const middle = some.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(some.length);
+  return some.sort((a, b) => a.distanceToSquared(middle) - b.distanceToSquared(middle));
 }
-const anchors = new Map<string, THREE.Vector3 | undefined>();
+const anchors = new Map<string, THREE.Vector3[]>();
 
 interface Label {
   text: string;
@@ -55,8 +57,8 @@ function labelPlaces(width: number, height: number): Label[] {
       const whole = one.faces && one.faces.count >= 0.95 * of.top.length;
       if (whole && !chosen) return;
       const key = state.keyOf(o, i);
-      if (!anchors.has(key)) anchors.set(key, anchor(of, i));
-      const at = anchors.get(key);
+      if (!anchors.has(key)) anchors.set(key, anchorsOf(of, i));
+      const at = anchors.get(key)!.find((one) => view!.sees(of, one));
       const place = at && view!.place(of, at);
       if (!place) return;
       mine.push({ text: one.tag, x: 0, y: place.y, atX: place.x, atY: place.y, strong: chosen });

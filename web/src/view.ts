@@ -19,7 +19,7 @@ export class View {
   readonly controls: CameraControls;
   readonly camera: THREE.OrthographicCamera;
   private readonly scene = new THREE.Scene();
-  private readonly clock = new THREE.Clock();
+  private last = performance.now();
   private readonly light = new THREE.DirectionalLight(0xffffff, 2.1);
   private readonly plane = new THREE.Plane();
   private panes: DrawnObject[] = [];
@@ -42,6 +42,8 @@ export class View {
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -20, 20);
     this.camera.up.set(0, 0, 1);
     this.controls = new CameraControls(this.camera, canvas);
+    this.controls.minZoom = 0.2;
+    this.controls.maxZoom = 200;
     this.controls.smoothTime = reducedMotion ? 0.001 : 0.12;
     this.controls.draggingSmoothTime = reducedMotion ? 0.001 : 0.06;
     this.controls.dollyToCursor = true;
@@ -90,8 +92,23 @@ export class View {
 
   home(moves = true) {
     void this.controls.setLookAt(1.5, -2.6, 1.1, 0, 0, 0, moves);
-    void this.controls.zoomTo(1, moves);
+    void this.controls.zoomTo(this.homeZoom(), moves);
     this.draw();
+  }
+
+  /** So that the boxes of what is shown fill the panes in the first view. */
+  private homeZoom(): number {
+    const back = new THREE.Vector3(1.5, -2.6, 1.1).normalize();
+    const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right);
+    let most = 0;
+    for (const one of this.panes.length > 0 ? this.panes : this.objects.slice(0, 1))
+      for (let corner = 0; corner < 8; ++corner) {
+        const at = new THREE.Vector3(...one.about.size.map((x, k) => (corner >> k) % 2 * x));
+        one.group.localToWorld(at);
+        most = Math.max(most, Math.abs(at.dot(right)), Math.abs(at.dot(up)));
+      }
+    return most > 0 ? 1 / most : 1;
   }
 
   look(azimuth: number, elevation: number) {
@@ -114,21 +131,21 @@ export class View {
     this.wanted = true;
     if (this.running) return;
     this.running = true;
+    this.last = performance.now();
     requestAnimationFrame(this.step);
   }
 
   private readonly step = () => {
-    const moving = this.controls.update(this.clock.getDelta());
+    const now = performance.now();
+    const moving = this.controls.update(Math.min(0.1, (now - this.last) / 1000));
+    this.last = now;
     if (this.wanted || moving) {
       this.wanted = false;
       this.paint();
       this.onMove();
     }
     if (moving || this.wanted) requestAnimationFrame(this.step);
-    else {
-      this.running = false;
-      this.clock.getDelta();
-    }
+    else this.running = false;
   };
 
   /** Width and height of a pane, in pixels of the page. */
@@ -180,6 +197,15 @@ export class View {
     const [width, height] = this.paneSize();
     const at = object.group.localToWorld(point.clone()).project(this.camera);
     return { x: (pane + 0.5 + at.x / 2) * width, y: (0.5 - at.y / 2) * height, depth: at.z };
+  }
+
+  /** Whether nothing of the object is before a point of its surface. */
+  sees(object: DrawnObject, point: THREE.Vector3): boolean {
+    const inverse = object.group.matrixWorld.clone().invert();
+    const toward = new THREE.Vector3(0, 0, 1).transformDirection(this.camera.matrixWorld).transformDirection(inverse);
+    const step = 1e-3 * Math.hypot(...object.about.size);
+    const ray = new THREE.Ray(point.clone().addScaledVector(toward, step), toward);
+    return object.bvh.raycastFirst(ray, THREE.DoubleSide) === null;
   }
 
   pick(x: number, y: number): Hit | undefined {
