@@ -25,10 +25,8 @@ export async function readShape(bytes: Uint8Array): Promise<Shape> {
     const given = geometry.getAttribute("position");
     const positions = new Float32Array(3 * given.count);
     const point = new THREE.Vector3();
-    for (let i = 0; i < given.count; ++i) {
-      point.fromBufferAttribute(given, i).applyMatrix4(node.matrixWorld);
-      positions.set([point.x, point.y, point.z], 3 * i);
-    }
+    for (let i = 0; i < given.count; ++i)
+      point.fromBufferAttribute(given, i).applyMatrix4(node.matrixWorld).toArray(positions, 3 * i);
     shape = { positions, triangles: Uint32Array.from(geometry.index?.array ?? []) };
   });
   if (!shape) throw new Error("the page holds no shape");
@@ -130,6 +128,7 @@ export class DrawnObject {
   readonly top: Int32Array;
   cage: THREE.Object3D | undefined;
   private bvhMade: MeshBVH | undefined;
+  private readonly normals: Float32Array;
   private other: Shape | undefined;
 
   constructor(
@@ -141,7 +140,8 @@ export class DrawnObject {
     const { positions, triangles } = shape;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(spread(positions, triangles), 3));
-    geometry.setAttribute("normal", new THREE.BufferAttribute(spread(normalsOf(positions, triangles), triangles), 3));
+    this.normals = normalsOf(positions, triangles);
+    geometry.setAttribute("normal", new THREE.BufferAttribute(spread(this.normals, triangles), 3));
     geometry.setAttribute("otherPosition", geometry.getAttribute("position"));
     geometry.setAttribute("otherNormal", geometry.getAttribute("normal"));
     geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * triangles.length), 3));
@@ -157,7 +157,6 @@ export class DrawnObject {
       this.marks.set(i, mark);
       this.group.add(mark);
     });
-    this.paint(() => true);
   }
 
   /** Made when it is first asked for: triangles keep their numbers. */
@@ -206,8 +205,7 @@ export class DrawnObject {
   /** A little away from the surface, so that lines and points are not half within it. */
   private lift(): (v: number) => THREE.Vector3 {
     const step = 0.002 * Math.hypot(...this.about.size);
-    const normals = normalsOf(this.shape.positions, this.shape.triangles);
-    return (v) => new THREE.Vector3().fromArray(normals, 3 * v).multiplyScalar(step);
+    return (v) => new THREE.Vector3().fromArray(this.normals, 3 * v).multiplyScalar(step);
   }
 
   /** The shape that `blend` leads to; the same triangles. */
@@ -242,11 +240,15 @@ export class DrawnObject {
     for (let face = 0; face < this.top.length; ++face) {
       const i = this.top[face];
       const [r, g, b] = i < 0 ? clay : about.annotations[i].colour;
-      let [x, y, z] = [linear[r], linear[g], linear[b]];
-      if (selected && !selected.has(face)) [x, y, z] = [0.35 * x + 0.4, 0.35 * y + 0.4, 0.35 * z + 0.4];
-      for (let k = 0; k < 3; ++k) {
-        colours.set([x, y, z], 9 * face + 3 * k);
-        patterns[3 * face + k] = i < 0 ? 0 : (i % 12) + 1;
+      const [own, pale] = selected && !selected.has(face) ? [0.35, 0.4] : [1, 0];
+      const x = own * linear[r] + pale;
+      const y = own * linear[g] + pale;
+      const z = own * linear[b] + pale;
+      for (let corner = 3 * face; corner < 3 * face + 3; ++corner) {
+        colours[3 * corner] = x;
+        colours[3 * corner + 1] = y;
+        colours[3 * corner + 2] = z;
+        patterns[corner] = i < 0 ? 0 : (i % 12) + 1;
       }
     }
     colour.needsUpdate = true;
@@ -265,7 +267,9 @@ export class DrawnObject {
     for (let i = 0; i < triangles.length; ++i) {
       const value = values[triangles[i]];
       const entry = value === 65535 ? [0.5, 0.5, 0.5] : table[Math.round((255 * value) / 65534)];
-      colours.set(entry, 3 * i);
+      colours[3 * i] = entry[0];
+      colours[3 * i + 1] = entry[1];
+      colours[3 * i + 2] = entry[2];
     }
     (pattern.array as Uint8Array).fill(0);
     colour.needsUpdate = true;
