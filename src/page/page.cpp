@@ -7,6 +7,7 @@
 #include "ostraka/core/markup.h"
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/words.h"
+#include "ostraka/geom/shortest_path.h"
 #include "ostraka/measure/measure.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/render/colour_scale.h"
@@ -95,6 +96,16 @@ std::vector<Triple> pins_of_measure(const Mesh& mesh, const Measure& measure) {
     return pins;
 }
 
+/// What a measure runs along: the edges between the pins of a tape along them; empty for others.
+std::vector<Triple> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure) {
+    std::vector<Triple> way;
+    if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return way;
+    for (std::size_t i = 1; i < measure.points.size(); ++i)
+        for (const Index v : search.find(Vertex(measure.points[i - 1]), Vertex(measure.points[i]), {}))
+            way.push_back(triple(mesh.point(Vertex(v))));
+    return way;
+}
+
 struct Box {
     Triple low{0, 0, 0}, size{0, 0, 0};
     [[nodiscard]] double largest() const { return *std::max_element(size.begin(), size.end()); }
@@ -110,6 +121,19 @@ Box box_of(const TriangleSoup& soup) {
         }
     for (std::size_t k = 0; k < 3; ++k) box.size[k] = high[k] - box.low[k];
     return box;
+}
+
+/// What the colours go over: all values, or, where a few lie far out, what holds 98 % of them.
+std::pair<double, double> coloured_range(const std::vector<double>& values, const ColourScale& scale) {
+    std::vector<double> sorted;
+    for (const double value : values)
+        if (std::isfinite(value)) sorted.push_back(value);
+    std::sort(sorted.begin(), sorted.end());
+    const auto last = static_cast<double>(sorted.size() - 1);
+    double low = sorted[static_cast<std::size_t>(0.01 * last)], high = sorted[static_cast<std::size_t>(std::ceil(0.99 * last))];
+    if (scale.diverging) high = std::max(std::abs(low), std::abs(high)), low = -high;
+    return 2 * (high - low) < scale.maximum - scale.minimum && high > low ? std::pair(low, high)
+                                                                          : std::pair(scale.minimum, scale.maximum);
 }
 
 std::string values_text(const Descriptor& descriptor) {
@@ -149,6 +173,7 @@ std::size_t Page::add(const PageObject& object) {
     const AnnotationSet none;
     const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : none;
     const auto parents = topology(mesh, set).order.parent;
+    PathSearch paths(mesh);
     JsonValue annotations(rapidjson::kArrayType);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& one = set.annotations[i];
@@ -159,6 +184,9 @@ std::size_t Page::add(const PageObject& object) {
                 JsonValue entry = json_object(
                     allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
                     json_list(pins_of_measure(mesh, measure), allocator, [&](const Triple& p) { return relative(p); }));
+                const auto way =
+                    json_list(way_of(paths, mesh, measure), allocator, [&](const Triple& at) { return relative(at); });
+                add_given(entry, allocator, "way", way);
                 if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
                 add_given(entry, allocator, "stale", measure.stale);
                 measures.PushBack(entry, allocator);
@@ -190,6 +218,7 @@ std::size_t Page::add(const PageObject& object) {
                 "give a map with a number for each vertex");
         const ColourScale scale = scale_of({&map.values}, map.name);
         const double range = scale.maximum - scale.minimum;
+        const auto [from, to] = coloured_range(map.values, scale);
         std::vector<std::uint16_t> steps;
         std::vector<std::size_t> histogram(40, 0);
         for (const double value : map.values) {
@@ -199,13 +228,14 @@ std::size_t Page::add(const PageObject& object) {
             }
             const double share = range > 0 ? std::clamp((value - scale.minimum) / range, 0.0, 1.0) : 0.5;
             steps.push_back(static_cast<std::uint16_t>(std::lround(share * (no_value - 1))));
-            ++histogram[std::min(histogram.size() - 1, static_cast<std::size_t>(share * static_cast<double>(histogram.size())))];
+            const double place = to > from ? std::clamp((value - from) / (to - from), 0.0, 1.0) : 0.5;
+            ++histogram[std::min(histogram.size() - 1, static_cast<std::size_t>(place * static_cast<double>(histogram.size())))];
         }
         const std::string_view bytes(reinterpret_cast<const char*>(steps.data()), 2 * steps.size());
-        maps.PushBack(
-            json_object(allocator, "name", map.name, "label", map.label.empty() ? map.name : map.label, "blob", add_bytes(bytes),
-                        "minimum", scale.minimum, "maximum", scale.maximum, "diverging", scale.diverging, "histogram", histogram),
-            allocator);
+        maps.PushBack(json_object(allocator, "name", map.name, "label", map.label.empty() ? map.name : map.label, "blob",
+                                  add_bytes(bytes), "minimum", scale.minimum, "maximum", scale.maximum, "from", from, "to", to,
+                                  "diverging", scale.diverging, "histogram", histogram),
+                      allocator);
     }
 
     JsonValue relations(rapidjson::kArrayType);

@@ -1,6 +1,7 @@
 import { gradient } from "./colours";
 import type { Blobs, Language } from "./data";
 import { Details } from "./details";
+import { Graph } from "./graph";
 import { Legend } from "./legend";
 import { address } from "./main";
 import { Picture, view } from "./picture";
@@ -51,9 +52,11 @@ function ColourBar() {
   const map = page.objects[state.object.value].maps[state.map.value];
   if (!map) return null;
   const most = Math.max(1, ...map.histogram);
-  const middle = (map.minimum + map.maximum) / 2;
+  const middle = (map.from + map.to) / 2;
+  const low = (map.minimum < map.from ? "≤ " : "") + numberText(map.from);
+  const high = (map.maximum > map.to ? "≥ " : "") + numberText(map.to);
   return (
-    <div class="bar" role="img" aria-label={`${map.label}: ${numberText(map.minimum)} – ${numberText(map.maximum)}`}>
+    <div class="bar" role="img" aria-label={`${map.label}: ${low} – ${high}`}>
       <div class="histogram">
         {map.histogram.map((count, i) => (
           <span key={i} style={{ height: `${(100 * count) / most}%` }} title={numberText(count)} />
@@ -61,9 +64,9 @@ function ColourBar() {
       </div>
       <div class="colours" style={{ background: gradient(map.diverging) }} />
       <div class="ends">
-        <span>{numberText(map.minimum)}</span>
+        <span>{low}</span>
         <span>{numberText(middle)}</span>
-        <span>{numberText(map.maximum)}</span>
+        <span>{high}</span>
       </div>
       <div class="quiet">{map.label}</div>
     </div>
@@ -214,6 +217,7 @@ export function App({ blobs }: { blobs: Blobs }) {
             </aside>
           </div>
         )}
+        {about && <Graph />}
         <Tables blobs={blobs} />
         {page.notes.length > 0 && (
           <section aria-labelledby="notes-title">

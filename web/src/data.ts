@@ -11,6 +11,8 @@ export interface Measure {
   stale?: boolean;
   /** Pins, in the object's coordinates less `origin`. */
   pins: [number, number, number][];
+  /** What it runs along, of a tape along edges. */
+  way?: [number, number, number][];
 }
 
 export interface Attribute {
@@ -42,6 +44,9 @@ export interface ValueMap {
   blob: number;
   minimum: number;
   maximum: number;
+  /** What the colours and the histogram go over; what lies beyond has the colour of the end. */
+  from: number;
+  to: number;
   diverging: boolean;
   histogram: number[];
 }

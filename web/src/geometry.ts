@@ -264,9 +264,13 @@ export class DrawnObject {
     const colours = colour.array as Float32Array;
     const table = Array.from({ length: 256 }, (_, i) => colourOf(i / 255).map((c) => linear[c]));
     const { triangles } = this.shape;
+    const { minimum, maximum, from, to } = this.about.maps[map];
+    const none = [0.5, 0.5, 0.5];
+    const scale = (255 * (maximum - minimum)) / 65534 / (to - from || 1);
+    const offset = (255 * (minimum - from)) / (to - from || 1);
     for (let i = 0; i < triangles.length; ++i) {
       const value = values[triangles[i]];
-      const entry = value === 65535 ? [0.5, 0.5, 0.5] : table[Math.round((255 * value) / 65534)];
+      const entry = value === 65535 ? none : table[Math.min(255, Math.max(0, Math.round(offset + scale * value)))];
       colours[3 * i] = entry[0];
       colours[3 * i + 1] = entry[1];
       colours[3 * i + 2] = entry[2];

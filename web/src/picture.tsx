@@ -80,21 +80,21 @@ function labelPlaces(width: number, height: number): Label[] {
 }
 
 /** Lines of measures: of the chosen annotation, and what was measured by hand. */
-function rulers(): { from: { x: number; y: number }; to: { x: number; y: number }; text: string }[] {
+function rulers(): { from: { x: number; y: number }; to: { x: number; y: number }; text: string; ends: [boolean, boolean] }[] {
   if (!view) return [];
   const list: ReturnType<typeof rulers> = [];
   const add = (o: number, pins: THREE.Vector3[], text: string) => {
     for (let i = 1; i < pins.length; ++i) {
       const from = view!.place(drawn[o], pins[i - 1]);
       const to = view!.place(drawn[o], pins[i]);
-      if (from && to) list.push({ from, to, text: i === 1 ? text : "" });
+      if (from && to) list.push({ from, to, text: i === Math.ceil((pins.length - 1) / 2) ? text : "", ends: [i === 1, i === pins.length - 1] });
     }
   };
   const one = page.objects[state.object.value].annotations[state.chosen.value];
   for (const m of one?.measures ?? [])
     add(
       state.object.value,
-      m.pins.map((p) => new THREE.Vector3(...p)),
+      (m.way ?? m.pins).map((p) => new THREE.Vector3(...p)),
       m.value === null ? m.name : `${m.name} ${withUnit(m.value, m.unit)}`,
     );
   const { object, places } = state.measured.value;
@@ -127,9 +127,9 @@ function drawOverlay(svg: SVGSVGElement) {
       element("text", { class: css, x: one.x, y: one.y + 4, "text-anchor": one.side === 0 ? "start" : "end" }, one.text),
     );
   }
-  for (const { from, to, text } of rulers()) {
+  for (const { from, to, text, ends } of rulers()) {
     made.push(element("line", { class: "ruler", x1: from.x, y1: from.y, x2: to.x, y2: to.y }));
-    for (const pin of [from, to]) made.push(element("circle", { class: "ruler", cx: pin.x, cy: pin.y, r: 3.5 }));
+    for (const pin of [from, to].filter((_, i) => ends[i])) made.push(element("circle", { class: "ruler", cx: pin.x, cy: pin.y, r: 3.5 }));
     if (text) made.push(element("text", { class: "ruler", x: (from.x + to.x) / 2 + 6, y: (from.y + to.y) / 2 - 6 }, text));
   }
   const count = state.panes.value.length;

@@ -59,7 +59,7 @@ function DrawingView({ drawing, blobs }: { drawing: Drawing; blobs: Blobs }) {
   );
   return (
     <figure class="drawing">
-      <img src={address} alt={drawing.title} loading="lazy" />
+      <img src={address} alt={drawing.title} />
       <figcaption>{drawing.title}</figcaption>
     </figure>
   );
