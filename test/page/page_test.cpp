@@ -71,8 +71,9 @@ struct Annotated {
     explicit Annotated(const std::string& tag = "cap") {
         for (auto& p : soup.points)
             for (std::size_t k = 0; k < 3; ++k) p[k] = 7 * p[k] + 1000.0 * static_cast<double>(k + 1);
-        mesh = build_mesh(soup, "sphere");
+        mesh = build_mesh(soup);
         set.unit = "mm";
+        set.annotations.reserve(4);  // the parts are named below
         Annotation& upper = set.annotations.emplace_back();
         upper.id = 4;
         upper.tag = tag;
@@ -208,8 +209,10 @@ TEST(Page, QuantisesMapsAndTellsWhatHasNoValue) {
     const auto* steps = reinterpret_cast<const std::uint16_t*>(bytes.data());
     const double low = shown["minimum"].GetDouble(), range = shown["maximum"].GetDouble() - low;
     EXPECT_EQ(steps[3], 65535);
-    for (std::size_t i = 0; i < map.values.size(); ++i)
-        if (i != 3) EXPECT_NEAR(low + steps[i] / 65534.0 * range, map.values[i], range / 131068 * 1.001);
+    for (std::size_t i = 0; i < map.values.size(); ++i) {
+        if (i == 3) continue;
+        EXPECT_NEAR(low + steps[i] / 65534.0 * range, map.values[i], range / 131068 * 1.001);
+    }
     std::size_t counted = 0;
     for (const auto& count : shown["histogram"].GetArray()) counted += count.GetUint64();
     EXPECT_EQ(counted, map.values.size() - 1);
@@ -247,7 +250,7 @@ TEST(Page, TellsWhichObjectsHaveTheSameTriangles) {
     const Annotated one;
     Annotated moved;
     for (const Vertex v : moved.mesh.vertices()) moved.mesh.point(v) = moved.mesh.point(v) + Vector(0, 0, 0.1 * v.idx());
-    const Mesh other = build_mesh(octahedron_sphere(3), "other");
+    const Mesh other = build_mesh(octahedron_sphere(3));
     Page page("three");
     page.add(one.object());
     PageObject third;
@@ -278,7 +281,7 @@ TEST(Page, OneTriangleAndAFlatObjectAreShown) {
     TriangleSoup soup;
     soup.points = {{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}};
     soup.triangles = {{0, 1, 2}};
-    const Mesh mesh = build_mesh(soup, "triangle");
+    const Mesh mesh = build_mesh(soup);
     PageObject object;
     object.name = "triangle";
     object.mesh = &mesh;

@@ -314,6 +314,19 @@ def render(
 ) -> _RenderResult:
     """Make a picture of meshes, their annotations and maps."""
 
+class _ReportResult(Result):
+    page: Document | Bytes | Path | None
+def report(
+    results: Input | Sequence[Input],
+    page: FileName | bool | None = None,
+    *,
+    title: Text | None = None,
+    unit: Text | None = None,
+    limit: int | None = 200000,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _ReportResult:
+    """Make one HTML page of results that opens anywhere: objects in 3D, tables, drawings."""
+
 class _RunResult(Result):
     output: Folder | Path | None
 def run(
