@@ -76,8 +76,8 @@ function spread(values: Float32Array, triangles: Uint32Array): Float32Array {
 }
 
 /** How the surface is lit and marked; the same for all objects, so that it is compiled once. */
-function surfaceMaterial(blend: { value: number }, patterns: { value: number }): THREE.MeshStandardMaterial {
-  const material = new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.85, metalness: 0, side: THREE.DoubleSide });
+function surfaceMaterial(blend: { value: number }, patterns: { value: number }): THREE.MeshLambertMaterial {
+  const material = new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide });
   material.onBeforeCompile = (shader) => {
     shader.uniforms.blend = blend;
     shader.uniforms.patterns = patterns;

@@ -200,7 +200,13 @@ export function Picture() {
     const canvas = view.canvas;
     holder.current.prepend(canvas);
     const svg = overlay.current;
-    view.onMove = () => drawOverlay(svg);
+    // The tree that tells what is in sight is made once the first picture is there.
+    let soon = true;
+    view.onMove = () => {
+      if (!soon) return drawOverlay(svg);
+      soon = false;
+      setTimeout(() => drawOverlay(svg), 30);
+    };
     const stops = [
       effect(() => {
         repaint();

@@ -14,6 +14,20 @@ export interface Hit {
   point: THREE.Vector3;
 }
 
+/** Without a graphics card smooth edges cost most of the time of a picture. */
+function drawsInSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const about = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = about ? String(gl!.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+/** Half the width and height of what a pane shows, before any zoom: what is a unit large fits. */
+function halfSizes(aspect: number): [number, number] {
+  return aspect > 1 ? [aspect, 1] : [1, 1 / aspect];
+}
+
 export class View {
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: CameraControls;
@@ -24,6 +38,8 @@ export class View {
   private readonly plane = new THREE.Plane();
   private panes: DrawnObject[] = [];
   private frames: { centre: THREE.Vector3; scale: number; turn: THREE.Quaternion }[] = [];
+  /** The first view has been fitted to the canvas. */
+  private placed = false;
   private wanted = true;
   private running = false;
   clip = 1;
@@ -37,8 +53,9 @@ export class View {
     private readonly objects: DrawnObject[],
     reducedMotion: boolean,
   ) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !drawsInSoftware() });
     this.renderer.autoClear = false;
+    this.renderer.debug.checkShaderErrors = false; // asking waits until they are made
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -20, 20);
     this.camera.up.set(0, 0, 1);
     this.controls = new CameraControls(this.camera, canvas);
@@ -101,14 +118,16 @@ export class View {
     const back = new THREE.Vector3(1.5, -2.6, 1.1).normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
     const up = back.clone().cross(right);
+    const [width, height] = this.paneSize();
+    const [x, y] = halfSizes(width > 0 && height > 0 ? width / height : 1.6);
     let most = 0;
     for (const one of this.panes.length > 0 ? this.panes : this.objects.slice(0, 1))
       for (let corner = 0; corner < 8; ++corner) {
         const at = new THREE.Vector3(...one.about.size.map((x, k) => (corner >> k) % 2 * x));
         one.group.localToWorld(at);
-        most = Math.max(most, Math.abs(at.dot(right)), Math.abs(at.dot(up)));
+        most = Math.max(most, Math.abs(at.dot(right)) / x, Math.abs(at.dot(up)) / y);
       }
-    return most > 0 ? 1 / most : 1;
+    return most > 0 ? 0.97 / most : 1;
   }
 
   look(azimuth: number, elevation: number) {
@@ -165,9 +184,12 @@ export class View {
       renderer.setSize(clientWidth, clientHeight, false);
     }
     const [width, height] = this.paneSize();
-    const half = 1.06;
-    const aspect = width / height;
-    const [x, y] = aspect > 1 ? [half * aspect, half] : [half, half / aspect];
+    const [x, y] = halfSizes(width / height);
+    if (!this.placed) {
+      this.placed = true;
+      void this.controls.zoomTo(this.homeZoom(), false);
+      this.controls.update(0);
+    }
     if (this.camera.right !== x || this.camera.top !== y) {
       Object.assign(this.camera, { left: -x, right: x, top: y, bottom: -y });
       this.camera.updateProjectionMatrix();
@@ -242,6 +264,7 @@ export class View {
     const numbers = text.split(",").map(Number);
     if (numbers.length !== 7 || !numbers.every(Number.isFinite) || numbers[6] <= 0) return;
     const [ex, ey, ez, tx, ty, tz, zoom] = numbers;
+    this.placed = true;
     void this.controls.setLookAt(ex, ey, ez, tx, ty, tz, false);
     void this.controls.zoomTo(zoom, false);
     this.draw();
