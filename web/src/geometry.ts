@@ -63,16 +63,58 @@ function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Arra
   return normals;
 }
 
-/** One value for each corner of each triangle, from one for each vertex. */
-function spread(values: Float32Array, triangles: Uint32Array): Float32Array {
-  const made = new Float32Array(3 * triangles.length);
-  for (let i = 0; i < triangles.length; ++i) {
-    const v = 3 * triangles[i];
+/** The entries of `values` (three for each vertex) of these vertices. */
+function gathered(values: Float32Array, vertices: Uint32Array): Float32Array {
+  const made = new Float32Array(3 * vertices.length);
+  for (let i = 0; i < vertices.length; ++i) {
+    const v = 3 * vertices[i];
     made[3 * i] = values[v];
     made[3 * i + 1] = values[v + 1];
     made[3 * i + 2] = values[v + 2];
   }
   return made;
+}
+
+/** Triangles by the set of regions that they lie in: a number for each, and the regions of each number. */
+function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: Uint32Array; members: number[][] } {
+  const of = new Uint32Array(triangles);
+  const members: number[][] = [[]];
+  regions.forEach((faces, region) => {
+    if (!faces) return;
+    const grown = new Map<number, number>();
+    for (const face of faces) {
+      let set = grown.get(of[face]);
+      if (set === undefined) {
+        set = members.push([...members[of[face]], region]) - 1;
+        grown.set(of[face], set);
+      }
+      of[face] = set;
+    }
+  });
+  return { of, members };
+}
+
+/** Vertices that are drawn: one for each vertex and set of regions that meets there, so that each has one colour. */
+function splitVertices(vertices: number, triangles: Uint32Array, sets: Uint32Array): { source: Uint32Array; set: Uint32Array; index: Uint32Array } {
+  const first = new Int32Array(vertices).fill(-1);
+  const source: number[] = [];
+  const set: number[] = [];
+  const next: number[] = [];
+  const index = new Uint32Array(triangles.length);
+  for (let i = 0; i < triangles.length; ++i) {
+    const v = triangles[i];
+    const wanted = sets[(i / 3) | 0];
+    let at = first[v];
+    while (at >= 0 && set[at] !== wanted) at = next[at];
+    if (at < 0) {
+      at = source.push(v) - 1;
+      set.push(wanted);
+      next.push(first[v]);
+      first[v] = at;
+    }
+    index[i] = at;
+  }
+  return { source: Uint32Array.from(source), set: Uint32Array.from(set), index };
 }
 
 /** How the surface is lit and marked; the same for all objects, so that it is compiled once. */
@@ -129,6 +171,8 @@ export class DrawnObject {
   cage: THREE.Object3D | undefined;
   private bvhMade: MeshBVH | undefined;
   private readonly normals: Float32Array;
+  private readonly sets: ReturnType<typeof setsOf>;
+  private readonly split: ReturnType<typeof splitVertices>;
   private other: Shape | undefined;
 
   constructor(
@@ -138,17 +182,21 @@ export class DrawnObject {
     private readonly blobs: Blobs,
   ) {
     const { positions, triangles } = shape;
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(spread(positions, triangles), 3));
+    this.regions = about.annotations.map((one) => (one.faces ? readRuns(blobs.get(one.faces.blob)) : undefined));
+    this.sets = setsOf(triangles.length / 3, this.regions);
+    this.split = splitVertices(positions.length / 3, triangles, this.sets.of);
     this.normals = normalsOf(positions, triangles);
-    geometry.setAttribute("normal", new THREE.BufferAttribute(spread(this.normals, triangles), 3));
+    const geometry = new THREE.BufferGeometry();
+    const count = this.split.source.length;
+    geometry.setIndex(new THREE.BufferAttribute(this.split.index, 1));
+    geometry.setAttribute("position", new THREE.BufferAttribute(gathered(positions, this.split.source), 3));
+    geometry.setAttribute("normal", new THREE.BufferAttribute(gathered(this.normals, this.split.source), 3));
     geometry.setAttribute("otherPosition", geometry.getAttribute("position"));
     geometry.setAttribute("otherNormal", geometry.getAttribute("normal"));
-    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * triangles.length), 3));
-    geometry.setAttribute("pattern", new THREE.BufferAttribute(new Uint8Array(triangles.length), 1));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * count), 3));
+    geometry.setAttribute("pattern", new THREE.BufferAttribute(new Uint8Array(count), 1));
     this.mesh = new THREE.Mesh(geometry, surface);
     this.mesh.frustumCulled = false;
-    this.regions = about.annotations.map((one) => (one.faces ? readRuns(blobs.get(one.faces.blob)) : undefined));
     this.top = new Int32Array(triangles.length / 3);
     this.group.add(this.mesh, this.pins, this.chosen);
     about.annotations.forEach((one, i) => {
@@ -213,8 +261,9 @@ export class DrawnObject {
     if (this.other === other?.shape) return;
     this.other = other?.shape;
     const geometry = this.mesh.geometry;
-    geometry.setAttribute("otherPosition", (other ?? this).mesh.geometry.getAttribute("position"));
-    geometry.setAttribute("otherNormal", (other ?? this).mesh.geometry.getAttribute("normal"));
+    const of = (values: Float32Array) => new THREE.BufferAttribute(gathered(values, this.split.source), 3);
+    geometry.setAttribute("otherPosition", other ? of(other.shape.positions) : geometry.getAttribute("position"));
+    geometry.setAttribute("otherNormal", other ? of(other.normals) : geometry.getAttribute("normal"));
   }
 
   /** Where a vertex is drawn now. */
@@ -225,31 +274,29 @@ export class DrawnObject {
 
   /** Colours by annotations, those that are shown; smaller ones over larger ones. `chosen`: the others are paler. */
   paint(isShown: (annotation: number) => boolean, chosen = -1) {
-    const { about } = this;
-    this.top.fill(-1);
-    const order = about.annotations
-      .map((_, i) => i)
-      .filter((i) => this.regions[i] && isShown(i))
-      .sort((a, b) => this.regions[b]!.length - this.regions[a]!.length || a - b);
-    for (const i of order) for (const face of this.regions[i]!) this.top[face] = i;
-    const selected = chosen >= 0 && this.regions[chosen] ? new Set(this.regions[chosen]) : undefined;
+    const { about, sets, split } = this;
+    // Of each set the smallest region that is shown.
+    const topOf = sets.members.map((regions) => {
+      let best = -1;
+      for (const i of regions) if (isShown(i) && (best < 0 || this.regions[i]!.length < this.regions[best]!.length)) best = i;
+      return best;
+    });
+    for (let face = 0; face < this.top.length; ++face) this.top[face] = topOf[sets.of[face]];
+    const selects = chosen >= 0 && this.regions[chosen] !== undefined;
+    const table = sets.members.map((regions, set) => {
+      const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 0.4] : [1, 0];
+      return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * linear[c] + pale);
+    });
     const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
     const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
     const colours = colour.array as Float32Array;
     const patterns = pattern.array as Uint8Array;
-    for (let face = 0; face < this.top.length; ++face) {
-      const i = this.top[face];
-      const [r, g, b] = i < 0 ? clay : about.annotations[i].colour;
-      const [own, pale] = selected && !selected.has(face) ? [0.35, 0.4] : [1, 0];
-      const x = own * linear[r] + pale;
-      const y = own * linear[g] + pale;
-      const z = own * linear[b] + pale;
-      for (let corner = 3 * face; corner < 3 * face + 3; ++corner) {
-        colours[3 * corner] = x;
-        colours[3 * corner + 1] = y;
-        colours[3 * corner + 2] = z;
-        patterns[corner] = i < 0 ? 0 : (i % 12) + 1;
-      }
+    for (let i = 0; i < split.set.length; ++i) {
+      const entry = table[split.set[i]];
+      colours[3 * i] = entry[0];
+      colours[3 * i + 1] = entry[1];
+      colours[3 * i + 2] = entry[2];
+      patterns[i] = topOf[split.set[i]] < 0 ? 0 : (topOf[split.set[i]] % 12) + 1;
     }
     colour.needsUpdate = true;
     pattern.needsUpdate = true;
@@ -263,13 +310,13 @@ export class DrawnObject {
     const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
     const colours = colour.array as Float32Array;
     const table = Array.from({ length: 256 }, (_, i) => colourOf(i / 255).map((c) => linear[c]));
-    const { triangles } = this.shape;
+    const { source } = this.split;
     const { minimum, maximum, from, to } = this.about.maps[map];
     const none = [0.5, 0.5, 0.5];
     const scale = (255 * (maximum - minimum)) / 65534 / (to - from || 1);
     const offset = (255 * (minimum - from)) / (to - from || 1);
-    for (let i = 0; i < triangles.length; ++i) {
-      const value = values[triangles[i]];
+    for (let i = 0; i < source.length; ++i) {
+      const value = values[source[i]];
       const entry = value === 65535 ? none : table[Math.min(255, Math.max(0, Math.round(offset + scale * value)))];
       colours[3 * i] = entry[0];
       colours[3 * i + 1] = entry[1];

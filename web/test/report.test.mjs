@@ -37,7 +37,10 @@ async function open(file, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1100, height: 800 }, ...options });
   const page = await context.newPage();
   const told = [];
-  page.on("console", (message) => told.push(message.text()));
+  page.on("console", (message) => {
+    // What the browser says of its own drawing without a graphics card is not the page's.
+    if (!message.text().includes("GL Driver Message")) told.push(message.text());
+  });
   page.on("pageerror", (error) => told.push(String(error)));
   page.on("request", (request) => {
     if (!/^(file|data|blob):/.test(request.url())) told.push("request: " + request.url());
@@ -92,7 +95,7 @@ try {
   await test("draws the object, says nothing on the console, asks no network", async () => {
     const { page, told, close } = await open(at("pot.html"));
     await page.waitForTimeout(300);
-    assert.deepEqual(told, []); // before the pixels are read, which the driver comments on
+    assert.deepEqual(told, []);
     const drawn = await page.evaluate(() => {
       const { view } = globalThis.ostraka;
       view.paint();
@@ -178,7 +181,8 @@ try {
       let most = 0;
       for (let i = 0; i < other.shape.triangles.length; ++i) {
         const v = other.vertex(other.shape.triangles[i]);
-        most = Math.max(most, Math.abs(target.getX(i) - v.x), Math.abs(target.getY(i) - v.y), Math.abs(target.getZ(i) - v.z));
+        const at = mesh.index.getX(i);
+        most = Math.max(most, Math.abs(target.getX(at) - v.x), Math.abs(target.getY(at) - v.y), Math.abs(target.getZ(at) - v.z));
       }
       return { most, blend: state.blend.value, partner: state.blendPartner.value };
     });
