@@ -91,7 +91,7 @@ constexpr OperationEntry entries[]{
     {"deform", "edit a shape so that its meaning survives (exit code 3: a constraint does not hold)", make_deform},
     {"fit", "complete an object from fragments by a template of its class, and say whether they go together (exit code 3: they do not, or it cannot be told)", make_fit},
     {"pair", "lay two fragments together by the break they share; exit code 3 if it cannot be told how", make_pair},
-    {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble},
+    {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble, 2},
     {"render", "make a picture of meshes, their annotations and maps", make_render},
     {"report", "make one HTML page of results that opens anywhere: objects in 3D, tables, drawings", make_report},
     {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run},
