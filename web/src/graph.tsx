@@ -42,6 +42,8 @@ export function Graph() {
   const [off, setOff] = useState<ReadonlySet<string>>(new Set());
   if (types.length === 0) return null;
   const rows = rowsOf();
+  /** The row of what contains the one of row i. */
+  const above = (i: number) => rows.findIndex((one) => one.annotation === annotations[rows[i].annotation].parent);
   const placeOf = new Map(rows.map((one, i) => [one.annotation, i]));
   const list = relations
     .filter((one) => one.type !== "containment" && !off.has(one.type))
@@ -96,7 +98,7 @@ export function Graph() {
           {rows.map(({ annotation, depth }, i) => (
             <g key={annotation} onClick={() => choose(annotation)} class={chosen.value === annotation ? "node chosen" : "node"}>
               <rect x={0} y={i * row} width={names - 8} height={row} class="back" />
-              {depth > 0 && <path class="branch" d={`M${16 * depth - 8} ${i * row - row / 2}V${i * row + row / 2}h8`} />}
+              {depth > 0 && <path class="branch" d={`M${16 * depth - 8} ${above(i) * row + 18}V${i * row + row / 2}h8`} />}
               <rect x={16 * depth + 2} y={i * row + 6} width={11} height={11} fill={`rgb(${annotations[annotation].colour.join(",")})`} />
               <text x={16 * depth + 18} y={i * row + 16}>
                 {annotations[annotation].tag || `#${annotations[annotation].id}`}
