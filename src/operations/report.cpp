@@ -26,12 +26,29 @@ struct ShownObject {
     std::string unit;
 };
 
+/// Of each element the mean of the finite values that were added; none without any.
+class Means {
+public:
+    explicit Means(std::size_t elements) : sums_(elements, 0), counts_(elements, 0) {}
+    void add(std::size_t element, double value) {
+        if (std::isfinite(value)) sums_[element] += value, counts_[element] += 1;
+    }
+    [[nodiscard]] std::vector<double> values() const {
+        std::vector<double> means;
+        for (std::size_t i = 0; i < sums_.size(); ++i) means.push_back(counts_[i] > 0 ? sums_[i] / counts_[i] : std::nan(""));
+        return means;
+    }
+
+private:
+    std::vector<double> sums_, counts_;
+};
+
 struct MakeReport final : Operation {
     void describe(Parameters& p) override {
-        p.input(
-             "results", Kind::text, results,
-             "what to show: meshes, each followed by what belongs to it (.ant.json, .graph.json, .cage.ply, maps .npy); "
-             "templates (.template.json); tables (.csv) and drawings (.svg); folders of such files, such as a run's or a fit's")
+        p.input("results", Kind::text, results,
+                "what to show: meshes, each followed by what belongs to it (.ant.json, .graph.json, .cage.ply, maps .npy); "
+                "templates (.template.json); tables (.csv) and drawings (.svg); folders of such files, such as a run's or a "
+                "fit's, but for cages and maps")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});
@@ -125,7 +142,7 @@ struct MakeReport final : Operation {
         for (const Finding& finding : known.findings) notes.push_back(name + ": " + finding.text);
     }
 
-    /// What lies in the folder itself, by name; of meshes those beside which annotations are, or all where none has any.
+    /// Meshes with the annotations beside them, templates, tables and drawings that lie in the folder itself, by name.
     void read_folder(Context& context, const Path& folder) {
         std::vector<std::string> names = files_in(folder);
         std::sort(names.begin(), names.end());
@@ -134,7 +151,7 @@ struct MakeReport final : Operation {
             const std::string kind = extension(name);
             const bool shown = name.ends_with(".template.json") || kind == ".csv" || kind == ".svg" || kind == ".ply" ||
                                kind == ".obj" || kind == ".off" || kind == ".stl";
-            if (!shown || name.front() == '.') continue;
+            if (!shown || name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
             in_file((folder / name).string(), [&] { read(context, folder / name, name); });
             ++read_here;
         }
@@ -159,12 +176,10 @@ struct MakeReport final : Operation {
                            " faces",
                        "give one value an element");
         // The page colours vertices: each gets the mean of its faces.
-        std::vector<double> sums(mesh.number_of_vertices(), 0), counts(mesh.number_of_vertices(), 0);
+        Means means(mesh.number_of_vertices());
         for (const Face face : mesh.faces())
-            for (const Vertex v : corners(mesh, face))
-                if (std::isfinite(values[face.idx()])) sums[v.idx()] += values[face.idx()], counts[v.idx()] += 1;
-        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = counts[i] > 0 ? sums[i] / counts[i] : std::nan("");
-        return sums;
+            for (const Vertex v : corners(mesh, face)) means.add(v.idx(), values[face.idx()]);
+        return means.values();
     }
 
     void read_table(const Path& file, const std::string& name) {
@@ -233,12 +248,10 @@ struct MakeReport final : Operation {
             whole.deviation = std::max(whole.deviation, surface.closest(one.file.mesh.point(v)).distance);
         shown.whole = whole;
         for (PageMap& map : one.maps) {
-            std::vector<double> sums(bound.mesh.number_of_vertices(), 0), counts(sums.size(), 0);
+            Means means(bound.mesh.number_of_vertices());
             for (std::size_t i = 0; i < map.values.size(); ++i)
-                if (const Index to = result.vertex_map[i]; to != no_index && std::isfinite(map.values[i]))
-                    sums[to] += map.values[i], counts[to] += 1;
-            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = counts[i] > 0 ? sums[i] / counts[i] : std::nan("");
-            shown.maps.push_back({map.name, map.label, std::move(sums)});
+                if (const Index to = result.vertex_map[i]; to != no_index) means.add(to, map.values[i]);
+            shown.maps.push_back({map.name, map.label, means.values()});
         }
         if (one.set && bound.annotations)
             for (Annotation& annotation : bound.annotations->annotations)

@@ -123,6 +123,17 @@ Box box_of(const TriangleSoup& soup) {
     return box;
 }
 
+/// Colours at even steps of a scale; it is linear between them.
+std::vector<std::array<int, 3>> colours_of(const ColourScale& scale) {
+    constexpr int steps = 8;
+    std::vector<std::array<int, 3>> colours;
+    for (int i = 0; i <= steps; ++i) {
+        const Rgb colour = colour_of(scale, scale.minimum + (scale.maximum - scale.minimum) * i / steps);
+        colours.push_back({colour.red, colour.green, colour.blue});
+    }
+    return colours;
+}
+
 /// What the colours go over: all values, or, where a few lie far out, what holds 98 % of them.
 std::pair<double, double> coloured_range(const std::vector<double>& values, const ColourScale& scale) {
     std::vector<double> sorted;
@@ -234,7 +245,7 @@ std::size_t Page::add(const PageObject& object) {
         const std::string_view bytes(reinterpret_cast<const char*>(steps.data()), 2 * steps.size());
         maps.PushBack(json_object(allocator, "name", map.name, "label", map.label.empty() ? map.name : map.label, "blob",
                                   add_bytes(bytes), "minimum", scale.minimum, "maximum", scale.maximum, "from", from, "to", to,
-                                  "diverging", scale.diverging, "histogram", histogram),
+                                  "colours", colours_of(scale), "histogram", histogram),
                       allocator);
     }
 

@@ -213,6 +213,9 @@ TEST(Page, QuantisesMapsAndTellsWhatHasNoValue) {
         if (i == 3) continue;
         EXPECT_NEAR(low + steps[i] / 65534.0 * range, map.values[i], range / 131068 * 1.001);
     }
+    EXPECT_EQ(shown["colours"].Size(), 9U);
+    EXPECT_EQ(shown["colours"][0][0].GetInt(), 68);
+    EXPECT_EQ(shown["colours"][8][2].GetInt(), 37);
     std::size_t counted = 0;
     for (const auto& count : shown["histogram"].GetArray()) counted += count.GetUint64();
     EXPECT_EQ(counted, map.values.size() - 1);
@@ -314,4 +317,12 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     std::filesystem::create_directory(scratch / "empty");
     refuse((scratch / "empty").string(), 1, "nothing that a page can show");
     EXPECT_EQ(make(data + "vase.ply " + (scratch / "c.png").string()).code, 2);
+    // A folder: its cage is no object of its own.
+    for (const char* name : {"vase.ply", "vase.ant.json"})
+        write_file(scratch / ("empty/" + std::string(name)), read_file(data + name));
+    write_file(scratch / "empty/vase.cage.ply", read_file(data + "vase.ply"));
+    ASSERT_EQ(make((scratch / "empty").string() + " " + (scratch / "d.html").string()).code, 0);
+    const ReadPage folder(read_file(scratch / "d.html"));
+    ASSERT_EQ(folder.data["objects"].Size(), 1U);
+    EXPECT_GT(folder.data["objects"][0]["annotations"].Size(), 0U);
 }

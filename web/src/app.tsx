@@ -62,7 +62,7 @@ function ColourBar() {
           <span key={i} style={{ height: `${(100 * count) / most}%` }} title={numberText(count)} />
         ))}
       </div>
-      <div class="colours" style={{ background: gradient(map.diverging) }} />
+      <div class="colours" style={{ background: gradient(map.colours) }} />
       <div class="ends">
         <span>{low}</span>
         <span>{numberText(middle)}</span>

@@ -47,7 +47,8 @@ export interface ValueMap {
   /** What the colours and the histogram go over; what lies beyond has the colour of the end. */
   from: number;
   to: number;
-  diverging: boolean;
+  /** At even steps from `from` to `to`: those of the command's own pictures. */
+  colours: [number, number, number][];
   histogram: number[];
 }
 

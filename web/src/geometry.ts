@@ -266,12 +266,6 @@ export class DrawnObject {
     geometry.setAttribute("otherNormal", other ? of(other.normals) : geometry.getAttribute("normal"));
   }
 
-  /** Where a vertex is drawn now. */
-  drawn(vertex: number, share: number): THREE.Vector3 {
-    const at = this.vertex(vertex);
-    return this.other ? at.lerp(new THREE.Vector3().fromArray(this.other.positions, 3 * vertex), share) : at;
-  }
-
   /** Colours by annotations, those that are shown; smaller ones over larger ones. `chosen`: the others are paler. */
   paint(isShown: (annotation: number) => boolean, chosen = -1) {
     const { about, sets, split } = this;

@@ -183,7 +183,7 @@ export function repaint() {
     const of = drawn[o];
     const map = state.map.value;
     if (map >= 0 && map < of.about.maps.length)
-      of.paintMap(map, (share) => colourOf(share, of.about.maps[map].diverging));
+      of.paintMap(map, (share) => colourOf(share, of.about.maps[map].colours));
     else of.paint((i) => state.isShown(o, i), o === state.object.value ? chosen : -1);
     if (of.cage) of.cage.visible = state.cage.value;
   }

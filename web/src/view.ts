@@ -138,13 +138,6 @@ export class View {
     this.draw();
   }
 
-  /** So that a place of an object is in the middle. */
-  lookAt(object: DrawnObject, place: THREE.Vector3) {
-    const at = object.group.localToWorld(place.clone());
-    void this.controls.moveTo(at.x, at.y, at.z, true);
-    this.draw();
-  }
-
   /** A picture is drawn soon; many wishes make one picture. */
   draw() {
     this.wanted = true;
