@@ -50,6 +50,49 @@ export interface ValueMap {
   /** At even steps from `from` to `to`: those of the command's own pictures. */
   colours: [number, number, number][];
   histogram: number[];
+  /** The steps are indices in this list, if it is there: names instead of numbers. `histogram` has an entry for each. */
+  categories?: { text: string; colour: [number, number, number] }[];
+}
+
+/** What a plane cuts out of an object. */
+export interface Slice {
+  height: number;
+  /** The plane's frame, in the object's coordinates less `origin`. */
+  origin: [number, number, number];
+  u: [number, number, number];
+  v: [number, number, number];
+  /** In the order of `Slices.columns`. */
+  values: (number | null)[];
+  /** Their points lie one after the other in `Slices.blob`. */
+  contours: { points: number; closed: boolean; hole: boolean }[];
+}
+
+export interface Slices {
+  unit: string;
+  columns: { name: string; title: string; unit: string }[];
+  /** By ascending height. */
+  levels: Slice[];
+  /** Along u and v, two 32 bit floats for each point of all contours of all levels. */
+  blob: number;
+  /** The heights between which the object is tubular. */
+  tube?: [number, number];
+}
+
+/** What became of a constraint in a deformation. */
+export interface Constraint {
+  type: string;
+  /** Indices in `annotations`. */
+  members: number[];
+  weight: number;
+  hard: boolean;
+  /** Verdicts before and after, in words, and whether it holds after; undefined: it cannot be told. */
+  before: string;
+  verdict: string;
+  holds?: boolean;
+  text: string;
+  deviations: { quantity: string; before: number | null; value: number | null; tolerance: number | null; unit: string }[];
+  /** Of the solver: how far the points are from where the constraint puts them. */
+  residual?: { mean: number; largest: number };
 }
 
 export interface PageObject {
@@ -67,6 +110,12 @@ export interface PageObject {
   maps: ValueMap[];
   cage?: { geometry: number; vertices: number; origin: [number, number, number] };
   relations: Relation[];
+  constraints?: Constraint[];
+  /** Constraints that cannot hold together, in words. */
+  conflicts?: string[];
+  slices?: Slices;
+  /** Indices in `annotations` of the parts that a slider moves apart (the fragments of an assembly). */
+  parts?: number[];
   /** Objects of one number have the same triangles: one turns into the other. */
   blend?: number;
 }
@@ -104,8 +153,22 @@ export interface Drawing {
   blob: number;
 }
 
+/** An object of a collection, read when it is asked for. */
+export interface Entry {
+  name: string;
+  /** Beside the page: a script that calls `ostrakaObject(file, data, bytes)` with a page of this one object. */
+  file: string;
+  /** Beside the page: a PNG. */
+  thumbnail: string;
+  vertices: number;
+  faces: number;
+  tags: string[];
+}
+
 export interface PageData {
   version: number;
+  /** Of a collection: then `objects` is empty, and the objects that rows of tables name are indices here. */
+  collection?: Entry[];
   title: string;
   notes: string[];
   provenance: string;
