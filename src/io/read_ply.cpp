@@ -103,27 +103,30 @@ public:
         return std::move(soup_);
     }
 
-    std::vector<std::array<double, 3>> vectors(const std::array<std::string, 3>& names) {
-        std::vector<std::array<double, 3>> result;
+    /// The real properties of an element that `wanted` takes, in the order of the file; nothing where there is no such element.
+    template <class Wanted>
+    std::vector<PlyColumn> columns(std::string_view of, Wanted wanted) {
+        std::vector<PlyColumn> result;
         for (const PlyElement& element : header_.elements) {
             check_size(element);
-            if (element.name != "vertex") {
+            if (element.name != of) {
                 skip_element(element);
                 continue;
             }
-            std::vector<std::size_t> axis(element.properties.size(), 3);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto found = std::find_if(element.properties.begin(), element.properties.end(), [&](const PlyProperty& p) {
-                    return p.name == names[k] && !p.is_list && is_real(p.type);
-                });
-                if (found == element.properties.end()) return {};
-                axis[static_cast<std::size_t>(found - element.properties.begin())] = k;
+            constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+            std::vector<std::size_t> place(element.properties.size(), none);
+            for (std::size_t k = 0; k < place.size(); ++k) {
+                const PlyProperty& property = element.properties[k];
+                if (property.is_list || !is_real(property.type) || !wanted(property.name)) continue;
+                place[k] = result.size();
+                result.push_back({property.name, {}});
             }
-            result.resize(element.count);
+            if (result.empty()) break;
+            for (PlyColumn& column : result) column.values.reserve(element.count);
             for (std::size_t i = 0; i < element.count; ++i) {
                 rows_.begin(element, i);
-                for (std::size_t k = 0; k < axis.size(); ++k) {
-                    if (axis[k] < 3) result[i][axis[k]] = rows_.value(element.properties[k].type);
+                for (std::size_t k = 0; k < place.size(); ++k) {
+                    if (place[k] != none) result[place[k]].values.push_back(rows_.value(element.properties[k].type));
                     else skip_property(element.properties[k]);
                 }
                 rows_.end(element, i);
@@ -358,7 +361,31 @@ namespace ostraka {
 std::vector<std::array<double, 3>> read_ply_vectors(const Path& file, const std::array<std::string, 3>& names) {
     const std::string bytes = read_file(file);
     if (!io::looks_like_ply(bytes)) return {};
-    return io::read_body(bytes, file.string(), [&](auto body) { return body.vectors(names); });
+    const auto wanted = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    const auto columns = io::read_body(bytes, file.string(), [&](auto body) { return body.columns("vertex", wanted); });
+    std::array<const std::vector<double>*, 3> axes{};
+    for (std::size_t k = 0; k < 3; ++k)
+        for (const PlyColumn& column : columns)
+            if (column.name == names[k]) axes[k] = &column.values;
+    std::vector<std::array<double, 3>> result;
+    if (axes[0] == nullptr || axes[1] == nullptr || axes[2] == nullptr) return result;
+    for (std::size_t i = 0; i < axes[0]->size(); ++i) result.push_back({(*axes[0])[i], (*axes[1])[i], (*axes[2])[i]});
+    return result;
+}
+
+PlyNumbers read_ply_numbers(const Path& file) {
+    const std::string bytes = read_file(file);
+    if (!io::looks_like_ply(bytes)) return {};
+    const auto of = [&](const char* element) {
+        const auto wanted = [](const std::string& name) {
+            const std::initializer_list<const char*> known{"x",     "y",    "z",     "nx", "ny", "nz", "red",
+                                                           "green", "blue", "alpha", "s",  "t",  "u",  "v"};
+            return std::find(known.begin(), known.end(), name) == known.end() && !name.starts_with("texture_") &&
+                   !name.starts_with("diffuse_");
+        };
+        return io::read_body(bytes, file.string(), [&](auto body) { return body.columns(element, wanted); });
+    };
+    return {of("vertex"), of("face")};
 }
 
 }  // namespace ostraka

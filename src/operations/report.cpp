@@ -1,15 +1,21 @@
 // report: one HTML page of results, objects in 3D with tables and drawings, that opens anywhere without a network.
+#include "annotated_scene.h"
 #include "operations.h"
+#include "page_results.h"
 
+#include "ostraka/annotation/label_file.h"
 #include "ostraka/core/csv.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/page/page.h"
+#include "ostraka/render/render.h"
 #include "ostraka/render/values.h"
 #include "ostraka/transfer/bound_mesh.h"
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <set>
+#include <unordered_map>
 
 namespace ostraka {
 
@@ -23,35 +29,100 @@ struct ShownObject {
     std::optional<RelationGraph> graph;
     std::optional<Mesh> cage;
     std::vector<PageMap> maps;
+    std::optional<PageSlices> slices;
+    std::vector<PageConstraint> constraints;
+    std::vector<std::string> conflicts;
     std::string unit;
 };
 
-/// Of each element the mean of the finite values that were added; none without any.
-class Means {
+/// Where rows of tables find what they are of.
+class Names {
 public:
-    explicit Means(std::size_t elements) : sums_(elements, 0), counts_(elements, 0) {}
-    void add(std::size_t element, double value) {
-        if (std::isfinite(value)) sums_[element] += value, counts_[element] += 1;
+    void add(const std::string& object, const AnnotationSet* set) {
+        const int place = count_++;
+        objects_.try_emplace(object, place);
+        if (set == nullptr) return;
+        for (std::size_t i = 0; i < set->annotations.size(); ++i) {
+            const std::string& tag = set->annotations[i].tag;
+            // What several objects have names none of them.
+            if (const auto [found, fresh] = annotations_.try_emplace(tag, place, static_cast<int>(i)); !fresh)
+                found->second = {-1, -1};
+        }
     }
-    [[nodiscard]] std::vector<double> values() const {
-        std::vector<double> means;
-        for (std::size_t i = 0; i < sums_.size(); ++i) means.push_back(counts_[i] > 0 ? sums_[i] / counts_[i] : std::nan(""));
-        return means;
+
+    /// Rows show the object that the first of their texts to name one names, by its name or that of its file; else the annotation
+    /// that only one object has.
+    void link(PageTable& table) const {
+        for (PageTable::Row& row : table.rows) {
+            for (const Json& cell : row.cells)
+                if (cell.IsString() && row.object < 0) row.object = object(cell.GetString());
+            for (const Json& cell : row.cells) {
+                if (!cell.IsString() || row.annotation >= 0) continue;
+                const auto found = annotations_.find(cell.GetString());
+                if (found == annotations_.end() || found->second.first < 0) continue;
+                if (row.object < 0) row.object = found->second.first;
+                if (row.object == found->second.first) row.annotation = found->second.second;
+            }
+        }
     }
 
 private:
-    std::vector<double> sums_, counts_;
+    [[nodiscard]] int object(const std::string& text) const {
+        auto found = objects_.find(text);
+        if (found == objects_.end() && is_mesh_name(text)) found = objects_.find(Path(text).stem().string());
+        return found == objects_.end() ? -1 : found->second;
+    }
+
+    int count_ = 0;
+    std::unordered_map<std::string, int> objects_;
+    std::unordered_map<std::string, std::pair<int, int>> annotations_;
+
+public:
+    static bool is_mesh_name(const std::string& name) {
+        const std::string kind = extension(name);
+        return kind == ".ply" || kind == ".obj" || kind == ".off" || kind == ".stl";
+    }
 };
+
+bool is_document(const std::string& name) {
+    return extension(name) == ".json" && !name.ends_with(".ant.json") && !name.ends_with(".graph.json") &&
+           !name.ends_with(".template.json");
+}
+
+Json cell_of(const auto& value) {
+    Json cell;
+    static_cast<JsonValue&>(cell) = json_value(value, cell.GetAllocator());
+    return cell;
+}
+
+/// The path as an address relative to the page, in the characters that addresses have.
+std::string address_of(const Path& path) {
+    static constexpr char hex[] = "0123456789ABCDEF";
+    std::string address;
+    for (const char c : path.generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool plain = (byte >= '0' && byte <= '9') || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
+                           std::string_view("/-._~").find(c) != std::string_view::npos;
+        if (plain) address += c;
+        else (address += '%') += hex[byte >> 4U], address += hex[byte & 15U];
+    }
+    return address;
+}
 
 struct MakeReport final : Operation {
     void describe(Parameters& p) override {
         p.input("results", Kind::text, results,
-                "what to show: meshes, each followed by what belongs to it (.ant.json, .graph.json, .cage.ply, maps .npy); "
-                "templates (.template.json); tables (.csv) and drawings (.svg); folders of such files, such as a run's or a "
-                "fit's, but for cages and maps")
+                "what to show: meshes, each followed by what belongs to it (.ant.json, .graph.json, .cage.ply, maps .npy, slices "
+                "and "
+                "reports of deformations .json); templates (.template.json); tables (.csv), other reports (.json) and drawings "
+                "(.svg); folders of such files, such as a run's or a fit's, but for cages and maps")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});
+        p.output_option(
+            "beside", Kind::folder, beside,
+            "write the objects into this folder, which stays with the page: the page is an index that reads one when it "
+            "is chosen, for collections");
         p.options("title", title, "of the page; else the name of the first result");
         p.options("unit", unit, "of objects whose annotations tell none");
         p.options("limit", limit,
@@ -67,106 +138,212 @@ struct MakeReport final : Operation {
     }
 
     void run(Context& context, Report& report) override {
+        made.emplace(title.empty() ? name_of(results.file()) : title);
+        report.empty_table("objects");
+        if (is_collection()) beside.open();
         for (std::size_t i = 0; i < results.size(); ++i) {
             const Path file = results.path(i);
-            context.record([&] { in_file(results.file(i), [&] { read(context, file, results.file_name(i)); }); });
+            context.record([&] { in_file(results.file(i), [&] { read(context, report, file, results.file_name(i)); }); });
         }
-        if (objects.empty() && tables.empty() && drawings.empty())
+        finish(context, report);
+        if (places == 0 && tables.empty() && drawings == 0)
             fail_input(results.file(), "holds nothing that a page can show", "give meshes, templates, tables or drawings");
-        Page made(title.empty() ? (objects.empty() ? Path(results.file()).stem().string() : objects.front().name) : title);
-        report.empty_table("objects");
-        for (ShownObject& one : objects) add(made, report, one);
-        for (PageTable& table : tables) made.add(link(std::move(table)));
-        for (const auto& [name, svg] : drawings) made.add_drawing(name, svg);
-        for (const std::string& text : notes) made.note(text);
-        const std::string html = made.html(context.provenance().to_line());
+        if (!overview.rows.empty()) made->add(std::move(overview));
+        for (PageTable& table : tables) {
+            names.link(table);
+            made->add(std::move(table));
+        }
+        const std::string html = made->html(context.provenance().to_line());
         page.write(html);
         report("page", page.file_name())("bytes", html.size());
     }
 
+    [[nodiscard]] bool is_collection() const { return beside.size() > 0; }
+
+    /// Without folders and extensions.
+    static std::string name_of(const std::string& file) {
+        Path path = Path(file).lexically_normal();
+        if (path.filename().empty() || path.filename() == ".")
+            path = std::filesystem::absolute(path).lexically_normal().parent_path();
+        std::string name = path.filename().string();
+        for (const std::string_view end : {".template.json", ".ant.json", ".graph.json"})
+            if (name.ends_with(end)) return name.substr(0, name.size() - end.size());
+        return is_folder(path) ? name : Path(name).stem().string();
+    }
+
     // ---- reading ----
 
-    void read(Context& context, const Path& file, const std::string& name) {
-        if (is_folder(file)) return read_folder(context, file);
+    void read(Context& context, Report& report, const Path& file, const std::string& name) {
+        if (is_folder(file)) return read_folder(context, report, file);
         const std::string kind = extension(name);
-        if (name.ends_with(".template.json")) return read_template_object(file, name);
-        if (name.ends_with(".ant.json")) {
-            ShownObject& of = object_for(file, name);
+        if (name.ends_with(".template.json")) {
+            read_template_object(context, report, file, name);
+        } else if (name.ends_with(".ant.json")) {
+            ShownObject& of = object_for(name);
             of.set = read_annotations(file, of.file.mesh);
         } else if (name.ends_with(".graph.json")) {
-            ShownObject& of = object_for(file, name);
+            ShownObject& of = object_for(name);
             if (!of.set)
                 fail_input(name, "comes before the annotations that it is of", "name the mesh, its annotations, then it");
             of.graph = read_graph(file, *of.set);
+        } else if (kind == ".json") {
+            read_document(read_json(file), name);
         } else if (name.find(".cage.") != std::string::npos) {
-            object_for(file, name).cage = read_mesh(file).mesh;
+            object_for(name).cage = read_mesh(file).mesh;
         } else if (kind == ".npy") {
-            ShownObject& of = object_for(file, name);
+            ShownObject& of = object_for(name);
             of.maps.push_back({Path(name).stem().string(), Path(name).stem().string(), vertex_values(of, file, name)});
         } else if (kind == ".csv") {
             read_table(file, name);
         } else if (kind == ".svg") {
-            drawings.emplace_back(Path(name).stem().string(), read_file(file));
-        } else if (kind == ".ply" || kind == ".obj" || kind == ".off" || kind == ".stl") {
-            read_object(context, file, name);
+            made->add_drawing(Path(name).stem().string(), read_file(file));
+            ++drawings;
+        } else if (Names::is_mesh_name(name)) {
+            read_object(context, report, file, name);
         } else {
             fail_input(name, "is nothing that a page can show",
-                       "give .ply, .obj, .off, .stl, .ant.json, .graph.json, .template.json, .npy, .csv, .svg or a folder");
+                       "give .ply, .obj, .off, .stl, .json, .npy, .csv, .svg or a folder");
         }
     }
 
-    void read_object(Context& context, const Path& file, const std::string& name) {
-        ShownObject& one = objects.emplace_back();
+    void read_object(Context& context, Report& report, const Path& file, const std::string& name) {
+        finish(context, report);
+        ShownObject& one = current.emplace();
         one.name = Path(name).stem().string();
         one.file = read_mesh(file);
-        context.notes(name, one.file.notes);
-        Path beside = file;
-        beside.replace_extension(".ant.json");
+        std::vector<std::string> said = one.file.notes;
+        std::erase_if(said, [](const std::string& note) { return note.find("properties not kept") != std::string::npos; });
+        context.notes(name, said);  // those are maps here
+        one.maps = ply_maps(file, one.file);
+        Path annotations = file;
+        annotations.replace_extension(".ant.json");
         const bool named = std::any_of(results.sources.begin(), results.sources.end(), [&](const Source& source) {
-            return !source.object && source.file.lexically_normal() == beside.lexically_normal();
+            return !source.object && source.file.lexically_normal() == annotations.lexically_normal();
         });
-        if (!named && file_exists(beside)) one.set = read_annotations(beside, one.file.mesh);
+        if (named) return;
+        if (file_exists(annotations)) {
+            one.set = read_annotations(annotations, one.file.mesh);
+        } else if (const auto& labels = one.file.extras.face_labels; !labels.empty() && !is_completed(one.maps)) {
+            AnnotationSet parts = regions_from_labels(one.file.mesh, labels, label_names(file));
+            if (parts.annotations.size() > 1) one.set = std::move(parts);
+        }
     }
 
-    void read_template_object(const Path& file, const std::string& name) {
+    /// Of a group of assembled fragments: its labels count them from 1.
+    static std::map<std::int32_t, std::string> label_names(const Path& mesh) {
+        std::map<std::int32_t, std::string> known;
+        const Path assembly = mesh.parent_path() / "assembly.json";
+        if (!file_exists(assembly)) return known;
+        const Json document = read_json(assembly);
+        if (!document.IsObject() || text_in(document, "format") != "ostraka-reassembly") return known;
+        std::int32_t label = 0;
+        for (const JsonValue& fragment : list_in(document, "fragments")) known[++label] = text_in(fragment, "name");
+        return known;
+    }
+
+    void read_template_object(Context& context, Report& report, const Path& file, const std::string& name) {
+        finish(context, report);
         Template known = load_template(read_template(file));
         if (!known.mesh) fail_input(name, "has no mesh that could be read", "run: ostraka template check " + name);
-        ShownObject& one = objects.emplace_back();
-        one.name = name.substr(0, name.size() - std::string(".template.json").size());
+        ShownObject& one = current.emplace();
+        one.name = name_of(name);
         one.file = std::move(*known.mesh);
         one.set = std::move(known.annotations);
         one.graph = std::move(known.graph);
         one.unit = known.file.unit;
         for (std::optional<Mesh>& cage : known.cages)
             if (cage && !one.cage) one.cage = std::move(*cage);
-        for (const Finding& finding : known.findings) notes.push_back(name + ": " + finding.text);
+        for (const Finding& finding : known.findings) made->note(name + ": " + finding.text);
     }
 
-    /// Meshes with the annotations beside them, templates, tables and drawings that lie in the folder itself, by name.
-    void read_folder(Context& context, const Path& folder) {
-        std::vector<std::string> names = files_in(folder);
-        std::sort(names.begin(), names.end());
-        std::size_t read_here = 0;
-        for (const std::string& name : names) {
-            const std::string kind = extension(name);
-            const bool shown = name.ends_with(".template.json") || kind == ".csv" || kind == ".svg" || kind == ".ply" ||
-                               kind == ".obj" || kind == ".off" || kind == ".stl";
-            if (!shown || name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
-            in_file((folder / name).string(), [&] { read(context, folder / name, name); });
-            ++read_here;
+    /// Slices, and the constraints of a deformation, belong to the object before them; what else it says becomes tables.
+    void read_document(const Json& document, const std::string& name) {
+        const std::string format = document.IsObject() ? text_in(document, "format") : std::string();
+        constexpr std::array known{"ostraka-slices",         "ostraka-report",      "ostraka-assembly", "ostraka-reassembly",
+                                   "ostraka-classification", "ostraka-proportions", "ostraka-study",    "ostraka-technique"};
+        if (std::find(known.begin(), known.end(), format) == known.end())
+            fail_input(name, "is nothing that a page can show",
+                       "of .json give slices, a report (--json), or what fit, assemble, template classify or study wrote");
+        if (format == "ostraka-slices") {
+            object_for(name).slices = page_slices(document, name);
+            return;
         }
-        if (read_here == 0)
-            fail_input(folder.string(), "holds nothing that a page can show", "give a folder with meshes, tables or drawings");
+        const std::string stem = Path(name).stem().string();
+        const bool is_report = format == "ostraka-report";
+        const JsonValue* result = is_report ? find_member(document, "result") : &document;
+        if (result == nullptr || !result->IsObject())
+            fail_input(name, "has no result", "give the output of a command with --json");
+        std::set<std::string> shown;
+        if (is_report && text_in(document, "command") == "deform") {
+            ShownObject& of = object_for(name);
+            if (!of.set && !list_in(*result, "constraints").Empty())
+                made->note(name + ": the parts of its constraints are not shown, because " + of.name + " has no annotations");
+            of.constraints = page_constraints(*result, of.set ? *of.set : AnnotationSet{});
+            of.conflicts = page_conflicts(*result);
+            shown = {"constraints", "conflicts"};
+        }
+        for (PageTable& table : record_tables(*result, stem, shown)) tables.push_back(std::move(table));
     }
 
-    ShownObject& object_for(const Path& file, const std::string& name) {
-        if (objects.empty())
-            fail_input(file.string(), "comes before any mesh that it could belong to", "name the mesh before " + name);
-        return objects.back();
+    /// Meshes with what lies beside them under their names, templates, tables and drawings that lie in the folder itself, by
+    /// name.
+    void read_folder(Context& context, Report& report, const Path& folder) {
+        std::vector<std::string> files = files_in(folder);
+        std::sort(files.begin(), files.end());
+        const auto stem = [](const std::string& name) { return Path(name).stem().string(); };
+        std::multimap<std::string, std::string> of_meshes;  // documents by the names of the meshes that they are of
+        std::vector<std::string> first, after;
+        std::set<std::string> meshes;
+        bool reassembled = false;
+        for (const std::string& name : files)
+            if (Names::is_mesh_name(name)) meshes.insert(stem(name));
+        for (const std::string& name : files) {
+            if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
+            const std::string kind = extension(name);
+            if (is_document(name)) {
+                const std::string format = format_of(folder / name);
+                reassembled = reassembled || format == "ostraka-reassembly";
+                if (format != "ostraka-slices" && format != "ostraka-report" && format != "ostraka-assembly" &&
+                    format != "ostraka-reassembly")
+                    continue;
+                if (meshes.contains(stem(name))) of_meshes.emplace(stem(name), name);
+                else after.push_back(name);
+            } else if (name.ends_with(".template.json") || kind == ".csv" || kind == ".svg" || Names::is_mesh_name(name)) {
+                first.push_back(name);
+            }
+        }
+        if (first.empty() && after.empty())
+            fail_input(folder.string(), "holds nothing that a page can show", "give a folder with meshes, tables or drawings");
+        const auto read_here = [&](const std::string& name) {
+            in_file((folder / name).string(), [&] { read(context, report, folder / name, name); });
+        };
+        const std::size_t before = places;
+        for (const std::string& name : first) {
+            if (reassembled && name.find(".placed.") != std::string::npos) continue;  // the groups hold them
+            read_here(name);
+            if (!Names::is_mesh_name(name)) continue;
+            for (auto [at, end] = of_meshes.equal_range(stem(name)); at != end; ++at) read_here(at->second);
+        }
+        for (const std::string& name : after) {
+            const std::string format = format_of(folder / name);
+            const bool one_object = current && places == before;
+            if (format == "ostraka-slices" && !one_object) made->note(name + " is left out: no mesh has its name");
+            else read_here(name);
+        }
+    }
+
+    static std::string format_of(const Path& file) {
+        const Json document = read_json(file);
+        return document.IsObject() ? text_in(document, "format") : std::string();
+    }
+
+    ShownObject& object_for(const std::string& name) {
+        if (!current) fail_input(name, "comes before any mesh that it could belong to", "name the mesh before " + name);
+        return *current;
     }
 
     static std::vector<double> vertex_values(const ShownObject& of, const Path& file, const std::string& name) {
-        const std::vector<double> values = read_values(file);
+        std::vector<double> values = read_values(file);
         const Mesh& mesh = of.file.mesh;
         if (values.size() == mesh.number_of_vertices()) return values;
         if (values.size() != mesh.number_of_faces())
@@ -175,11 +352,7 @@ struct MakeReport final : Operation {
                            std::to_string(mesh.number_of_vertices()) + " vertices and " + std::to_string(mesh.number_of_faces()) +
                            " faces",
                        "give one value an element");
-        // The page colours vertices: each gets the mean of its faces.
-        Means means(mesh.number_of_vertices());
-        for (const Face face : mesh.faces())
-            for (const Vertex v : corners(mesh, face)) means.add(v.idx(), values[face.idx()]);
-        return means.values();
+        return vertex_means(mesh, values);
     }
 
     void read_table(const Path& file, const std::string& name) {
@@ -192,27 +365,103 @@ struct MakeReport final : Operation {
         for (std::size_t r = 1; r < rows.size(); ++r) {
             PageTable::Row& row = table.rows.emplace_back();
             for (std::size_t k = 0; k < table.columns.size(); ++k) {
-                Json& cell = row.cells.emplace_back();
                 const std::string value = k < rows[r].cells.size() ? unguarded(rows[r].cells[k]) : std::string();
-                if (const auto x = number_of(value)) cell.SetDouble(*x);
-                else if (!value.empty()) static_cast<JsonValue&>(cell) = json_string(value, cell.GetAllocator());
+                if (const auto x = number_of(value)) row.cells.push_back(cell_of(*x));
+                else row.cells.push_back(value.empty() ? Json() : cell_of(value));
             }
         }
     }
 
     // ---- the page ----
 
-    void add(Page& made, Report& report, ShownObject& one) const {
-        const std::size_t place = report_object(report, one);
+    /// The object that was read goes into the page, or into a file of its own beside it.
+    void finish(Context& context, Report& report) {
+        if (!current) return;
+        ShownObject one = std::move(*current);
+        current.reset();
+        names.add(one.name, one.set && !is_collection() ? &*one.set : nullptr);
+        const std::size_t vertices = one.file.mesh.number_of_vertices();
+        report.row("objects")("name", one.name)("vertices", vertices)("shown", std::min<std::size_t>(vertices, limit))(
+            "annotations", one.set ? one.set->annotations.size() : 0)("maps", one.maps.size());
+        const std::size_t place = places++;
+        if (!is_collection()) return add(*made, one, place, nullptr);
+        Page alone(one.name);
+        Picture thumbnail;
+        add(alone, one, 0, &thumbnail);
+        std::string number = std::to_string(place + 1);
+        number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
+        const Path relative = from_page(beside.path());
+        PageEntry entry;
+        entry.name = one.name;
+        entry.file = address_of(relative / (number + ".js"));
+        entry.thumbnail = address_of(relative / (number + ".png"));
+        entry.vertices = vertices;
+        entry.faces = one.file.mesh.number_of_faces();
+        std::set<std::string> tags;
+        if (one.set)
+            for (const Annotation& annotation : one.set->annotations)
+                if (!annotation.tag.empty()) tags.insert(annotation.tag);
+        entry.tags.assign(tags.begin(), tags.end());
+        made->add(entry);
+        write_file(beside.in(number + ".js"), alone.script(entry.file, context.provenance().to_line()));
+        write_png(beside.in(number + ".png"), thumbnail);
+        add_to_overview(one, place);
+    }
+
+    [[nodiscard]] Path from_page(const Path& folder) const {
+        if (is_memory(folder) || is_memory(page.path())) return folder.filename();
+        const Path around = std::filesystem::absolute(page.path()).lexically_normal().parent_path();
+        return std::filesystem::absolute(folder / "").lexically_normal().lexically_relative(around);
+    }
+
+    /// Sizes and measures of the objects of a collection.
+    void add_to_overview(const ShownObject& one, std::size_t place) {
+        if (overview.columns.empty()) {
+            overview.title = "objects";
+            overview.columns = {"object", "vertices", "triangles", "annotations"};
+        }
+        PageTable::Row& row = overview.rows.emplace_back();
+        row.object = static_cast<int>(place);
+        row.cells.push_back(cell_of(one.name));
+        row.cells.push_back(cell_of(one.file.mesh.number_of_vertices()));
+        row.cells.push_back(cell_of(one.file.mesh.number_of_faces()));
+        row.cells.push_back(cell_of(one.set ? one.set->annotations.size() : std::size_t{0}));
+        constexpr std::size_t most_columns = 40;
+        if (one.set)
+            for (const Annotation& annotation : one.set->annotations)
+                for (const Attribute& attribute : annotation.attributes) {
+                    if (attribute.type != AttributeType::measure || !attribute.measure.value) continue;
+                    std::string column = annotation.tag + ": " + attribute.name;
+                    if (!attribute.measure.unit.empty()) column += " (" + attribute.measure.unit + ")";
+                    const auto found = std::find(overview.columns.begin(), overview.columns.end(), column);
+                    const auto k = static_cast<std::size_t>(found - overview.columns.begin());
+                    if (found == overview.columns.end()) {
+                        if (overview.columns.size() >= most_columns) continue;
+                        overview.columns.push_back(column);
+                    }
+                    while (row.cells.size() <= k) row.cells.emplace_back();
+                    row.cells[k] = cell_of(*attribute.measure.value);
+                }
+        for (PageTable::Row& any : overview.rows)
+            while (any.cells.size() < overview.columns.size()) any.cells.emplace_back();
+    }
+
+    void add(Page& to, ShownObject& one, std::size_t place, Picture* thumbnail) const {
         PageObject shown;
         shown.name = one.name;
         shown.unit = !one.unit.empty() ? one.unit : unit;
         shown.cage = one.cage ? &*one.cage : nullptr;
         shown.graph = one.graph ? &*one.graph : nullptr;
+        shown.slices = one.slices ? &*one.slices : nullptr;
+        shown.constraints = std::move(one.constraints);
+        shown.conflicts = std::move(one.conflicts);
         if (one.graph && one.set) shown.checks = check_relations(one.file.mesh, *one.set, *one.graph);
         PageTable table;
-        if (one.set && !one.set->annotations.empty())
+        if (one.set && !one.set->annotations.empty()) {
             table = annotation_table(one.file.mesh, *one.set, static_cast<int>(place), one.name);
+            if (are_apart(one.file.mesh, *one.set))
+                for (std::size_t i = 0; i < one.set->annotations.size(); ++i) shown.parts.push_back(i);
+        }
         std::optional<BoundMesh> smaller;
         if (one.file.mesh.number_of_vertices() > limit) {
             smaller = simplified(one, shown);
@@ -223,15 +472,22 @@ struct MakeReport final : Operation {
             shown.maps = std::move(one.maps);
             if (one.set) shown.annotations = &*one.set;
         }
-        made.add(shown);
-        if (!table.rows.empty()) made.add(std::move(table));
+        to.add(shown);
+        if (!table.rows.empty()) to.add(std::move(table));
+        if (thumbnail != nullptr) *thumbnail = picture_of(shown);
     }
 
-    std::size_t report_object(Report& report, const ShownObject& one) const {
-        const std::size_t vertices = one.file.mesh.number_of_vertices();
-        report.row("objects")("name", one.name)("vertices", vertices)("shown", std::min<std::size_t>(vertices, limit))(
-            "annotations", one.set ? one.set->annotations.size() : 0)("maps", one.maps.size());
-        return static_cast<std::size_t>(&one - &objects.front());
+    static Picture picture_of(const PageObject& shown) {
+        Scene scene;
+        scene.mesh = to_soup(*shown.mesh);
+        RenderOptions options;
+        options.size = "240x180";
+        options.no_scale_bar = options.no_legend = true;
+        if (shown.annotations != nullptr) {
+            draw_annotations(scene, *shown.mesh, *shown.annotations);
+            if (shown.annotations->up) options.up = joined(*shown.annotations->up, ",", [](double x) { return number(x, 17); });
+        }
+        return render({scene}, options).picture;
     }
 
     /// For the eye only: measures keep the values of the whole object.
@@ -247,12 +503,8 @@ struct MakeReport final : Operation {
         for (const Vertex v : one.file.mesh.vertices())
             whole.deviation = std::max(whole.deviation, surface.closest(one.file.mesh.point(v)).distance);
         shown.whole = whole;
-        for (PageMap& map : one.maps) {
-            Means means(bound.mesh.number_of_vertices());
-            for (std::size_t i = 0; i < map.values.size(); ++i)
-                if (const Index to = result.vertex_map[i]; to != no_index) means.add(to, map.values[i]);
-            shown.maps.push_back({map.name, map.label, means.values()});
-        }
+        for (const PageMap& map : one.maps)
+            shown.maps.push_back(simplified_map(map, result.vertex_map, bound.mesh.number_of_vertices()));
         if (one.set && bound.annotations)
             for (Annotation& annotation : bound.annotations->annotations)
                 if (const Annotation* original = one.set->find(annotation.id))
@@ -267,23 +519,17 @@ struct MakeReport final : Operation {
         return bound;
     }
 
-    /// Rows whose first texts name an object of the page show it.
-    PageTable link(PageTable table) const {
-        for (PageTable::Row& row : table.rows)
-            for (const Json& cell : row.cells)
-                for (std::size_t o = 0; o < objects.size() && row.object < 0; ++o)
-                    if (cell.IsString() && cell.GetString() == objects[o].name) row.object = static_cast<int>(o);
-        return table;
-    }
-
     FileInput results;
     FileOutput page{".html"};
+    FolderOutput beside;
     std::string title, unit;
     std::uint64_t limit = 200'000;
-    std::deque<ShownObject> objects;
+    std::optional<Page> made;
+    std::optional<ShownObject> current;  ///< what follows belongs to it
+    std::size_t places = 0, drawings = 0;
+    Names names;
+    PageTable overview;  ///< of a collection
     std::vector<PageTable> tables;
-    std::vector<std::pair<std::string, std::string>> drawings;
-    std::vector<std::string> notes;
 };
 
 }  // namespace

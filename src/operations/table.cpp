@@ -93,7 +93,7 @@ constexpr OperationEntry entries[]{
     {"pair", "lay two fragments together by the break they share; exit code 3 if it cannot be told how", make_pair},
     {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble, 2},
     {"render", "make a picture of meshes, their annotations and maps", make_render},
-    {"report", "make one HTML page of results that opens anywhere: objects in 3D, tables, drawings", make_report},
+    {"report", "make one HTML page of results that opens anywhere: objects in 3D, tables, drawings", make_report, 2},
     {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run},
     {"replay", "repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs", make_replay},
     {"conformance run", "give the golden cases to another program, and say where it agrees (exit code 3: somewhere it does not)", make_conformance_run},

@@ -22,18 +22,28 @@ extern const char ostraka_viewer_end[];
 
 namespace ostraka {
 
-std::string viewer_with(const std::string& data, const std::string& bytes) {
+std::string viewer_with(const std::string& data, const std::string& bytes, bool beside) {
     const std::string_view page(ostraka_viewer_begin, static_cast<std::size_t>(ostraka_viewer_end - ostraka_viewer_begin));
+    // What a policy says of scripts and pictures, and what it says where there is a folder beside the page.
+    constexpr std::string_view scripts = "script-src ", pictures = "img-src ";
+    struct Place {
+        std::string_view mark;
+        std::string text;
+    };
+    const std::string allowed = beside ? "'self' " : "";
+    const Place places[] = {{scripts, std::string(scripts) + allowed},
+                            {pictures, std::string(pictures) + allowed},
+                            {"@OSTRAKA-DATA@", data},
+                            {"@OSTRAKA-BYTES@", bytes}};
     std::string made;
     made.reserve(page.size() + data.size() + bytes.size());
     std::size_t at = 0;
-    for (const auto& [mark, text] :
-         {std::pair<std::string_view, const std::string*>{"@OSTRAKA-DATA@", &data}, {"@OSTRAKA-BYTES@", &bytes}}) {
+    for (const auto& [mark, text] : places) {
         const std::size_t place = page.find(mark, at);
         if (place == std::string_view::npos || page.find(mark, place + mark.size()) != std::string_view::npos)
-            fail_work("the viewer", "has not one place for its data", "build it again (web/README.md)");
+            fail_work("the viewer", "has not one place '" + std::string(mark) + "'", "build it again (web/README.md)");
         made += page.substr(at, place - at);
-        made += *text;
+        made += text;
         at = place + mark.size();
     }
     made += page.substr(at);

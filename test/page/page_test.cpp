@@ -3,6 +3,7 @@
 #include "meshes.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/glb.h"
+#include "ostraka/io/mesh_file.h"
 #include "scratch.h"
 
 #include <meshoptimizer.h>
@@ -221,6 +222,95 @@ TEST(Page, QuantisesMapsAndTellsWhatHasNoValue) {
     EXPECT_EQ(counted, map.values.size() - 1);
 }
 
+TEST(Page, NamesInPlaceOfNumbersAreCounted) {
+    const Annotated one;
+    PageObject object = one.object();
+    PageMap& map = object.maps.emplace_back();
+    map.name = map.label = "origin";
+    map.categories = {{"observed", {1, 2, 3}}, {"guessed", {4, 5, 6}}};
+    map.values.assign(one.soup.points.size(), 0);
+    map.values[2] = map.values[7] = 1;
+    map.values[3] = std::nan("");
+    Page page("a sphere");
+    page.add(object);
+    const ReadPage read(page.html(""));
+    const JsonValue& shown = read.data["objects"][0]["maps"][0];
+    const std::string bytes = read.blob(shown["blob"]);
+    const auto* steps = reinterpret_cast<const std::uint16_t*>(bytes.data());
+    EXPECT_EQ(steps[2], 1);
+    EXPECT_EQ(steps[3], 65535);
+    EXPECT_EQ(steps[4], 0);
+    ASSERT_EQ(shown["histogram"].Size(), 2U);
+    EXPECT_EQ(shown["histogram"][0].GetUint64(), one.soup.points.size() - 3);
+    EXPECT_EQ(shown["histogram"][1].GetUint64(), 2U);
+    EXPECT_STREQ(shown["categories"][1]["text"].GetString(), "guessed");
+    EXPECT_EQ(shown["categories"][1]["colour"][2].GetInt(), 6);
+}
+
+TEST(Page, HoldsSlicesConstraintsAndPartsInTheFrameOfTheObject) {
+    const Annotated one;
+    PageObject object = one.object();
+    PageSlices slices;
+    slices.unit = "mm";
+    slices.columns = {{"area", "area", "mm\xC2\xB2"}};
+    for (const double height : {2998.0, 3001.0}) {
+        PageSlices::Level& level = slices.levels.emplace_back();
+        level.height = height;
+        level.origin = {1000, 2000, height};
+        level.u = {1, 0, 0};
+        level.v = {0, 1, 0};
+        level.values = {height > 3000 ? std::optional(12.5) : std::nullopt};
+        level.contours = {{true, false, {{1, 2}, {3, 4}, {5, height}}}};
+    }
+    slices.tube = {2998, 3001};
+    object.slices = &slices;
+    object.constraints = {
+        {"same level", {0, 3}, 2, true, "holds", "fails", false, "by 3 mm", {{"height", 1, 4, {}, "mm"}}, {{0.5, 0.75}}}};
+    object.conflicts = {"this against that"};
+    object.parts = {0, 1};
+    Page page("a sphere");
+    page.add(object);
+    const ReadPage read(page.html(""));
+    const JsonValue& shown = read.data["objects"][0];
+    const JsonValue& level = shown["slices"]["levels"][1];
+    EXPECT_NEAR(level["origin"][2].GetDouble() + shown["origin"][2].GetDouble(), 3001, 1e-9);
+    EXPECT_EQ(level["values"][0].GetDouble(), 12.5);
+    EXPECT_TRUE(shown["slices"]["levels"][0]["values"][0].IsNull());
+    const std::string bytes = read.blob(shown["slices"]["blob"]);
+    ASSERT_EQ(bytes.size(), 2 * 3 * 2 * sizeof(float));
+    EXPECT_EQ(reinterpret_cast<const float*>(bytes.data())[11], 3001.0F);
+    EXPECT_EQ(level["contours"][0]["points"].GetInt(), 3);
+    EXPECT_EQ(shown["slices"]["tube"][1].GetDouble(), 3001);
+    const JsonValue& constraint = shown["constraints"][0];
+    EXPECT_EQ(constraint["members"][1].GetInt(), 3);
+    EXPECT_FALSE(constraint["holds"].GetBool());
+    EXPECT_EQ(constraint["deviations"][0]["value"].GetDouble(), 4);
+    EXPECT_TRUE(constraint["deviations"][0]["tolerance"].IsNull());
+    EXPECT_EQ(constraint["residual"]["largest"].GetDouble(), 0.75);
+    EXPECT_STREQ(shown["conflicts"][0].GetString(), "this against that");
+    EXPECT_EQ(shown["parts"].Size(), 2U);
+}
+
+TEST(Page, OfACollectionReadsItsObjectsFromFilesBesideIt) {
+    const Annotated one;
+    Page alone("sphere");
+    alone.add(one.object());
+    const std::string script = alone.script("objects/0001.js", "");
+    const std::string begin = "ostrakaObject(\"objects/0001.js\", ";
+    ASSERT_TRUE(script.starts_with(begin));
+    EXPECT_TRUE(script.ends_with("\");\n"));
+    Page index("two");
+    index.add({"sphere", "objects/0001.js", "objects/0001.png", 5, 6, {"cap", "top"}});
+    const std::string html = index.html("");
+    EXPECT_STREQ(ReadPage(html).data["collection"][0]["tags"][1].GetString(), "top");
+    const auto policy = [](const std::string& text) {
+        const std::size_t at = text.find("Content-Security-Policy");
+        return text.substr(at, text.find('>', at) - at);
+    };
+    EXPECT_EQ(policy(alone.html("")).find("'self'"), std::string::npos) << "one file needs nothing else";
+    EXPECT_NE(policy(html), policy(alone.html("")));
+}
+
 TEST(Page, TextsStayTexts) {
     const std::string evil = "</script><img src=x onerror=alert(1)><!--";
     Annotated one(evil);
@@ -325,4 +415,70 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     const ReadPage folder(read_file(scratch / "d.html"));
     ASSERT_EQ(folder.data["objects"].Size(), 1U);
     EXPECT_GT(folder.data["objects"][0]["annotations"].Size(), 0U);
+}
+
+TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
+    const Scratch scratch;
+    const std::string data = std::string(OSTRAKA_SOURCE_DIR) + "/data/", vase = data + "vase.ply ";
+    const auto file = [&](const std::string& name) { return (scratch / name).string(); };
+    const auto run = [&](const std::string& words) {
+        const auto result = run_command(words);
+        EXPECT_EQ(result.code, 0) << words << ": " << result.err;
+    };
+    const auto page_of = [&](const std::string& words) {
+        run("report " + words + " " + file("page.html"));
+        return ReadPage(read_file(scratch / "page.html"));
+    };
+    run("slice " + vase + "--output " + file("slices") + " --count 7");
+    const ReadPage sliced = page_of(vase + file("slices/slices.json"));
+    const JsonValue& slices = sliced.data["objects"][0]["slices"];
+    const Json written = read_json(scratch / "slices/slices.json");
+    ASSERT_EQ(slices["levels"].Size(), 7U);
+    EXPECT_EQ(slices["levels"][3]["height"].GetDouble(), written["slices"][3]["height"].GetDouble());
+    // A deformation: what became of its constraints is shown with its parts, the rest as tables.
+    write_file(scratch / "moved.json", R"({"format": "ostraka-report", "command": "deform", "result": {"rounds": 17,
+        "constraints": [{"id": 4, "type": "same level", "parts": ["belly", "neck"], "weight": 1, "hard": true, "before": "holds",
+                         "verdict": "fails", "text": "", "deviations": [{"quantity": "height", "before": 0, "value": 3,
+                         "tolerance": 1, "unit": "mm"}], "residual": {"mean": 0.5, "max": 2}}],
+        "conflicts": [{"id": 4, "freed": []}], "moved": [{"tag": "neck", "share": 0.25}, {"tag": "belly", "share": 0.5}]}})");
+    const ReadPage deformed = page_of(vase + file("moved.json"));
+    const JsonValue& object = deformed.data["objects"][0];
+    const JsonValue& constraint = object["constraints"][0];
+    ASSERT_EQ(constraint["members"].Size(), 2U);
+    EXPECT_STREQ(object["annotations"][constraint["members"][1].GetUint()]["tag"].GetString(), "neck");
+    EXPECT_FALSE(constraint["holds"].GetBool());
+    EXPECT_STREQ(object["conflicts"][0].GetString(), "same level of belly, neck cannot hold");
+    const JsonValue& tables = deformed.data["tables"];
+    const JsonValue& moved = tables[tables.Size() - 1];
+    EXPECT_STREQ(moved["title"].GetString(), "moved: moved");
+    EXPECT_EQ(moved["annotations"][0].GetInt(), static_cast<int>(constraint["members"][1].GetUint())) << "by its tag";
+    // Labels of faces are parts, which can be moved apart where they share no vertex; real properties are maps.
+    TriangleSoup two = octahedron_sphere(2);
+    const auto count = static_cast<Index>(two.points.size());
+    const std::size_t faces = two.triangles.size();
+    for (Index i = 0; i < count; ++i) two.points.push_back({two.points[i][0] + 3, two.points[i][1], two.points[i][2]});
+    MeshExtras extras;
+    for (std::size_t f = 0; f < 2 * faces; ++f) extras.face_labels.push_back(f < faces ? 1 : 2);
+    for (std::size_t f = 0; f < faces; ++f) {
+        const auto [a, b, c] = two.triangles[f];
+        two.triangles.push_back({a + count, b + count, c + count});
+    }
+    write_mesh(scratch / "group-1.ply", build_mesh(two), extras);
+    const ReadPage apart = page_of(file("group-1.ply"));
+    EXPECT_EQ(apart.data["objects"][0]["parts"].Size(), 2U);
+    write_file(scratch / "assembly.json",
+               R"({"format": "ostraka-reassembly", "fragments": [{"name": "rim"}, {"name": "foot"}]})");
+    const ReadPage named = page_of(file("group-1.ply") + " " + file("assembly.json"));
+    EXPECT_STREQ(named.data["objects"][0]["annotations"][1]["tag"].GetString(), "foot");
+    // A collection: the page is an index, each object a file that no other needs.
+    const auto collected =
+        run_command("report " + vase + data + "statuette.ply " + file("all.html") + " --beside '" + file("all of it") + "'");
+    ASSERT_EQ(collected.code, 0) << collected.err;
+    const ReadPage all(read_file(scratch / "all.html"));
+    ASSERT_EQ(all.data["collection"].Size(), 2U);
+    EXPECT_EQ(all.data["objects"].Size(), 0U);
+    EXPECT_STREQ(all.data["collection"][1]["file"].GetString(), "all%20of%20it/0002.js");
+    EXPECT_TRUE(read_file(scratch / "all of it/0002.js").starts_with("ostrakaObject(\"all%20of%20it/0002.js\", "));
+    EXPECT_TRUE(read_file(scratch / "all of it/0002.png").starts_with("\x89PNG"));
+    EXPECT_EQ(all.data["tables"][0]["objects"][1].GetInt(), 1);
 }

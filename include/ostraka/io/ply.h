@@ -13,4 +13,16 @@ namespace ostraka {
 /// Error (input) for a file that is damaged up to there.
 std::vector<std::array<double, 3>> read_ply_vectors(const Path& file, const std::array<std::string, 3>& names);
 
+struct PlyColumn {
+    std::string name;
+    std::vector<double> values;
+};
+/// Of each element a number for each that the file has.
+struct PlyNumbers {
+    std::vector<PlyColumn> vertices, faces;
+};
+/// The real properties of vertices and of faces (polygons) but for coordinates, normals, colours and texture; nothing where the
+/// file is no PLY file. Throws Error (input) for a file that is damaged up to there.
+PlyNumbers read_ply_numbers(const Path& file);
+
 }  // namespace ostraka

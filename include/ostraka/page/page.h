@@ -15,6 +15,50 @@ struct PageMap {
     std::string name;
     std::string label;  ///< what the numbers are, with their unit
     std::vector<double> values;
+    struct Category {
+        std::string text;
+        std::array<int, 3> colour{};  ///< red, green, blue, 0 to 255
+    };
+    std::vector<Category> categories = {};  ///< not empty: the values are places in it
+};
+
+/// What planes cut out of an object, by ascending height.
+struct PageSlices {
+    struct Column {
+        std::string name, title, unit;
+    };
+    struct Contour {
+        bool closed = true, hole = false;
+        std::vector<std::array<double, 2>> points;  ///< along u and v
+    };
+    struct Level {
+        double height = 0;
+        std::array<double, 3> origin{}, u{}, v{};
+        std::vector<std::optional<double>> values;  ///< in the order of the columns
+        std::vector<Contour> contours;
+    };
+    std::string unit;
+    std::vector<Column> columns;
+    std::vector<Level> levels;
+    std::optional<std::array<double, 2>> tube;  ///< heights between which the object is tubular
+};
+
+/// What became of a constraint in a deformation.
+struct PageConstraint {
+    struct Deviation {
+        std::string quantity;
+        std::optional<double> before, value, tolerance;
+        std::string unit;
+    };
+    std::string type;
+    std::vector<std::size_t> members;  ///< places in the set of annotations
+    double weight = 1;
+    bool hard = false;
+    std::string before, verdict;  ///< in words
+    std::optional<bool> holds;    ///< none: it cannot be told
+    std::string text;
+    std::vector<Deviation> deviations;
+    std::optional<std::array<double, 2>> residual;  ///< mean and largest
 };
 
 /// What is shown of one object. The mesh and what is said of it must live until the object is added.
@@ -26,8 +70,12 @@ struct PageObject {
     std::vector<RelationCheck> checks = {};      ///< of the graph's relationships; or empty
     const Mesh* cage = nullptr;                  ///< null: none
     std::vector<PageMap> maps = {};
-    std::string unit = {};                 ///< empty: that of the annotations
-    std::array<double, 3> up = {0, 0, 1};  ///< of objects whose annotations tell none
+    const PageSlices* slices = nullptr;  ///< null: none
+    std::vector<PageConstraint> constraints = {};
+    std::vector<std::string> conflicts = {};  ///< of constraints, in words
+    std::vector<std::size_t> parts = {};      ///< places of regions that can be moved apart: they share no vertex
+    std::string unit = {};                    ///< empty: that of the annotations
+    std::array<double, 3> up = {0, 0, 1};     ///< of objects whose annotations tell none
     /// The object that the mesh stands for, if that has more vertices.
     struct Whole {
         std::size_t vertices = 0, faces = 0;
@@ -47,9 +95,20 @@ struct PageTable {
     std::vector<Row> rows;
 };
 
+/// An object of a collection, which a file beside the page holds.
+struct PageEntry {
+    std::string name;
+    std::string file, thumbnail;  ///< relative to the page: what `Page::script` gives, and a PNG
+    std::size_t vertices = 0, faces = 0;
+    std::vector<std::string> tags;
+};
+
 class Page {
 public:
     explicit Page(std::string title);
+
+    /// An index of objects that are read when they are asked for, instead of objects in the page.
+    void add(const PageEntry& entry);
 
     /// Returns the object's place in the page. Objects of the same triangles as one before can be turned into each other there.
     /// Positions are kept to a 131,070th of the largest side of the box, numbers of maps to a 131,068th of their range; the
@@ -63,13 +122,16 @@ public:
     /// The whole file: the viewer, and the data as JSON and deflated bytes within it. The same page has the same bytes. Nothing
     /// of it is fetched from anywhere, and texts of annotations stay texts.
     [[nodiscard]] std::string html(const std::string& made_how) const;
+    /// The same content as a script that a page of a collection reads as `file`, which an entry names.
+    [[nodiscard]] std::string script(const std::string& file, const std::string& made_how) const;
 
 private:
     std::size_t add_bytes(std::string_view bytes);
+    [[nodiscard]] std::string data(const std::string& made_how) const;
 
     Json document_;
     JsonValue objects_{rapidjson::kArrayType}, tables_{rapidjson::kArrayType}, drawings_{rapidjson::kArrayType},
-        notes_{rapidjson::kArrayType}, places_{rapidjson::kArrayType};
+        notes_{rapidjson::kArrayType}, places_{rapidjson::kArrayType}, entries_{rapidjson::kArrayType};
     std::string bytes_;
     std::vector<std::string> triangles_;  ///< checksums of the objects' triangles
 };

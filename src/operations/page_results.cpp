@@ -1,0 +1,313 @@
+#include "page_results.h"
+
+#include "ostraka/core/json.h"
+#include "ostraka/core/words.h"
+#include "ostraka/io/ply.h"
+#include "ostraka/slicing/slice_descriptors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace ostraka {
+
+namespace {
+
+using Cells = std::vector<std::pair<std::string, Json>>;
+
+std::string title_of(std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+Json cell_of(const JsonValue& value) {
+    Json cell;
+    cell.CopyFrom(value, cell.GetAllocator());
+    return cell;
+}
+Json text_cell(const std::string& text) {
+    Json cell;
+    static_cast<JsonValue&>(cell) = json_string(text, cell.GetAllocator());
+    return cell;
+}
+
+/// The single values of a record; those of records within it by both names.
+void add_cells(const JsonValue& record, const std::string& before, Cells& cells) {
+    for (const auto& [key, value] : record.GetObject()) {
+        const std::string name = before + key.GetString();
+        if (value.IsObject()) {
+            add_cells(value, name + ".", cells);
+        } else if (value.IsBool()) {
+            cells.emplace_back(name, text_cell(value.GetBool() ? "yes" : "no"));
+        } else if (value.IsArray()) {
+            std::vector<std::string> texts;
+            for (const JsonValue& one : value.GetArray())
+                if (one.IsString()) texts.push_back(one.GetString());
+            if (texts.size() == value.Size() && !texts.empty()) cells.emplace_back(name, text_cell(joined(texts, ", ")));
+        } else {
+            cells.emplace_back(name, cell_of(value));
+        }
+    }
+}
+
+std::optional<double> finite_in(const JsonValue& object, const char* name) {
+    const JsonValue* member = find_member(object, name);
+    return member != nullptr && member->IsNumber() ? std::optional(member->GetDouble()) : std::nullopt;
+}
+
+/// Of each face the values of its polygon.
+std::vector<double> of_triangles(const std::vector<double>& of_polygons, const MeshFile& mesh) {
+    if (mesh.triangle_polygon.empty()) return of_polygons;
+    std::vector<double> values;
+    for (const Index polygon : mesh.triangle_polygon)
+        values.push_back(polygon < of_polygons.size() ? of_polygons[polygon] : std::nan(""));
+    return values;
+}
+
+/// Of each element the mean of the finite values that were added; NaN without any.
+class Means {
+public:
+    explicit Means(std::size_t elements) : sums_(elements, 0), counts_(elements, 0) {}
+    void add(std::size_t element, double value) {
+        if (std::isfinite(value)) sums_[element] += value, counts_[element] += 1;
+    }
+    [[nodiscard]] std::vector<double> values() const {
+        std::vector<double> means;
+        for (std::size_t i = 0; i < sums_.size(); ++i) means.push_back(counts_[i] > 0 ? sums_[i] / counts_[i] : std::nan(""));
+        return means;
+    }
+
+private:
+    std::vector<double> sums_, counts_;
+};
+
+constexpr std::size_t origins = 3;
+
+/// Of each vertex the origin that most of its faces have; of equally many the first.
+std::vector<double> origin_of_vertices(const MeshFile& file) {
+    std::vector<std::array<std::size_t, origins>> votes(file.mesh.number_of_vertices(), {0, 0, 0});
+    for (const Face face : file.mesh.faces())
+        for (const Vertex v : corners(file.mesh, face))
+            ++votes[v.idx()][static_cast<std::size_t>(file.extras.face_labels[face.idx()])];
+    std::vector<double> values;
+    for (const auto& vote : votes)
+        values.push_back(static_cast<double>(std::max_element(vote.begin(), vote.end()) - vote.begin()));
+    return values;
+}
+
+}  // namespace
+
+PageSlices page_slices(const JsonValue& document, const std::string& where) {
+    validate(document, "slices", where);
+    PageSlices slices;
+    slices.unit = text_in(document, "unit");
+    const auto& levels = document["slices"].GetArray();
+    for (const NamedDescriptor& descriptor : list_descriptors(SliceDescriptors{})) {
+        const bool told = std::any_of(levels.begin(), levels.end(), [&](const JsonValue& level) {
+            return finite_in(level["descriptors"], descriptor.name).has_value();
+        });
+        const std::string_view kind = descriptor.unit;
+        const std::string unit = slices.unit.empty() || kind.empty() ? "" : kind == "area" ? slices.unit + "²" : slices.unit;
+        if (told) slices.columns.push_back({descriptor.name, title_of(descriptor.name), unit});
+    }
+    for (const JsonValue& from : levels) {
+        PageSlices::Level& level = slices.levels.emplace_back();
+        level.height = from["height"].GetDouble();
+        const JsonValue& frame = from["frame"];
+        level.origin = triple_of(frame["origin"]);
+        level.u = triple_of(frame["u"]);
+        level.v = triple_of(frame["v"]);
+        for (const PageSlices::Column& column : slices.columns)
+            level.values.push_back(finite_in(from["descriptors"], column.name.c_str()));
+        for (const JsonValue& contour : from["contours"].GetArray()) {
+            PageSlices::Contour& to = level.contours.emplace_back();
+            to.closed = flag_in(contour, "closed");
+            to.hole = flag_in(contour, "hole");
+            for (const JsonValue& point : contour["points"].GetArray())
+                to.points.push_back({point[0].GetDouble(), point[1].GetDouble()});
+        }
+    }
+    std::stable_sort(slices.levels.begin(), slices.levels.end(),
+                     [](const PageSlices::Level& a, const PageSlices::Level& b) { return a.height < b.height; });
+    if (const JsonValue* tube = find_member(document, "tube"); tube != nullptr && flag_in(*tube, "found"))
+        slices.tube = {number_or(*tube, "lowest", 0), number_or(*tube, "highest", 0)};
+    return slices;
+}
+
+std::vector<PageConstraint> page_constraints(const JsonValue& result, const AnnotationSet& set) {
+    std::vector<PageConstraint> constraints;
+    for (const JsonValue& from : list_in(result, "constraints")) {
+        if (!from.IsObject() || find_member(from, "parts") == nullptr || find_member(from, "verdict") == nullptr) continue;
+        PageConstraint& one = constraints.emplace_back();
+        one.type = text_in(from, "type");
+        for (const JsonValue& part : list_in(from, "parts"))
+            for (std::size_t i = 0; i < set.annotations.size(); ++i)
+                if (set.annotations[i].tag == text_of(part)) one.members.push_back(i);
+        one.weight = number_or(from, "weight", 1);
+        one.hard = flag_in(from, "hard");
+        one.before = text_in(from, "before");
+        one.verdict = text_in(from, "verdict");
+        if (one.verdict == "holds" || one.verdict == "fails") one.holds = one.verdict == "holds";
+        one.text = text_in(from, "text");
+        for (const JsonValue& deviation : list_in(from, "deviations"))
+            if (deviation.IsObject())
+                one.deviations.push_back({text_in(deviation, "quantity"), finite_in(deviation, "before"),
+                                          finite_in(deviation, "value"), finite_in(deviation, "tolerance"),
+                                          text_in(deviation, "unit")});
+        if (const JsonValue* residual = find_member(from, "residual"); residual != nullptr && residual->IsObject())
+            if (const auto mean = finite_in(*residual, "mean"), largest = finite_in(*residual, "max"); mean && largest)
+                one.residual = {*mean, *largest};
+    }
+    return constraints;
+}
+
+std::vector<std::string> page_conflicts(const JsonValue& result) {
+    std::vector<std::string> texts;
+    const auto constraints = list_in(result, "constraints");
+    const auto name = [&](int id) {
+        for (const JsonValue& one : constraints)
+            if (one.IsObject() && number_or(one, "id", -1) == id) {
+                std::vector<std::string> parts;
+                for (const JsonValue& part : list_in(one, "parts")) parts.push_back(text_of(part));
+                return text_in(one, "type") + " of " + joined(parts, ", ");
+            }
+        return "constraint " + std::to_string(id);
+    };
+    for (const JsonValue& conflict : list_in(result, "conflicts")) {
+        if (!conflict.IsObject()) continue;
+        std::vector<std::string> freed;
+        for (const JsonValue& id : list_in(conflict, "freed"))
+            if (id.IsNumber()) freed.push_back(name(static_cast<int>(id.GetDouble())));
+        const std::string subject = name(static_cast<int>(number_or(conflict, "id", -1)));
+        texts.push_back(freed.empty() ? subject + " cannot hold" : subject + " would hold without " + joined(freed, "; "));
+    }
+    return texts;
+}
+
+std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title, const std::set<std::string>& but) {
+    std::vector<PageTable> tables;
+    PageTable single;
+    single.title = title;
+    single.columns = {"quantity", "value"};
+    Cells singles;
+    JsonAllocator allocator;
+    JsonValue rest(rapidjson::kObjectType);
+    for (const auto& [key, value] : result.GetObject()) {
+        const std::string name = key.GetString();
+        if (but.contains(name) || name == "format" || name == "version" || name == "provenance") continue;
+        const bool records = value.IsArray() && !value.Empty() &&
+                             std::all_of(value.Begin(), value.End(), [](const JsonValue& one) { return one.IsObject(); });
+        if (!records) {
+            add_member(rest, name, JsonValue(value, allocator), allocator);
+            continue;
+        }
+        PageTable& table = tables.emplace_back();
+        table.title = title + ": " + title_of(name);
+        std::vector<Cells> rows;
+        for (const JsonValue& record : value.GetArray()) {
+            add_cells(record, "", rows.emplace_back());
+            for (const auto& [column, cell] : rows.back())
+                if (std::find(table.columns.begin(), table.columns.end(), column) == table.columns.end())
+                    table.columns.push_back(column);
+        }
+        for (Cells& cells : rows) {
+            PageTable::Row& row = table.rows.emplace_back();
+            for (const std::string& column : table.columns) {
+                const auto found = std::find_if(cells.begin(), cells.end(), [&](const auto& one) { return one.first == column; });
+                if (found == cells.end()) row.cells.emplace_back();
+                else row.cells.push_back(std::move(found->second));
+            }
+        }
+    }
+    add_cells(rest, "", singles);
+    for (auto& [name, cell] : singles) {
+        PageTable::Row& row = single.rows.emplace_back();
+        row.cells.push_back(text_cell(title_of(name)));
+        row.cells.push_back(std::move(cell));
+    }
+    if (!single.rows.empty()) tables.insert(tables.begin(), std::move(single));
+    return tables;
+}
+
+std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
+    std::vector<PageMap> maps;
+    PlyNumbers numbers = read_ply_numbers(file);
+    const auto add = [&](const std::string& name, std::vector<double> values, std::size_t elements) {
+        const bool varied = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end();
+        const bool finite = std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+        if (values.size() == elements && varied && finite) maps.push_back({name, title_of(name), std::move(values)});
+    };
+    const std::size_t vertices = mesh.mesh.number_of_vertices();
+    const auto has = [&](const char* name) {
+        return std::any_of(numbers.faces.begin(), numbers.faces.end(), [&](const PlyColumn& one) { return one.name == name; });
+    };
+    const std::vector<std::int32_t>& labels = mesh.extras.face_labels;
+    const bool completed =
+        has("fragment") && has("distance") && has("confidence") && labels.size() == mesh.mesh.number_of_faces() &&
+        std::all_of(labels.begin(), labels.end(),
+                    [](std::int32_t label) { return label >= 0 && label < static_cast<std::int32_t>(origins); });
+    if (completed)
+        maps.push_back({"origin",
+                        "observed, interpolated or hypothesis",
+                        origin_of_vertices(mesh),
+                        {{"observed", {186, 120, 82}}, {"interpolated", {214, 180, 120}}, {"hypothesis", {170, 180, 190}}}});
+    for (PlyColumn& column : numbers.vertices) add(column.name, std::move(column.values), vertices);
+    for (PlyColumn& column : numbers.faces) {
+        if (completed && column.name == "fragment") continue;
+        const std::vector<double> values = of_triangles(column.values, mesh);
+        if (values.size() == mesh.mesh.number_of_faces()) add(column.name, vertex_means(mesh.mesh, values), vertices);
+    }
+    return maps;
+}
+
+PageMap simplified_map(const PageMap& map, const std::vector<Index>& to, std::size_t vertices) {
+    PageMap made{map.name, map.label, {}, map.categories};
+    if (!map.categories.empty()) {
+        // What most of the vertices that became one had; of equally many the first.
+        const std::size_t count = map.categories.size();
+        std::vector<std::uint32_t> votes(vertices * count, 0);
+        for (std::size_t i = 0; i < map.values.size(); ++i)
+            if (to[i] != no_index && map.values[i] >= 0 && map.values[i] < static_cast<double>(count))
+                ++votes[to[i] * count + static_cast<std::size_t>(map.values[i])];
+        for (std::size_t v = 0; v < vertices; ++v) {
+            const auto begin = votes.begin() + static_cast<std::ptrdiff_t>(v * count);
+            const auto most = std::max_element(begin, begin + static_cast<std::ptrdiff_t>(count));
+            made.values.push_back(*most > 0 ? static_cast<double>(most - begin) : std::nan(""));
+        }
+        return made;
+    }
+    Means means(vertices);
+    for (std::size_t i = 0; i < map.values.size(); ++i)
+        if (to[i] != no_index) means.add(to[i], map.values[i]);
+    made.values = means.values();
+    return made;
+}
+
+bool is_completed(const std::vector<PageMap>& maps) {
+    return !maps.empty() && maps.front().name == "origin" && !maps.front().categories.empty();
+}
+
+std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& of_faces) {
+    Means means(mesh.number_of_vertices());
+    for (const Face face : mesh.faces())
+        for (const Vertex v : corners(mesh, face)) means.add(v.idx(), of_faces[face.idx()]);
+    return means.values();
+}
+
+bool are_apart(const Mesh& mesh, const AnnotationSet& regions) {
+    constexpr int none = -1;
+    std::vector<int> of(mesh.number_of_vertices(), none);
+    std::size_t covered = 0;
+    for (const Annotation& region : regions.annotations) {
+        if (region.type != AnnotationType::region) return false;
+        covered += region.faces.size();
+        for (const Index face : region.faces)
+            for (const Vertex v : corners(mesh, Face(face))) {
+                if (of[v.idx()] != none && of[v.idx()] != region.id) return false;
+                of[v.idx()] = region.id;
+            }
+    }
+    return regions.annotations.size() > 1 && covered == mesh.number_of_faces();
+}
+
+}  // namespace ostraka

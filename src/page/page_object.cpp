@@ -1,0 +1,338 @@
+#include "ostraka/page/page.h"
+
+#include "geometry.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/provenance.h"
+#include "ostraka/core/words.h"
+#include "ostraka/geom/shortest_path.h"
+#include "ostraka/relation/topology.h"
+#include "ostraka/render/colour_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace ostraka {
+
+namespace {
+
+constexpr std::uint16_t no_value = 65535;
+
+/// Keeps bytes in the page and tells their number.
+using Keep = std::function<std::size_t(std::string_view)>;
+using Relative = std::function<std::array<double, 3>(std::array<double, 3>)>;
+
+void add_number(std::string& bytes, std::size_t value) {
+    for (; value >= 128; value /= 128) bytes += static_cast<char>(value % 128 + 128);
+    bytes += static_cast<char>(value);
+}
+
+/// Ascending numbers as gaps and runs.
+std::string runs_of(const std::vector<Index>& faces) {
+    std::string bytes;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < faces.size();) {
+        std::size_t end = i + 1;
+        while (end < faces.size() && faces[end] == faces[end - 1] + 1) ++end;
+        add_number(bytes, faces[i] - at);
+        add_number(bytes, end - i);
+        at = faces[end - 1] + std::size_t{1};
+        i = end;
+    }
+    return bytes;
+}
+
+using Triple = std::array<double, 3>;
+
+Triple triple(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Where the pins of a measure are. A bounding measure goes from its first pin straight to the plane of the other.
+std::vector<Triple> pins_of_measure(const Mesh& mesh, const Measure& measure) {
+    std::vector<Triple> pins;
+    for (std::size_t i = 0; i < measure.points.size(); ++i) {
+        if (i < measure.locations.size() && measure.locations[i].face != no_index) {
+            const auto& [face, weights] = measure.locations[i];
+            Triple at{0, 0, 0};
+            const auto vertices = corners(mesh, Face(face));
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t k = 0; k < 3; ++k) at[k] += weights[c] * triple(mesh.point(vertices[c]))[k];
+            pins.push_back(at);
+        } else {
+            pins.push_back(triple(mesh.point(Vertex(measure.points[i]))));
+        }
+    }
+    if (measure.tool == "bounding" && measure.direction && pins.size() == 2) {
+        const Triple& d = *measure.direction;
+        double along = 0, length = 0;
+        for (std::size_t k = 0; k < 3; ++k) along += (pins[1][k] - pins[0][k]) * d[k], length += d[k] * d[k];
+        for (std::size_t k = 0; length > 0 && k < 3; ++k) pins[1][k] = pins[0][k] + along / length * d[k];
+    }
+    return pins;
+}
+
+/// What a measure runs along: the edges between the pins of a tape along them; empty for others.
+std::vector<Triple> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure) {
+    std::vector<Triple> way;
+    if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return way;
+    for (std::size_t i = 1; i < measure.points.size(); ++i)
+        for (const Index v : search.find(Vertex(measure.points[i - 1]), Vertex(measure.points[i]), {}))
+            way.push_back(triple(mesh.point(Vertex(v))));
+    return way;
+}
+
+struct Box {
+    Triple low{0, 0, 0}, size{0, 0, 0};
+    [[nodiscard]] double largest() const { return *std::max_element(size.begin(), size.end()); }
+};
+
+Box box_of(const TriangleSoup& soup) {
+    Box box;
+    Triple high = box.low = soup.points.front();
+    for (const Triple& p : soup.points)
+        for (std::size_t k = 0; k < 3; ++k) {
+            box.low[k] = std::min(box.low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    for (std::size_t k = 0; k < 3; ++k) box.size[k] = high[k] - box.low[k];
+    return box;
+}
+
+/// Colours at even steps of a scale; it is linear between them.
+std::vector<std::array<int, 3>> colours_of(const ColourScale& scale) {
+    constexpr int steps = 8;
+    std::vector<std::array<int, 3>> colours;
+    for (int i = 0; i <= steps; ++i) {
+        const Rgb colour = colour_of(scale, scale.minimum + (scale.maximum - scale.minimum) * i / steps);
+        colours.push_back({colour.red, colour.green, colour.blue});
+    }
+    return colours;
+}
+
+/// What the colours go over: all values, or, where a few lie far out, what holds 98 % of them.
+std::pair<double, double> coloured_range(const std::vector<double>& values, const ColourScale& scale) {
+    std::vector<double> sorted;
+    for (const double value : values)
+        if (std::isfinite(value)) sorted.push_back(value);
+    std::sort(sorted.begin(), sorted.end());
+    const auto last = static_cast<double>(sorted.size() - 1);
+    double low = sorted[static_cast<std::size_t>(0.01 * last)], high = sorted[static_cast<std::size_t>(std::ceil(0.99 * last))];
+    if (scale.diverging) high = std::max(std::abs(low), std::abs(high)), low = -high;
+    return 2 * (high - low) < scale.maximum - scale.minimum && high > low ? std::pair(low, high)
+                                                                          : std::pair(scale.minimum, scale.maximum);
+}
+
+std::string values_text(const Descriptor& descriptor) {
+    if (!descriptor.file.empty()) return descriptor.file;
+    constexpr std::size_t most = 12;
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < std::min(most, descriptor.values.size()); ++i) texts.push_back(digits(descriptor.values[i], 5));
+    if (descriptor.values.size() > most) texts.emplace_back("...");
+    return joined(texts, ", ") + (descriptor.unit.empty() ? "" : " " + descriptor.unit);
+}
+
+JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Relative& relative, const Keep& keep,
+                           JsonAllocator& allocator) {
+    const auto parents = topology(mesh, set).order.parent;
+    PathSearch paths(mesh);
+    JsonValue annotations(rapidjson::kArrayType);
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation& one = set.annotations[i];
+        JsonValue measures(rapidjson::kArrayType), attributes(rapidjson::kArrayType);
+        for (const Attribute& attribute : one.attributes) {
+            if (attribute.type == AttributeType::measure) {
+                const Measure& measure = attribute.measure;
+                JsonValue entry = json_object(
+                    allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
+                    json_list(pins_of_measure(mesh, measure), allocator, [&](const Triple& p) { return relative(p); }));
+                const auto way =
+                    json_list(way_of(paths, mesh, measure), allocator, [&](const Triple& at) { return relative(at); });
+                add_given(entry, allocator, "way", way);
+                if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
+                add_given(entry, allocator, "stale", measure.stale);
+                measures.PushBack(entry, allocator);
+            } else {
+                const bool is_word = attribute.type == AttributeType::semantic;
+                attributes.PushBack(json_object(allocator, "name", attribute.name, "text",
+                                                is_word ? attribute.note : values_text(attribute.descriptor)),
+                                    allocator);
+            }
+        }
+        JsonValue entry = json_object(allocator, "id", one.id, "tag", one.tag, "type", to_string(one.type), "colour", one.colour,
+                                      "parent", parents[i] ? static_cast<int>(*parents[i]) : -1, "attributes",
+                                      std::move(attributes), "measures", std::move(measures));
+        add_given(entry, allocator, "note", one.note);
+        if (one.type == AnnotationType::region)
+            add_members(entry, allocator, "faces",
+                        json_object(allocator, "count", one.faces.size(), "blob", keep(runs_of(one.faces))));
+        else if (one.type == AnnotationType::line) add_members(entry, allocator, "lines", one.polylines);
+        else add_members(entry, allocator, "points", one.points);
+        annotations.PushBack(entry, allocator);
+    }
+    return annotations;
+}
+
+/// Values as steps: numbers between the ends of the scale, or places in the categories.
+JsonValue map_json(const PageMap& map, const Keep& keep, JsonAllocator& allocator) {
+    std::vector<std::uint16_t> steps;
+    const auto bytes_of_steps = [&] { return std::string_view(reinterpret_cast<const char*>(steps.data()), 2 * steps.size()); };
+    JsonValue entry = json_object(allocator, "name", map.name, "label", map.label.empty() ? map.name : map.label);
+    if (!map.categories.empty()) {
+        std::vector<std::size_t> counts(map.categories.size(), 0);
+        for (const double value : map.values) {
+            const bool given = value >= 0 && value < static_cast<double>(counts.size());
+            steps.push_back(given ? static_cast<std::uint16_t>(value) : no_value);
+            if (given) ++counts[steps.back()];
+        }
+        const auto last = static_cast<double>(counts.size() - 1);
+        add_members(entry, allocator, "blob", keep(bytes_of_steps()), "minimum", 0, "maximum", last, "from", 0, "to", last,
+                    "colours", std::vector<int>(), "histogram", counts, "categories",
+                    json_list(map.categories, allocator, [&](const PageMap::Category& one) {
+                        return json_object(allocator, "text", one.text, "colour", one.colour);
+                    }));
+        return entry;
+    }
+    const ColourScale scale = scale_of({&map.values}, map.name);
+    const double range = scale.maximum - scale.minimum;
+    const auto [from, to] = coloured_range(map.values, scale);
+    std::vector<std::size_t> histogram(40, 0);
+    for (const double value : map.values) {
+        if (!std::isfinite(value)) {
+            steps.push_back(no_value);
+            continue;
+        }
+        const double share = range > 0 ? std::clamp((value - scale.minimum) / range, 0.0, 1.0) : 0.5;
+        steps.push_back(static_cast<std::uint16_t>(std::lround(share * (no_value - 1))));
+        const double place = to > from ? std::clamp((value - from) / (to - from), 0.0, 1.0) : 0.5;
+        ++histogram[std::min(histogram.size() - 1, static_cast<std::size_t>(place * static_cast<double>(histogram.size())))];
+    }
+    add_members(entry, allocator, "blob", keep(bytes_of_steps()), "minimum", scale.minimum, "maximum", scale.maximum, "from",
+                from, "to", to, "colours", colours_of(scale), "histogram", histogram);
+    return entry;
+}
+
+JsonValue relations_json(const PageObject& object, const AnnotationSet& set, JsonAllocator& allocator) {
+    JsonValue relations(rapidjson::kArrayType);
+    if (object.graph != nullptr)
+        for (std::size_t r = 0; r < object.graph->relationships.size(); ++r) {
+            const Relationship& one = object.graph->relationships[r];
+            std::vector<std::size_t> members;
+            for (const int id : one.annotations)
+                for (std::size_t i = 0; i < set.annotations.size(); ++i)
+                    if (set.annotations[i].id == id) members.push_back(i);
+            JsonValue entry = json_object(allocator, "type", one.type, "members", members, "directed", one.directed, "constraint",
+                                          one.is_constraint, "weight", one.weight, "text", "");
+            if (r < object.checks.size() && object.checks[r].verdict != Verdict::unknown) {
+                add_members(entry, allocator, "holds", object.checks[r].verdict == Verdict::holds);
+                entry["text"] = json_string(object.checks[r].text, allocator);
+            }
+            relations.PushBack(entry, allocator);
+        }
+    return relations;
+}
+
+JsonValue constraint_json(const PageConstraint& one, JsonAllocator& allocator) {
+    JsonValue entry = json_object(allocator, "type", one.type, "members", one.members, "weight", one.weight, "hard", one.hard,
+                                  "before", one.before, "verdict", one.verdict, "text", one.text, "deviations",
+                                  json_list(one.deviations, allocator, [&](const PageConstraint::Deviation& d) {
+                                      return json_object(allocator, "quantity", d.quantity, "before", d.before, "value", d.value,
+                                                         "tolerance", d.tolerance, "unit", d.unit);
+                                  }));
+    if (one.holds) add_members(entry, allocator, "holds", *one.holds);
+    if (one.residual)
+        add_members(entry, allocator, "residual",
+                    json_object(allocator, "mean", (*one.residual)[0], "largest", (*one.residual)[1]));
+    return entry;
+}
+
+JsonValue slices_json(const PageSlices& slices, const Relative& relative, const Keep& keep, JsonAllocator& allocator) {
+    std::vector<float> places;
+    JsonValue levels(rapidjson::kArrayType);
+    for (const PageSlices::Level& level : slices.levels) {
+        JsonValue contours(rapidjson::kArrayType);
+        for (const PageSlices::Contour& contour : level.contours) {
+            for (const auto& [u, v] : contour.points) {
+                places.push_back(static_cast<float>(u));
+                places.push_back(static_cast<float>(v));
+            }
+            contours.PushBack(
+                json_object(allocator, "points", contour.points.size(), "closed", contour.closed, "hole", contour.hole),
+                allocator);
+        }
+        levels.PushBack(json_object(allocator, "height", level.height, "origin", relative(level.origin), "u", level.u, "v",
+                                    level.v, "values", level.values, "contours", std::move(contours)),
+                        allocator);
+    }
+    JsonValue columns = json_list(slices.columns, allocator, [&](const PageSlices::Column& column) {
+        return json_object(allocator, "name", column.name, "title", column.title, "unit", column.unit);
+    });
+    const std::string_view bytes(reinterpret_cast<const char*>(places.data()), places.size() * sizeof(float));
+    JsonValue entry = json_object(allocator, "unit", slices.unit, "columns", std::move(columns), "levels", std::move(levels),
+                                  "blob", keep(bytes));
+    if (slices.tube) add_members(entry, allocator, "tube", *slices.tube);
+    return entry;
+}
+
+}  // namespace
+
+std::size_t Page::add(const PageObject& object) {
+    auto& allocator = document_.GetAllocator();
+    const Mesh& mesh = *object.mesh;
+    const TriangleSoup soup = to_soup(mesh);
+    if (soup.triangles.empty()) fail_input(object.name, "has no triangles", "give a mesh");
+    const Box box = box_of(soup);
+    const Relative relative = [&](Triple p) {
+        for (std::size_t k = 0; k < 3; ++k) p[k] -= box.low[k];
+        return p;
+    };
+    const Keep keep = [this](std::string_view bytes) { return add_bytes(bytes); };
+    const AnnotationSet none;
+    const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : none;
+    JsonValue annotations = annotations_json(mesh, set, relative, keep, allocator);
+    JsonValue maps(rapidjson::kArrayType);
+    for (const PageMap& map : object.maps) {
+        if (map.values.size() != soup.points.size())
+            fail_input(
+                map.name,
+                "holds " + std::to_string(map.values.size()) + " values for " + std::to_string(soup.points.size()) + " vertices",
+                "give a map with a number for each vertex");
+        maps.PushBack(map_json(map, keep, allocator), allocator);
+    }
+    const std::string unit = !object.unit.empty() ? object.unit : set.unit;
+    JsonValue entry = json_object(allocator, "name", printable(object.name, 200), "unit", unit, "vertices",
+                                  object.whole ? object.whole->vertices : soup.points.size(), "faces",
+                                  object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size,
+                                  "up", set.up ? *set.up : object.up, "geometry",
+                                  add_bytes(quantised_glb(soup, box.low, box.largest())), "annotations", std::move(annotations),
+                                  "maps", std::move(maps), "relations", relations_json(object, set, allocator));
+    add_given(entry, allocator, "constraints", json_list(object.constraints, allocator, [&](const PageConstraint& one) {
+                  return constraint_json(one, allocator);
+              }));
+    add_given(entry, allocator, "conflicts", object.conflicts);
+    add_given(entry, allocator, "parts", object.parts);
+    if (object.slices != nullptr) add_members(entry, allocator, "slices", slices_json(*object.slices, relative, keep, allocator));
+    if (object.whole)
+        add_members(entry, allocator, "simplified",
+                    json_object(allocator, "vertices", soup.points.size(), "deviation", object.whole->deviation));
+    if (object.cage != nullptr) {
+        // In the object's own frame, which its steps begin below.
+        TriangleSoup cage = to_soup(*object.cage);
+        const Box around = box_of(cage);
+        add_members(entry, allocator, "cage",
+                    json_object(allocator, "geometry", add_bytes(quantised_glb(cage, around.low, around.largest())), "vertices",
+                                cage.points.size(), "origin", relative(around.low)));
+    }
+    const std::string_view corner_bytes(reinterpret_cast<const char*>(soup.triangles.data()),
+                                        soup.triangles.size() * sizeof soup.triangles.front());
+    const std::string checksum = sha256(std::string(corner_bytes));
+    if (const auto like = std::find(triangles_.begin(), triangles_.end(), checksum); like != triangles_.end()) {
+        const auto first = static_cast<rapidjson::SizeType>(like - triangles_.begin());
+        if (!objects_[first].HasMember("blend")) add_members(objects_[first], allocator, "blend", first);
+        add_members(entry, allocator, "blend", first);
+    }
+    triangles_.push_back(checksum);
+    objects_.PushBack(entry, allocator);
+    return objects_.Size() - 1;
+}
+
+}  // namespace ostraka
