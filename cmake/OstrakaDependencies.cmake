@@ -7,6 +7,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(PNG REQUIRED)
 find_package(meshoptimizer REQUIRED)
 pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
 # By path: what their packages define for the compiler is of use to one file only.

@@ -313,6 +313,37 @@ void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& aft
     }
 }
 
+std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure) {
+    std::vector<Point> pins;
+    for (std::size_t i = 0; i < measure.points.size(); ++i) {
+        if (i < measure.locations.size() && measure.locations[i].face != no_index) {
+            const auto& [face, weights] = measure.locations[i];
+            Vector at(0, 0, 0);
+            const auto vertices = corners(mesh, Face(face));
+            for (std::size_t c = 0; c < 3; ++c) at = at + weights[c] * (mesh.point(vertices[c]) - CGAL::ORIGIN);
+            pins.push_back(CGAL::ORIGIN + at);
+        } else {
+            pins.push_back(mesh.point(Vertex(measure.points[i])));
+        }
+    }
+    if (measure.tool == "bounding" && measure.direction && pins.size() == 2) {
+        const auto& d = *measure.direction;
+        const Vector direction(d[0], d[1], d[2]);
+        const double length = direction.squared_length();
+        if (length > 0) pins[1] = pins[0] + ((pins[1] - pins[0]) * direction / length) * direction;
+    }
+    return pins;
+}
+
+std::vector<Point> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure) {
+    std::vector<Point> way;
+    if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return way;
+    for (std::size_t i = 1; i < measure.points.size(); ++i)
+        for (const Index v : search.find(Vertex(measure.points[i - 1]), Vertex(measure.points[i]), {}))
+            way.push_back(mesh.point(Vertex(v)));
+    return way;
+}
+
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
     annotation.attributes.push_back(
         {next_free_id(annotation.attributes), name, AttributeType::measure, {}, std::move(measure), {}});

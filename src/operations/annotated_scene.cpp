@@ -2,8 +2,14 @@
 
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/smooth_regions.h"
+#include "ostraka/core/text.h"
+#include "ostraka/geom/shortest_path.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/measure/measure.h"
 
 #include <algorithm>
+#include <map>
 
 namespace ostraka {
 
@@ -26,15 +32,23 @@ LegendEntry annotation_legend(const Annotation& annotation, bool on_map) {
 
 class AnnotationDrawing {
 public:
-    AnnotationDrawing(Scene& scene, const Mesh& mesh, const AnnotationSet& set)
-        : scene_(scene), mesh_(mesh), on_map_(!scene.vertex_values.empty() || !scene.face_values.empty()) {
+    AnnotationDrawing(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style)
+        : scene_(scene),
+          mesh_(mesh),
+          style_(style),
+          on_map_(!style.painted || !scene.vertex_values.empty() || !scene.face_values.empty()) {
         if (!on_map_) paint(set);
+        if (!on_map_ && style.smooth) smooth();
     }
 
     void draw(const Annotation& annotation) {
         const Rgb colour = annotation_colour(annotation);
         switch (annotation.type) {
             case AnnotationType::region:
+                if (style_.smooth) {
+                    if (on_map_) outline_smoothly(annotation, colour);
+                    break;
+                }
                 for (const Outline& outline : extract_outlines(mesh_, annotation.faces))
                     for (const auto& line : seen_of(outline)) {
                         if (on_map_) add_line(line, colour, 3, true);
@@ -42,7 +56,10 @@ public:
                     }
                 break;
             case AnnotationType::line:
-                for (const auto& polyline : annotation.polylines) add_line(polyline, colour, 3.5, true);
+                for (const auto& polyline : annotation.polylines) {
+                    add_line(polyline, colour, 3.5, true);
+                    if (style_.smooth) smooth_line(scene_.lines.back().points);
+                }
                 break;
             case AnnotationType::point:
                 for (const Index v : annotation.points) scene_.markers.push_back({scene_.mesh.points[v], colour, 6, ""});
@@ -50,7 +67,47 @@ public:
         }
     }
 
-    void add_to_legend(const Annotation& annotation) { scene_.legend.push_back(annotation_legend(annotation, on_map_)); }
+    void add_to_legend(const Annotation& annotation) {
+        scene_.legend.push_back(annotation_legend(annotation, on_map_));
+        const LegendEntry& entry = scene_.legend.back();
+        SceneLabel& label = scene_.labels.emplace_back(SceneLabel{entry.text, entry.colour});
+        label.faces = annotation.faces;
+        for (const auto& polyline : annotation.polylines)
+            if (label.points.empty() || polyline.size() > label.points.size()) {
+                label.points.clear();
+                for (const Index v : polyline) label.points.push_back(scene_.mesh.points[v]);
+            }
+        if (!annotation.points.empty()) label.points = {scene_.mesh.points[annotation.points.front()]};
+        if (annotation.type != AnnotationType::region) label.faces.clear();
+        if (label.faces.empty() && label.points.empty()) scene_.labels.pop_back();
+    }
+
+    void draw_measures(PathSearch& search, const Annotation& annotation, const std::string& unit) {
+        constexpr Rgb ink{30, 30, 34}, white{255, 255, 255};
+        for (const Attribute& attribute : annotation.attributes) {
+            if (attribute.type != AttributeType::measure) continue;
+            const Measure& measure = attribute.measure;
+            std::vector<Point> line = way_of(search, mesh_, measure);
+            if (line.empty()) line = pins_of(mesh_, measure);
+            if (line.empty()) continue;
+            SceneLine& drawn = scene_.lines.emplace_back();
+            for (const Point& p : line) drawn.points.push_back({p.x(), p.y(), p.z()});
+            drawn.colour = ink;
+            drawn.width = 1.8;
+            drawn.through = true;
+            for (const Point& p : pins_of(mesh_, measure))
+                scene_.markers.push_back({{p.x(), p.y(), p.z()}, white, 3.5, "", true});
+            const std::string in = !measure.unit.empty() ? measure.unit : unit;
+            std::string text = attribute.name;
+            if (measure.value) text += ": " + digits(*measure.value, 4) + (in.empty() ? "" : " " + in);
+            scene_.labels.push_back({text, ink, {}, drawn.points, true});
+            if (!measure.value) continue;
+            // Where there are no labels beside the object, the value stands at the middle.
+            const std::array<double, 3>&a = drawn.points[(drawn.points.size() - 1) / 2],
+                                     &b = drawn.points[drawn.points.size() / 2];
+            scene_.markers.push_back({{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2}, ink, 0, text, true});
+        }
+    }
 
 private:
     void paint(const AnnotationSet& set) {
@@ -61,6 +118,62 @@ private:
                 scene_.face_colours[face] = annotation_colour(*region);
                 top_[face] = region;
             }
+    }
+
+    /// Colours and outlines that follow the regions without the steps of the mesh.
+    void smooth() {
+        std::vector<int> labels;
+        for (const Annotation* region : top_) labels.push_back(region == nullptr ? -1 : region->id);
+        std::map<int, Rgb> colours{{-1, clay}};
+        for (const Annotation* region : top_)
+            if (region != nullptr) colours[region->id] = annotation_colour(*region);
+        const SmoothRegions regions = smooth_regions(mesh_, labels);
+        for (const auto& patch : regions.patches) scene_.patches.push_back({patch.face, colours[patch.label], patch.weights});
+        add_outlines(regions, region_outline_colour, 1.5, false);
+    }
+
+    void outline_smoothly(const Annotation& region, const Rgb& colour) {
+        std::vector<int> labels(mesh_.number_of_faces(), 0);
+        for (const Index face : region.faces) labels[face] = 1;
+        add_outlines(smooth_regions(mesh_, labels), colour, 3, true);
+    }
+
+    void add_outlines(const SmoothRegions& regions, const Rgb& colour, double width, bool cased) {
+        for (const auto& outline : regions.outlines) {
+            SceneLine& line = scene_.lines.emplace_back();
+            for (const Point& p : outline) line.points.push_back({p.x(), p.y(), p.z()});
+            line.colour = colour;
+            line.width = width;
+            line.cased = cased;
+        }
+    }
+
+    /// Steps of the edges away: each point goes half way to the middle of its neighbours, some times, ends stay; and back onto
+    /// the surface, with points between.
+    void smooth_line(std::vector<std::array<double, 3>>& points) {
+        const bool closed = points.size() > 3 && points.front() == points.back();
+        if (closed) points.pop_back();
+        const std::size_t n = points.size();
+        if (n < 3) return;
+        for (int round = 0; round < 4; ++round) {
+            const auto before = points;
+            for (std::size_t i = closed ? 0 : 1; i < (closed ? n : n - 1); ++i)
+                for (std::size_t k = 0; k < 3; ++k)
+                    points[i][k] = 0.5 * before[i][k] + 0.25 * (before[(i + n - 1) % n][k] + before[(i + 1) % n][k]);
+        }
+        if (closed) points.push_back(points.front());
+        if (!surface_) surface_.emplace(mesh_);
+        std::vector<std::array<double, 3>> dense;
+        constexpr int parts = 4;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i)
+            for (int part = 0; part < parts; ++part) {
+                std::array<double, 3> at{};
+                for (std::size_t k = 0; k < 3; ++k) at[k] = points[i][k] + part * (points[i + 1][k] - points[i][k]) / parts;
+                const Point p = surface_->closest(Point(at[0], at[1], at[2])).point;
+                dense.push_back({p.x(), p.y(), p.z()});
+            }
+        dense.push_back(closed ? dense.front() : points.back());
+        points = std::move(dense);
     }
 
     void add_line(const std::vector<Index>& vertices, const Rgb& colour, double width, bool cased) {
@@ -99,20 +212,45 @@ private:
 
     Scene& scene_;
     const Mesh& mesh_;
+    AnnotationStyle style_;
     bool on_map_;
-    std::vector<const Annotation*> top_;  ///< the smallest region on each face, null where none is; empty on a map
+    std::optional<SurfaceSearch> surface_;  ///< made when a line needs it
+    std::vector<const Annotation*> top_;    ///< the smallest region on each face, null where none is; empty on a map
 };
 
 }  // namespace
 
-void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set) {
-    AnnotationDrawing drawing(scene, mesh, set);
+void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style) {
+    AnnotationDrawing drawing(scene, mesh, set, style);
     // Outlines come first, so that lines lie on top of them.
     for (const bool regions : {true, false})
         for (const Annotation& annotation : set.annotations)
             if ((annotation.type == AnnotationType::region) == regions) drawing.draw(annotation);
     for (const Annotation& annotation : set.annotations) drawing.add_to_legend(annotation);
+    if (style.measures) {
+        PathSearch search(mesh);
+        for (const Annotation& annotation : set.annotations) drawing.draw_measures(search, annotation, set.unit);
+    }
     scene.unit = set.unit;
+}
+
+void draw_cage(Scene& scene, const Mesh& cage) {
+    constexpr Rgb wire{70, 90, 130}, point{240, 170, 60};
+    const auto at = [&](Vertex v) {
+        const Point& p = cage.point(v);
+        return std::array{p.x(), p.y(), p.z()};
+    };
+    for (const Edge edge : cage.edges()) {
+        SceneLine& line = scene.lines.emplace_back();
+        line.points = {at(cage.vertex(edge, 0)), at(cage.vertex(edge, 1))};
+        line.colour = wire;
+        line.width = 1.2;
+        line.through = true;
+    }
+    for (const Vertex v : cage.vertices()) {
+        scene.markers.push_back({at(v), point, 3.5, "", true});
+        scene.around.push_back(at(v));
+    }
 }
 
 }  // namespace ostraka

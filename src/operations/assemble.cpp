@@ -313,7 +313,7 @@ private:
             if (shown > scene.legend.size())
                 scene.legend.push_back({"and " + std::to_string(shown - scene.legend.size()) + " more", clay, LegendMark::point});
             RenderOptions drawing;
-            drawing.views = RenderOptions::Views::six;
+            drawing.views = "six";
             drawing.size = "1500x1000";
             for (const auto& [ending, member] : {std::pair(".png", "picture"), std::pair(".exploded.png", "exploded")}) {
                 scene.mesh = soup;

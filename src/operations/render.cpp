@@ -18,13 +18,20 @@ namespace {
 struct Render final : Operation {
     void describe(Parameters& p) override {
         p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
-        p.output("picture", Kind::picture, picture, "picture to write (PNG)");
+        p.output("picture", Kind::picture, picture, "picture to write (.png, .svg or .pdf)");
         p.order({"meshes", "picture"});
         p.input_option("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
             .many_or_none();
         p.input_option("map", Kind::values, maps,
                        "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
             .many_or_none();
+        p.input_option("cage", Kind::mesh, cages, "cage to draw around an object; once a mesh, 'none' for a mesh without")
+            .many_or_none();
+        p.options("measures", measures, "draw measures of the annotations with their pins and values");
+        p.options("outlines", outlines, "borders of regions and lines as the mesh has them, or without the steps of its edges",
+                  Choices{"exact", "smooth"});
+        p.output_option("turntable", Kind::folder, turntable, "write frames of a full turn into this folder (0001.png, ...)");
+        p.options("frames", frames, "frames of a full turn", Range{2, 3600});
         p.options("title", titles, "written under the object; once a mesh, 'none' for a mesh without");
         p.options("map-on", map_on, "what the map's numbers belong to; auto: as their count says",
                   Choices{"auto", "vertex", "face"});
@@ -41,10 +48,11 @@ struct Render final : Operation {
     }
 
     void check() const override {
-        if (!picture.file().empty() && extension(picture.file()) != ".png")
-            fail_usage("picture '" + picture.file() + "' does not end in .png", "name the picture last, as PNG");
-        for (const auto& [flag, count] :
-             {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()}, std::pair{"title", titles.size()}})
+        if (!picture.file().empty()) static_cast<void>(picture_kind(picture.file()));
+        if (turntable.size() > 0 && !options.views.empty())
+            fail_usage("--turntable with --views", "give one view: the turn begins there");
+        for (const auto& [flag, count] : {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()},
+                                          std::pair{"cage", cages.size()}, std::pair{"title", titles.size()}})
             if (count != 0 && count != meshes.size())
                 fail_usage("--" + std::string(flag) + " is given " + std::to_string(count) + " times for " +
                                std::to_string(meshes.size()) + " meshes",
@@ -67,22 +75,58 @@ struct Render final : Operation {
             how.fit = RenderOptions::Fit::each;
         }
         report.run("readSeconds", reading.seconds());
-        const Rendering rendering = render(scenes, how);
+        // What is written between the pins of measures is written beside the object if there are labels.
+        if (how.labels)
+            for (Scene& scene : scenes)
+                for (SceneMarker& marker : scene.markers)
+                    if (marker.through) marker.label.clear();
+        const PictureKind kind = picture.file().empty() ? PictureKind::pixels : picture_kind(picture.file());
+        const Rendering rendering = render(scenes, how, kind);
         report.run("buildSeconds", rendering.build_seconds);
         report.run("drawSeconds", rendering.draw_seconds);
         const Stopwatch writing;
-        write_png(picture.path(), rendering.picture);
+        write(picture.path(), rendering);
+        const Size size = size_of(how);
+        if (turntable.size() > 0) write_turn(scenes, how, kind);
         report.run("writeSeconds", writing.seconds());
         report.run("threads", threads());
-        report("picture", picture.file_name())("width", rendering.picture.width)("height", rendering.picture.height);
+        report("picture", picture.file_name())("width", size.width)("height", size.height);
         report.empty_table("panes");
         for (const Pane& pane : rendering.panes) {
             const Scene& scene = scenes[pane.scene];
             const auto bar = pane.bar_length > 0 ? std::optional(pane.bar_length) : std::nullopt;
             report.row("panes")("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size())(
                 "faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit)("scaleBar", bar)(
-                "markers", scene.markers.size())("markersShown", pane.markers_shown)(
-                "camera", camera_json(pane, rendering.picture, report.allocator()));
+                "markers", scene.markers.size())("markersShown", pane.markers_shown)("camera",
+                                                                                     camera_json(pane, size, report.allocator()));
+        }
+    }
+
+    struct Size {
+        int width = 0, height = 0;
+    };
+    static Size size_of(const RenderOptions& how) {
+        Size size;
+        std::sscanf(how.size.c_str(), "%dx%d", &size.width, &size.height);
+        return size;
+    }
+
+    static void write(const Path& file, const Rendering& rendering) {
+        if (!rendering.document.empty()) write_file(file, rendering.document);
+        else if (!rendering.deep.rgba.empty()) write_png(file, rendering.deep);
+        else write_png(file, rendering.picture);
+    }
+
+    /// The viewer goes round once, beginning where the picture was taken from.
+    void write_turn(const std::vector<Scene>& scenes, RenderOptions how, PictureKind kind) const {
+        turntable.open();
+        const View begin = parse_view(how.view);
+        const std::string ending = kind == PictureKind::pixels ? ".png" : kind == PictureKind::svg ? ".svg" : ".pdf";
+        for (std::uint64_t i = 0; i < frames; ++i) {
+            how.view = number(begin.azimuth + 360.0 * double(i) / double(frames), 17) + "," + number(begin.elevation, 17);
+            std::string name = std::to_string(i + 1);
+            name.insert(0, name.size() < 4 ? 4 - name.size() : 0, '0');
+            write(turntable.in(name + ending), render(scenes, how, kind));
         }
     }
 
@@ -112,11 +156,16 @@ struct Render final : Operation {
         if (annotations.has(k)) {
             const Mesh& mesh = meshes.get(k).mesh;
             const AnnotationSet& set = annotations.on(mesh, k);
-            draw_annotations(scene, mesh, set);
+            AnnotationStyle style;
+            style.smooth = outlines == Outlines::smooth;
+            style.measures = measures;
+            style.painted = how.drawing == RenderOptions::Drawing::surface || how.drawing == RenderOptions::Drawing::points;
+            draw_annotations(scene, mesh, set, style);
             if (how.up == "auto" && set.up) how.up = joined(*set.up, ",", [](double x) { return number(x, 17); });
-        } else if (!maps.has(k)) {
+        } else if (!maps.has(k) && how.drawing != RenderOptions::Drawing::lines && how.drawing != RenderOptions::Drawing::wire) {
             colour_by_file(scene, extras, meshes.file(k));
         }
+        if (cages.has(k)) draw_cage(scene, cages.get(k).mesh);
         if (!unit.empty()) scene.unit = unit;
         return scene;
     }
@@ -136,6 +185,9 @@ struct Render final : Operation {
             colour = colours.size() > 1 ? category_colour(index) : Rgb{neutral_colour[0], neutral_colour[1], neutral_colour[2]};
             ++index;
             scene.legend.push_back({"label " + std::to_string(label), colour, LegendMark::area});
+            SceneLabel& named = scene.labels.emplace_back(SceneLabel{scene.legend.back().text, colour});
+            for (std::size_t face = 0; face < labels.size(); ++face)
+                if (labels[face] == label) named.faces.push_back(static_cast<Index>(face));
         }
         for (const auto label : labels) scene.face_colours.push_back(colours[label]);
     }
@@ -209,7 +261,7 @@ struct Render final : Operation {
     }
 
     /// As recipes take it, so that pixels of this picture can be picked.
-    static JsonValue camera_json(const Pane& pane, const Picture& picture, JsonAllocator& allocator) {
+    static JsonValue camera_json(const Pane& pane, const Size& picture, JsonAllocator& allocator) {
         const PictureCamera& camera = pane.camera;
         const auto triple = [](const auto& v) { return std::array{v.x(), v.y(), v.z()}; };
         const bool parallel = camera.distance == 0;
@@ -223,6 +275,11 @@ struct Render final : Operation {
 
     MeshInput meshes;
     FileOutput picture{".png"};
+    FolderOutput turntable;
+    MeshInput cages;
+    bool measures = false;
+    enum class Outlines { exact, smooth } outlines = Outlines::exact;
+    std::uint64_t frames = 72;
     AnnotationsInput annotations;
     ValuesInput maps;
     std::vector<std::string> titles;

@@ -23,7 +23,7 @@ public:
             if (fills_folder(i)) check_folder(i);
             else if (!form_of(sources[i].file))
                 fail_usage("'" + printable(file(i), 60) + "' is none of the files that slices are written to",
-                           "end its name in .json, .csv, .svg, .png or .ply, or give a folder for all of them");
+                           "end its name in .json, .csv, .svg, .pdf, .png or .ply, or give a folder for all of them");
     }
 
     [[nodiscard]] bool fills_folder(std::size_t i) const override {
@@ -53,7 +53,7 @@ private:
         const std::string ending = extension(file);
         if (ending == ".json") return SliceForm::json;
         if (ending == ".csv") return SliceForm::csv;
-        if (ending == ".svg" || ending == ".png") return SliceForm::sheet;
+        if (ending == ".svg" || ending == ".pdf" || ending == ".png") return SliceForm::sheet;
         if (ending == ".ply") return SliceForm::mesh;
         return std::nullopt;
     }
@@ -64,12 +64,12 @@ struct SliceObject final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit, upward direction, parts")
             .optional();
-        p.output_option(
-             "output", Kind::folder, output,
-             "a folder for everything, or .json (all), .csv (descriptors), .svg, .png (drawing), .ply (slices on the mesh); "
-             "repeatable")
+        p.output_option("output", Kind::folder, output,
+                        "a folder for everything, or .json (all), .csv (descriptors), .svg, .pdf, .png (drawing), .ply (slices "
+                        "on the mesh); "
+                        "repeatable")
             .many();
-        p.output_option("profile", Kind::picture, profile, "write a profile drawing (.svg, .png)");
+        p.output_option("profile", Kind::picture, profile, "write a profile drawing (.svg, .pdf, .png)");
         p.options("annotation", names, "id or tag of a region: slice that part only; more than one: all together").words();
         p.options.group("Planes");
         p.options("direction", direction, "across what the slices lie",
@@ -102,8 +102,9 @@ struct SliceObject final : Operation {
                            ", but no annotation file is given",
                        "put it behind the mesh: ostraka slice MESH ANNOTATIONS --annotation ...");
         if (!profile) return;
-        if (const std::string ending = extension(profile.file()); !profile.file().empty() && ending != ".svg" && ending != ".png")
-            fail_usage("'" + profile.file() + "' is no drawing", "end its name in .svg or .png");
+        if (const std::string ending = extension(profile.file());
+            !profile.file().empty() && ending != ".svg" && ending != ".png" && ending != ".pdf")
+            fail_usage("'" + profile.file() + "' is no drawing", "end its name in .svg, .pdf or .png");
         if (direction == "skeleton") fail_usage("--profile with --direction skeleton", "a profile has a straight axis");
         if (!plane.empty()) fail_usage("--profile with --plane", "a profile is cut along an axis: --direction, --profile-angle");
     }

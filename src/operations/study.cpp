@@ -9,7 +9,7 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
     p.output("output", Kind::folder, output,
              "folder for tables, plots and the report; what is done is kept there and not done again")
         .flag();
-    p.options("plots", plots_, "format of the plots", Choices{"svg", "png"}).unrecorded();
+    p.options("plots", plots_, "format of the plots", Choices{"svg", "pdf", "png"}).unrecorded();
     p.options(
          "shard", shard_,
          "K/N: do the K-th of N parts of the objects, on a machine of its own, and keep the results in the folder; without it "

@@ -28,13 +28,15 @@ public:
     [[nodiscard]] const std::string& shard() const { return shard_; }
     [[nodiscard]] Path in(const std::string& name) const { return output.in(name); }
     /// A plot in the output folder, with the ending that was asked for.
-    [[nodiscard]] Path plot(const std::string& name) const { return in(name + (plots_ == PlotFormat::png ? ".png" : ".svg")); }
+    [[nodiscard]] Path plot(const std::string& name) const {
+        return in(name + (plots_ == PlotFormat::png ? ".png" : plots_ == PlotFormat::pdf ? ".pdf" : ".svg"));
+    }
 
     FileInput collection;
     FolderOutput output;
 
 private:
-    enum class PlotFormat { svg, png };
+    enum class PlotFormat { svg, pdf, png };
     FileInput truth_;
     std::string truth_column_, shard_;
     PlotFormat plots_ = PlotFormat::svg;

@@ -16,7 +16,7 @@ struct StudySegments final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .png)");
+        p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .pdf, .png)");
         p.input_option("compare", Kind::annotations, compare,
                        "annotations with the known parts; else the mesh file's labels, if it has any");
         up.describe(p, "upward direction; else as the annotations of --compare say, else 0,0,1");

@@ -56,7 +56,7 @@ constexpr OperationEntry entries[]{
     {"relation remove", "take relationships out of a graph", make_relation_remove},
     {"relation list", "the relationships of a graph", make_relation_list},
     {"relation check", "tell which relationships hold on a mesh; exit code 3 if one fails", make_relation_check},
-    {"relation export", "write a graph for Graphviz", make_relation_export},
+    {"relation export", "draw a graph, or write it for Graphviz", make_relation_export},
     {"measure take", "take one measure by ruler, tape or bounding planes", make_measure_take},
     {"measure describe", "sizes, box, centroid, volume, curvature, thickness, and statistics of maps, of annotations", make_measure_describe},
     {"measure refresh", "compute all measures and descriptors anew, with uncertainties; exit code 3 if some cannot be", make_measure_refresh},

@@ -6,7 +6,7 @@
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/shortest_path.h"
-#include "ostraka/relation/topology.h"
+#include "ostraka/relation/layout.h"
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>
@@ -46,40 +46,6 @@ std::string runs_of(const std::vector<Index>& faces) {
 using Triple = std::array<double, 3>;
 
 Triple triple(const Point& p) { return {p.x(), p.y(), p.z()}; }
-
-/// Where the pins of a measure are. A bounding measure goes from its first pin straight to the plane of the other.
-std::vector<Triple> pins_of_measure(const Mesh& mesh, const Measure& measure) {
-    std::vector<Triple> pins;
-    for (std::size_t i = 0; i < measure.points.size(); ++i) {
-        if (i < measure.locations.size() && measure.locations[i].face != no_index) {
-            const auto& [face, weights] = measure.locations[i];
-            Triple at{0, 0, 0};
-            const auto vertices = corners(mesh, Face(face));
-            for (std::size_t c = 0; c < 3; ++c)
-                for (std::size_t k = 0; k < 3; ++k) at[k] += weights[c] * triple(mesh.point(vertices[c]))[k];
-            pins.push_back(at);
-        } else {
-            pins.push_back(triple(mesh.point(Vertex(measure.points[i]))));
-        }
-    }
-    if (measure.tool == "bounding" && measure.direction && pins.size() == 2) {
-        const Triple& d = *measure.direction;
-        double along = 0, length = 0;
-        for (std::size_t k = 0; k < 3; ++k) along += (pins[1][k] - pins[0][k]) * d[k], length += d[k] * d[k];
-        for (std::size_t k = 0; length > 0 && k < 3; ++k) pins[1][k] = pins[0][k] + along / length * d[k];
-    }
-    return pins;
-}
-
-/// What a measure runs along: the edges between the pins of a tape along them; empty for others.
-std::vector<Triple> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure) {
-    std::vector<Triple> way;
-    if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return way;
-    for (std::size_t i = 1; i < measure.points.size(); ++i)
-        for (const Index v : search.find(Vertex(measure.points[i - 1]), Vertex(measure.points[i]), {}))
-            way.push_back(triple(mesh.point(Vertex(v))));
-    return way;
-}
 
 struct Box {
     Triple low{0, 0, 0}, size{0, 0, 0};
@@ -131,9 +97,9 @@ std::string values_text(const Descriptor& descriptor) {
     return joined(texts, ", ") + (descriptor.unit.empty() ? "" : " " + descriptor.unit);
 }
 
-JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Relative& relative, const Keep& keep,
-                           JsonAllocator& allocator) {
-    const auto parents = topology(mesh, set).order.parent;
+JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const ContainmentOrder& order, const Relative& relative,
+                           const Keep& keep, JsonAllocator& allocator) {
+    const auto& parents = order.parent;
     PathSearch paths(mesh);
     JsonValue annotations(rapidjson::kArrayType);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
@@ -144,9 +110,9 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Rel
                 const Measure& measure = attribute.measure;
                 JsonValue entry = json_object(
                     allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
-                    json_list(pins_of_measure(mesh, measure), allocator, [&](const Triple& p) { return relative(p); }));
+                    json_list(pins_of(mesh, measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
                 const auto way =
-                    json_list(way_of(paths, mesh, measure), allocator, [&](const Triple& at) { return relative(at); });
+                    json_list(way_of(paths, mesh, measure), allocator, [&](const Point& at) { return relative(triple(at)); });
                 add_given(entry, allocator, "way", way);
                 if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
                 add_given(entry, allocator, "stale", measure.stale);
@@ -211,7 +177,8 @@ JsonValue map_json(const PageMap& map, const Keep& keep, JsonAllocator& allocato
     return entry;
 }
 
-JsonValue relations_json(const PageObject& object, const AnnotationSet& set, JsonAllocator& allocator) {
+JsonValue relations_json(const PageObject& object, const AnnotationSet& set, const GraphLayout& layout,
+                         JsonAllocator& allocator) {
     JsonValue relations(rapidjson::kArrayType);
     if (object.graph != nullptr)
         for (std::size_t r = 0; r < object.graph->relationships.size(); ++r) {
@@ -222,6 +189,7 @@ JsonValue relations_json(const PageObject& object, const AnnotationSet& set, Jso
                     if (set.annotations[i].id == id) members.push_back(i);
             JsonValue entry = json_object(allocator, "type", one.type, "members", members, "directed", one.directed, "constraint",
                                           one.is_constraint, "weight", one.weight, "text", "");
+            if (layout.lanes[r]) add_members(entry, allocator, "lane", *layout.lanes[r]);
             if (r < object.checks.size() && object.checks[r].verdict != Verdict::unknown) {
                 add_members(entry, allocator, "holds", object.checks[r].verdict == Verdict::holds);
                 entry["text"] = json_string(object.checks[r].text, allocator);
@@ -288,7 +256,8 @@ std::size_t Page::add(const PageObject& object) {
     const Keep keep = [this](std::string_view bytes) { return add_bytes(bytes); };
     const AnnotationSet none;
     const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : none;
-    JsonValue annotations = annotations_json(mesh, set, relative, keep, allocator);
+    const ContainmentOrder order = topology(mesh, set).order;
+    JsonValue annotations = annotations_json(mesh, set, order, relative, keep, allocator);
     JsonValue maps(rapidjson::kArrayType);
     for (const PageMap& map : object.maps) {
         if (map.values.size() != soup.points.size())
@@ -299,12 +268,18 @@ std::size_t Page::add(const PageObject& object) {
         maps.PushBack(map_json(map, keep, allocator), allocator);
     }
     const std::string unit = !object.unit.empty() ? object.unit : set.unit;
-    JsonValue entry = json_object(allocator, "name", printable(object.name, 200), "unit", unit, "vertices",
-                                  object.whole ? object.whole->vertices : soup.points.size(), "faces",
-                                  object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size,
-                                  "up", set.up ? *set.up : object.up, "geometry",
-                                  add_bytes(quantised_glb(soup, box.low, box.largest())), "annotations", std::move(annotations),
-                                  "maps", std::move(maps), "relations", relations_json(object, set, allocator));
+    const RelationGraph unrelated;
+    const GraphLayout layout = layout_of(object.graph != nullptr ? *object.graph : unrelated, set, order);
+    JsonValue tree = json_list(layout.rows, allocator, [&](const TreeEntry& row) {
+        return json_object(allocator, "annotation", row.annotation, "depth", row.depth);
+    });
+    JsonValue entry =
+        json_object(allocator, "name", printable(object.name, 200), "unit", unit, "vertices",
+                    object.whole ? object.whole->vertices : soup.points.size(), "faces",
+                    object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size, "up",
+                    set.up ? *set.up : object.up, "geometry", add_bytes(quantised_glb(soup, box.low, box.largest())),
+                    "annotations", std::move(annotations), "maps", std::move(maps), "tree", std::move(tree), "relations",
+                    relations_json(object, set, layout, allocator));
     add_given(entry, allocator, "constraints", json_list(object.constraints, allocator, [&](const PageConstraint& one) {
                   return constraint_json(one, allocator);
               }));

@@ -4,6 +4,9 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+
 #include <cstring>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -35,8 +38,39 @@ std::string clean_text(const std::string& text) {
     return clean;
 }
 
-Canvas::Canvas(int width, int height)
-    : surface_(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height), &cairo_surface_destroy),
+namespace {
+
+cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length) {
+    try {
+        static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
+    } catch (const std::bad_alloc&) {
+        return CAIRO_STATUS_NO_MEMORY;
+    }
+    return CAIRO_STATUS_SUCCESS;
+}
+
+cairo_surface_t* surface_of(PictureKind kind, int width, int height, std::string* bytes) {
+    if (kind == PictureKind::svg) {
+        cairo_surface_t* surface = cairo_svg_surface_create_for_stream(&append_bytes, bytes, width, height);
+        cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
+        return surface;
+    }
+    if (kind == PictureKind::pdf) {
+        constexpr double points = 72.0 / 96;
+        cairo_surface_t* surface = cairo_pdf_surface_create_for_stream(&append_bytes, bytes, points * width, points * height);
+        cairo_surface_set_device_scale(surface, points, points);
+        cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same drawing, the same bytes
+        return surface;
+    }
+    return cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
+}
+
+}  // namespace
+
+Canvas::Canvas(int width, int height, PictureKind kind)
+    : kind_(kind),
+      bytes_(std::make_unique<std::string>()),
+      surface_(surface_of(kind, width, height, bytes_.get()), &cairo_surface_destroy),
       context_(cairo_create(surface_.get()), &cairo_destroy) {
     check();
     cairo_t* context = context_.get();
@@ -68,18 +102,22 @@ void Canvas::fill(const Rgb& value) {
     cairo_paint(context_.get());
 }
 
-void Canvas::paint(const std::vector<std::uint32_t>& pixels, int left, int top, int width, int height) {
+void Canvas::paint(const std::vector<std::uint32_t>& pixels, int columns, int rows, int left, int top, int width, int height) {
     const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> image(
-        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height), &cairo_surface_destroy);
+        cairo_image_surface_create(CAIRO_FORMAT_ARGB32, columns, rows), &cairo_surface_destroy);
     if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
-    unsigned char* rows = cairo_image_surface_get_data(image.get());
+    unsigned char* data = cairo_image_surface_get_data(image.get());
     const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(image.get()));
-    const auto columns = static_cast<std::size_t>(width);
-    for (std::size_t row = 0; row < static_cast<std::size_t>(height); ++row)
-        std::memcpy(rows + row * stride, pixels.data() + row * columns, columns * sizeof(std::uint32_t));
+    const auto length = static_cast<std::size_t>(columns);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row)
+        std::memcpy(data + row * stride, pixels.data() + row * length, length * sizeof(std::uint32_t));
     cairo_surface_mark_dirty(image.get());
-    cairo_set_source_surface(context_.get(), image.get(), left, top);
+    cairo_save(context_.get());
+    cairo_translate(context_.get(), left, top);
+    if (columns != width || rows != height) cairo_scale(context_.get(), double(width) / columns, double(height) / rows);
+    cairo_set_source_surface(context_.get(), image.get(), 0, 0);
     cairo_paint(context_.get());
+    cairo_restore(context_.get());
 }
 
 void Canvas::clip(double left, double top, double width, double height) {
@@ -90,13 +128,32 @@ void Canvas::clip(double left, double top, double width, double height) {
 
 void Canvas::unclip() { cairo_restore(context_.get()); }
 
-void Canvas::polyline(const std::vector<Place>& places, const Rgb& value, double width) {
-    if (places.empty()) return;
+void Canvas::trace(const std::vector<Place>& places) {
+    cairo_new_path(context_.get());
     cairo_move_to(context_.get(), places.front().x, places.front().y);
     for (const Place& place : places) cairo_line_to(context_.get(), place.x, place.y);
+}
+
+void Canvas::polyline(const std::vector<Place>& places, const Rgb& value, double width) {
+    if (places.empty()) return;
+    trace(places);
     colour(value);
     cairo_set_line_width(context_.get(), width);
     cairo_stroke(context_.get());
+}
+
+void Canvas::dashed(const std::vector<Place>& places, const Rgb& value, double width) {
+    const double dashes[] = {3 * width, 3 * width};
+    cairo_set_dash(context_.get(), dashes, 2, 0);
+    polyline(places, value, width);
+    cairo_set_dash(context_.get(), nullptr, 0, 0);
+}
+
+void Canvas::polygon(const std::vector<Place>& places, const Rgb& value) {
+    if (places.empty()) return;
+    trace(places);
+    colour(value);
+    cairo_fill(context_.get());
 }
 
 void Canvas::disc(Place centre, double radius, const Rgb& value) {
@@ -173,6 +230,12 @@ Picture Canvas::picture() {
     for (std::size_t row = 0; row < rows; ++row)
         std::memcpy(result.argb.data() + row * columns, data + row * stride, columns * sizeof(std::uint32_t));
     return result;
+}
+
+std::string Canvas::document() {
+    cairo_surface_finish(surface_.get());
+    check();
+    return kind_ == PictureKind::svg ? stable_svg(*bytes_) : *bytes_;
 }
 
 }  // namespace ostraka::detail

@@ -17,11 +17,12 @@ std::string clean_text(const std::string& text);
 
 class Canvas {
 public:
-    Canvas(int width, int height);
+    /// Width and height in pixels; of a PDF document one is 1/96 inch.
+    Canvas(int width, int height, PictureKind kind = PictureKind::pixels);
 
     void fill(const Rgb& colour);
-    /// Lays pixels (0xAARRGGBB, premultiplied) over the canvas.
-    void paint(const std::vector<std::uint32_t>& pixels, int left, int top, int width, int height);
+    /// Lays pixels (0xAARRGGBB, premultiplied) over the canvas, `columns` by `rows` of them over this width and height.
+    void paint(const std::vector<std::uint32_t>& pixels, int columns, int rows, int left, int top, int width, int height);
 
     void clip(double left, double top, double width, double height);
     void unclip();
@@ -30,6 +31,8 @@ public:
         double x, y;
     };
     void polyline(const std::vector<Place>& places, const Rgb& colour, double width);
+    void dashed(const std::vector<Place>& places, const Rgb& colour, double width);
+    void polygon(const std::vector<Place>& places, const Rgb& colour);
     void disc(Place centre, double radius, const Rgb& colour);
     void rectangle(double left, double top, double width, double height, const Rgb& colour);
 
@@ -43,12 +46,17 @@ public:
     /// The text, or as much of it as fits into `width` with an ellipsis behind.
     std::string elide(const std::string& words, double size, double width);
 
-    /// The finished picture. Throws Error (failure) if cairo failed at some step.
+    /// The finished picture, of a canvas of pixels. Throws Error (failure) if cairo failed at some step.
     Picture picture();
+    /// The finished file, of a document. The same drawing has the same bytes. Throws as `picture`; nothing is drawn after it.
+    std::string document();
 
 private:
     void check() const;
     void colour(const Rgb& value);
+    void trace(const std::vector<Place>& places);
+    PictureKind kind_;
+    std::unique_ptr<std::string> bytes_;  ///< of a document: where cairo writes to
     std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
     std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
 };

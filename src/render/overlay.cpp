@@ -3,6 +3,10 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/linestring.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,10 +17,6 @@ namespace {
 /// is then not hidden by the surface itself.
 constexpr double sight_tolerance = 4e-3;
 
-bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point) {
-    return !surface.blocked(point, camera.to_viewer(point), sight_tolerance, camera.distance_to_viewer(point));
-}
-
 Rgb darker(const Rgb& colour) {
     const auto part = [](std::uint8_t c) { return static_cast<std::uint8_t>(c * 2 / 5); };
     return {part(colour.red), part(colour.green), part(colour.blue)};
@@ -24,57 +24,137 @@ Rgb darker(const Rgb& colour) {
 
 struct Stroke {
     std::vector<Canvas::Place> places;
-    const SceneLine* line;
+    const Line* line;
+    bool hidden;
 };
 
 /// A point of a line about every pixel and a half.
 struct Step {
-    Eigen::Vector3d point;
+    Eigen::Vector3d sight;
     Canvas::Place place;
     bool shown = false;
 };
 
-std::vector<Step> steps_along(const SceneLine& line, const Surface& surface, const Camera& camera) {
+std::vector<Step> steps_along(const Line& line, const Camera& camera) {
     constexpr double spacing = 1.5;
     constexpr double maximum = 4096;  // of one segment: enough for any that lies within the picture
+    const auto& sight = line.sight.empty() ? line.points : line.sight;
     std::vector<Step> steps;
-    const auto add = [&](const Eigen::Vector3d& point) {
-        Step step{point, {}, false};
+    const auto add = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& from) {
+        Step step{from, {}, false};
         if (camera.project(point, step.place.x, step.place.y)) steps.push_back(step);
     };
     for (std::size_t i = 0; i < line.points.size(); ++i) {
-        for (const double c : line.points[i])
-            if (!std::isfinite(c)) fail_input("picture", "a line has a coordinate that is not finite");
-        const Eigen::Vector3d point = surface.to_local(line.points[i]);
         if (i > 0) {
-            const Eigen::Vector3d before = surface.to_local(line.points[i - 1]);
             double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
             double count = maximum;
-            if (camera.project(before, x0, y0) && camera.project(point, x1, y1))
+            if (camera.project(line.points[i - 1], x0, y0) && camera.project(line.points[i], x1, y1))
                 count = std::clamp(std::ceil(std::hypot(x1 - x0, y1 - y0) / spacing), 1.0, maximum);
-            for (double k = 1; k < count; ++k) add(before + (k / count) * (point - before));
+            for (double k = 1; k < count; ++k)
+                add(line.points[i - 1] + (k / count) * (line.points[i] - line.points[i - 1]),
+                    sight[i - 1] + (k / count) * (sight[i] - sight[i - 1]));
         }
-        add(point);
+        add(line.points[i], sight[i]);
     }
     return steps;
 }
+
+double length_between(const std::vector<Step>& steps, std::size_t begin, std::size_t end) {
+    double length = 0;
+    for (std::size_t i = begin; i + 1 < end; ++i)
+        length += std::hypot(steps[i + 1].place.x - steps[i].place.x, steps[i + 1].place.y - steps[i].place.y);
+    return length;
+}
+
+void bridge(std::vector<Step>& steps, double longest) {
+    std::size_t after_shown = 0;  // of the last that is in sight
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (!steps[i].shown) continue;
+        if (after_shown > 0 && i > after_shown && length_between(steps, after_shown - 1, i + 1) < longest)
+            for (std::size_t k = after_shown; k < i; ++k) steps[k].shown = true;
+        after_shown = i + 1;
+    }
+}
+
+double length_of(const std::vector<Canvas::Place>& places) {
+    double length = 0;
+    for (std::size_t i = 1; i < places.size(); ++i)
+        length += std::hypot(places[i].x - places[i - 1].x, places[i].y - places[i - 1].y);
+    return length;
+}
+
+/// Without corners that lie no farther than `tolerance` from the line between those kept (Douglas and Peucker 1973).
+std::vector<Canvas::Place> thinned(const std::vector<Canvas::Place>& places, double tolerance) {
+    namespace bg = boost::geometry;
+    using Corner = bg::model::d2::point_xy<double>;
+    bg::model::linestring<Corner> line, kept;
+    for (const Canvas::Place& place : places) line.push_back({place.x, place.y});
+    bg::simplify(line, kept, tolerance);
+    std::vector<Canvas::Place> list;
+    for (const Corner& corner : kept) list.push_back({corner.x(), corner.y()});
+    return list;
+}
 }  // namespace
 
-void draw_lines(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, double size) {
+bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point) {
+    return !surface.blocked(point, camera.to_viewer(point), sight_tolerance, camera.distance_to_viewer(point));
+}
+
+std::vector<Line> lines_of(const Scene& scene, const Surface& surface) {
+    std::vector<Line> lines;
+    for (const SceneLine& from : scene.lines) {
+        Line& line = lines.emplace_back();
+        for (const auto& point : from.points) {
+            for (const double c : point)
+                if (!std::isfinite(c)) fail_input("picture", "a line has a coordinate that is not finite");
+            line.points.push_back(surface.to_local(point));
+        }
+        line.colour = from.colour;
+        line.width = from.width;
+        line.cased = from.cased;
+        line.through = from.through;
+    }
+    return lines;
+}
+
+void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& surface, const Camera& camera,
+                const LineDrawing& how) {
+    std::vector<std::vector<Step>> steps(lines.size());
+    parallel_for(lines.size(), [&](std::size_t i) { steps[i] = steps_along(lines[i], camera); });
+    std::vector<Step*> all;
+    for (auto& list : steps)
+        for (Step& step : list) all.push_back(&step);
+    parallel_for(
+        all.size(), [&](std::size_t i) { all[i]->shown = in_sight(surface, camera, all[i]->sight); }, 256);
+    if (how.bridged > 0)
+        for (auto& list : steps) bridge(list, how.bridged);
     std::vector<Stroke> strokes;
-    for (const SceneLine& line : scene.lines) {
-        auto steps = steps_along(line, surface, camera);
-        parallel_for(steps.size(), [&](std::size_t i) { steps[i].shown = in_sight(surface, camera, steps[i].point); });
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const Line& line = lines[i];
         bool open = false;
-        for (const Step& step : steps) {
-            if (step.shown && !open) strokes.push_back({{}, &line});
-            open = step.shown;
+        for (std::size_t k = 0; k < steps[i].size(); ++k) {
+            const Step& step = steps[i][k];
+            const bool turn = k > 0 && step.shown != steps[i][k - 1].shown;
+            if (line.through && turn) {
+                strokes.back().places.push_back(step.place);
+                open = false;
+            }
+            if ((step.shown || line.through) && !open) strokes.push_back({{}, &line, !step.shown});
+            open = step.shown || line.through;
             if (open) strokes.back().places.push_back(step.place);
         }
     }
+    if (how.shortest > 0) std::erase_if(strokes, [&](const Stroke& stroke) { return length_of(stroke.places) < how.shortest; });
+    if (how.thinning > 0)
+        for (Stroke& stroke : strokes)
+            if (stroke.places.size() > 2) stroke.places = thinned(stroke.places, how.thinning);
     for (const Stroke& stroke : strokes)
-        if (stroke.line->cased) canvas.polyline(stroke.places, darker(stroke.line->colour), (stroke.line->width + 2) * size);
-    for (const Stroke& stroke : strokes) canvas.polyline(stroke.places, stroke.line->colour, stroke.line->width * size);
+        if (stroke.line->cased && !stroke.hidden)
+            canvas.polyline(stroke.places, darker(stroke.line->colour), (stroke.line->width + 2) * how.size);
+    for (const Stroke& stroke : strokes) {
+        if (stroke.hidden) canvas.dashed(stroke.places, stroke.line->colour, 0.7 * stroke.line->width * how.size);
+        else canvas.polyline(stroke.places, stroke.line->colour, stroke.line->width * how.size);
+    }
 }
 
 std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const Style& style) {
@@ -84,7 +164,7 @@ std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surf
             if (!std::isfinite(c)) fail_input("picture", "a marker has a coordinate that is not finite");
         const Eigen::Vector3d point = surface.to_local(marker.point);
         Canvas::Place place{};
-        if (!camera.project(point, place.x, place.y) || !in_sight(surface, camera, point)) continue;
+        if (!camera.project(point, place.x, place.y) || !(marker.through || in_sight(surface, camera, point))) continue;
         ++shown;
         canvas.disc(place, (marker.radius + 1.5) * style.size, darker(marker.colour));
         canvas.disc(place, (marker.radius + 0.5) * style.size, {255, 255, 255});
@@ -95,6 +175,40 @@ std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surf
                         Canvas::Align::left, &style.background);
     }
     return shown;
+}
+
+void draw_axes(Canvas& canvas, const PixelBox& pane, const Camera& camera, const Style& style) {
+    struct Axis {
+        const char* name;
+        Eigen::Vector3d direction;
+        Rgb colour;
+    };
+    std::array<Axis, 3> axes{
+        {{"x", {1, 0, 0}, {204, 102, 119}}, {"y", {0, 1, 0}, {60, 150, 80}}, {"z", {0, 0, 1}, {88, 120, 200}}}};
+    std::stable_sort(axes.begin(), axes.end(), [&](const Axis& a, const Axis& b) {
+        return a.direction.dot(camera.toward) < b.direction.dot(camera.toward);  // the nearest last
+    });
+    const double length = 34 * style.size, head = 8 * style.size;
+    const Canvas::Place origin{pane.left + pane.width - 58 * style.size, pane.top + pane.height - 50 * style.size};
+    for (const Axis& axis : axes) {
+        const double x = axis.direction.dot(camera.right), y = -axis.direction.dot(camera.up), seen = std::hypot(x, y);
+        if (seen < 0.1) {
+            canvas.disc(origin, 4 * style.size, axis.colour);
+        } else {
+            const Canvas::Place tip{origin.x + x * length, origin.y + y * length};
+            const double along_x = x / seen * std::min(head, seen * length), along_y = y / seen * std::min(head, seen * length);
+            canvas.polyline({origin, {tip.x - along_x, tip.y - along_y}}, axis.colour, 2.2 * style.size);
+            canvas.polygon({tip,
+                            {tip.x - along_x - 0.45 * along_y, tip.y - along_y + 0.45 * along_x},
+                            {tip.x - along_x + 0.45 * along_y, tip.y - along_y - 0.45 * along_x}},
+                           axis.colour);
+        }
+        // Of an axis towards the viewer the name stands below the dot.
+        const double name_x = seen < 0.1 ? 0 : x / seen, name_y = seen < 0.1 ? 1 : y / seen;
+        canvas.text(axis.name, origin.x + x * length + name_x * 10 * style.size,
+                    origin.y + y * length + name_y * 10 * style.size + 5 * style.size, 14 * style.size, style.ink,
+                    Canvas::Align::centre, &style.background);
+    }
 }
 
 void draw_scale_bar(Canvas& canvas, double x, double y, double pixels, const std::string& text, const Style& style) {

@@ -18,10 +18,34 @@ struct Style {
     Rgb background{255, 255, 255};
 };
 
-/// Draws the stretches of the scene's lines that are in sight.
-void draw_lines(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, double size);
+/// A line in the surface's own coordinates.
+struct Line {
+    std::vector<Eigen::Vector3d> points;
+    Rgb colour;
+    double width = 1;  ///< nominal pixels
+    bool cased = false, through = false;
+    std::vector<Eigen::Vector3d> sight = {};  ///< of each point where the ray to the viewer starts; empty: a little above it
+};
+/// Throws Error (input) for a coordinate that is not finite.
+std::vector<Line> lines_of(const Scene& scene, const Surface& surface);
+
+/// Whether nothing lies between the point, or a little above it, and the viewer.
+bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3d& point);
+
+struct LineDrawing {
+    double size = 1;      ///< pixels per nominal pixel
+    double shortest = 0;  ///< stretches of fewer pixels are left out
+    double bridged = 0;   ///< hidden stretches of fewer pixels between others are drawn
+    double thinning = 0;  ///< corners are left out that lie no farther from the line than this, in pixels
+};
+/// Draws the stretches of the lines that are in sight, and dashed the hidden ones of those that go through.
+void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& surface, const Camera& camera,
+                const LineDrawing& how);
 /// Draws the markers that are in sight and returns their number.
 std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const Style& style);
+
+/// The directions of the mesh's axes, in the lower right corner of this pane.
+void draw_axes(Canvas& canvas, const PixelBox& pane, const Camera& camera, const Style& style);
 
 /// A bar of `pixels` on the line `y` with its length written above it.
 void draw_scale_bar(Canvas& canvas, double x, double y, double pixels, const std::string& text, const Style& style);

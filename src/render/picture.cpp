@@ -3,9 +3,12 @@
 #include "ostraka/core/error.h"
 
 #include <cairo.h>
+#include <png.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <map>
 #include <memory>
 
 namespace ostraka {
@@ -23,6 +26,42 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 }
 
 }  // namespace
+
+std::string stable_svg(const std::string& svg) {
+    static constexpr std::string_view kinds[] = {"surface", "image", "mask", "clip", "linear", "radial", "pattern", "source"};
+    std::map<std::string, std::string> names;
+    std::string made;
+    made.reserve(svg.size());
+    for (std::size_t i = 0; i < svg.size();) {
+        const char before = i > 0 ? svg[i - 1] : ' ';
+        if (before == '"' || before == '#') {
+            const std::string_view rest = std::string_view(svg).substr(i, 24);
+            const auto* kind =
+                std::find_if(std::begin(kinds), std::end(kinds), [&](std::string_view k) { return rest.starts_with(k); });
+            if (kind != std::end(kinds)) {
+                std::size_t end = kind->size();
+                while (end < rest.size() && rest[end] >= '0' && rest[end] <= '9') ++end;
+                if (end > kind->size()) {
+                    const auto [name, fresh] = names.try_emplace(std::string(rest.substr(0, end)));
+                    if (fresh) name->second = std::string(*kind) + std::to_string(names.size());
+                    made += name->second;
+                    i += end;
+                    continue;
+                }
+            }
+        }
+        made += svg[i++];
+    }
+    return made;
+}
+
+PictureKind picture_kind(const std::string& file) {
+    const std::string kind = extension(file);
+    if (kind == ".png") return PictureKind::pixels;
+    if (kind == ".svg") return PictureKind::svg;
+    if (kind == ".pdf") return PictureKind::pdf;
+    fail_usage("picture '" + file + "' does not end in .png, .svg or .pdf", "name the picture last");
+}
 
 Rgb parse_colour(const std::string& text) {
     if (text == "white") return {255, 255, 255};
@@ -52,6 +91,46 @@ void write_png(const Path& file, const Picture& picture) {
     std::string bytes;
     if (const auto status = cairo_surface_write_to_png_stream(surface.get(), &append, &bytes); status != CAIRO_STATUS_SUCCESS)
         failed(status);
+    write_file(file, bytes);
+}
+
+void write_png(const Path& file, const DeepPicture& picture) {
+    std::string bytes;
+    std::string message;
+    const auto failed = [](png_structp png, png_const_charp text) {
+        *static_cast<std::string*>(png_get_error_ptr(png)) = text;
+        png_longjmp(png, 1);
+    };
+    const auto ignore = [](png_structp, png_const_charp) {};
+    const auto write = [](png_structp png, png_bytep data, png_size_t length) {
+        auto* to = static_cast<std::string*>(png_get_io_ptr(png));
+        if (to->capacity() - to->size() < length) png_error(png, "memory runs out");
+        to->append(reinterpret_cast<const char*>(data), length);
+    };
+    const auto flush = [](png_structp) {};
+    // Rows as the format has them: the more significant byte first.
+    const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
+    std::vector<png_byte> data(width * height * 8);
+    for (std::size_t i = 0; i < width * height; ++i)
+        for (std::size_t k = 0; k < 4; ++k) {
+            data[8 * i + 2 * k] = static_cast<png_byte>(picture.rgba[i][k] >> 8U);
+            data[8 * i + 2 * k + 1] = static_cast<png_byte>(picture.rgba[i][k] & 255U);
+        }
+    std::vector<png_bytep> rows;
+    for (std::size_t row = 0; row < height; ++row) rows.push_back(data.data() + row * width * 8);
+    bytes.reserve(data.size() + data.size() / 64 + 4096);  // no exception may pass through the library
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, failed, ignore);
+    png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+    if (info == nullptr) throw std::bad_alloc();
+    if (setjmp(png_jmpbuf(png)) == 0) {
+        png_set_write_fn(png, &bytes, write, flush);
+        png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height), 16,
+                     PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_rows(png, info, rows.data());
+        png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+    }
+    png_destroy_write_struct(&png, &info);
+    if (!message.empty()) throw Error(ErrorKind::failure, "picture", message, "use a smaller size");
     write_file(file, bytes);
 }
 

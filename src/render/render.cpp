@@ -1,7 +1,10 @@
 #include "ostraka/render/render.h"
 
+#include "drawing.h"
+#include "labels.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "overlay.h"
 #include "shading.h"
@@ -11,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <sstream>
 
 namespace ostraka {
 
@@ -43,6 +47,7 @@ struct Plan {
     View view;
     std::string caption;
     Camera camera;
+    double label_column = 0;  ///< at both sides of the pane
 };
 
 /// One scale for the panes of one scene, or of all scenes.
@@ -106,18 +111,42 @@ std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool
     return best;
 }
 
+/// What a picture has to show of a scene.
+class Framed {
+public:
+    Framed(const Scene& scene, const Surface& surface) : scene_(scene), surface_(surface) {}
+    [[nodiscard]] std::size_t count() const { return surface_.used_points().size() + scene_.around.size(); }
+    Eigen::Vector3d operator()(std::size_t k) const {
+        const auto& used = surface_.used_points();
+        return surface_.to_local(k < used.size() ? scene_.mesh.points[used[k]] : scene_.around[k - used.size()]);
+    }
+
+private:
+    const Scene& scene_;
+    const Surface& surface_;
+};
+
 /// Width and height of an object in a view, in the mesh's unit.
 std::array<double, 2> extent_of(const Scene& scene, const Surface& surface, const View& view, const std::array<double, 3>& up) {
-    const auto point = [&](std::size_t k) { return surface.to_local(scene.mesh.points[surface.used_points()[k]]); };
     // What alone limits the scale of a pane that is narrow, or low.
-    const double narrow = detail::fit_camera(surface.used_points().size(), point, view, up, 1, 1e9, false).scale;
-    const double low = detail::fit_camera(surface.used_points().size(), point, view, up, 1e9, 1, false).scale;
+    const Framed framed(scene, surface);
+    const double narrow = detail::fit_camera(framed.count(), framed, view, up, 1, 1e9, false).scale;
+    const double low = detail::fit_camera(framed.count(), framed, view, up, 1e9, 1, false).scale;
     return {surface.unit_length() / narrow, surface.unit_length() / low};
 }
 
+std::vector<View> views_of(const RenderOptions& options) {
+    if (options.views == "six") return standard_views();
+    std::vector<View> views;
+    std::istringstream list(options.views);
+    for (std::string view; std::getline(list, view, ';');) views.push_back(parse_view(view));
+    if (views.empty()) views.push_back(parse_view(options.view));
+    return views;
+}
+
 std::vector<Plan> plan_panes(const std::vector<Scene>& scenes, const RenderOptions& options) {
-    const bool six = options.views == RenderOptions::Views::six;
-    const std::vector<View> views = six ? standard_views() : std::vector<View>{parse_view(options.view)};
+    const std::vector<View> views = views_of(options);
+    const bool several = views.size() > 1;
     std::vector<Plan> plans;
     for (std::size_t scene = 0; scene < scenes.size(); ++scene)
         for (const View& view : views) {
@@ -126,7 +155,7 @@ std::vector<Plan> plan_panes(const std::vector<Scene>& scenes, const RenderOptio
             plan.pane.scene = scene;
             plan.pane.view = view.name;
             const std::string title = detail::clean_text(scenes[scene].title);
-            plan.caption = !six ? title : scenes.size() == 1 || title.empty() ? view.name : title + ", " + view.name;
+            plan.caption = !several ? title : scenes.size() == 1 || title.empty() ? view.name : title + ", " + view.name;
             plans.push_back(plan);
         }
     return plans;
@@ -151,49 +180,117 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
     detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
                            text, style);
 }
+/// The light of a pane into that of the whole picture.
+void copy_into(std::vector<detail::Light>& whole, int width, const std::vector<detail::Light>& light, const Pane& pane) {
+    const auto columns = static_cast<std::size_t>(pane.width);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(pane.height); ++row)
+        std::copy_n(light.begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
+                    whole.begin() +
+                        static_cast<std::ptrdiff_t>((static_cast<std::size_t>(pane.top) + row) * static_cast<std::size_t>(width) +
+                                                    static_cast<std::size_t>(pane.left)));
+}
+
+/// What was drawn over the surface, and that over the background, as cairo lays coded colours over each other.
+DeepPicture composed(const std::vector<detail::Light>& under, const Picture& over, std::optional<Rgb> background) {
+    DeepPicture picture{over.width, over.height, {}};
+    picture.rgba.resize(under.size());
+    parallel_for(
+        under.size(),
+        [&](std::size_t i) {
+            std::array<double, 4> sum{0, 0, 0, 0};  // premultiplied, 0 to 1
+            if (background) sum = {background->red / 255.0, background->green / 255.0, background->blue / 255.0, 1};
+            const auto lay = [&](const std::array<double, 4>& top) {
+                for (std::size_t k = 0; k < 4; ++k) sum[k] = top[k] + (1 - top[3]) * sum[k];
+            };
+            const auto surface = detail::to_deep(under[i]);
+            const double alpha = surface[3] / 65535.0;
+            lay({alpha * surface[0] / 65535.0, alpha * surface[1] / 65535.0, alpha * surface[2] / 65535.0, alpha});
+            const std::uint32_t pixel = over.argb[i];
+            const auto byte = [&](unsigned shift) { return (pixel >> shift & 255U) / 255.0; };
+            lay({byte(16), byte(8), byte(0), byte(24)});
+            for (std::size_t k = 0; k < 4; ++k) {
+                const double value = k == 3 ? sum[3] : sum[3] > 0 ? sum[k] / sum[3] : 0;
+                picture.rgba[i][k] = static_cast<std::uint16_t>(std::lround(65535 * std::clamp(value, 0.0, 1.0)));
+            }
+        },
+        4096);
+    return picture;
+}
+
+/// Lines and dots that stand for the surface or lie on it.
+void draw_over(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const RenderOptions& options,
+               const detail::Style& style, double drawn_size, PictureKind kind) {
+    using Drawing = RenderOptions::Drawing;
+    const double fine = kind == PictureKind::pixels ? 0 : 0.15;
+    if (options.drawing == Drawing::points) {
+        std::vector<Rgb> colours(scene.mesh.points.size(), style.ink);
+        if (!scene.vertex_values.empty() && options.scale)
+            for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = colour_of(*options.scale, scene.vertex_values[i]);
+        else if (!scene.vertex_colours.empty()) colours = scene.vertex_colours;
+        else if (!scene.face_colours.empty())
+            for (std::size_t t = 0; t < scene.mesh.triangles.size(); ++t)
+                for (const Index v : scene.mesh.triangles[t]) colours[v] = scene.face_colours[t];
+        detail::draw_points(canvas, surface, camera, colours, std::max(0.7, 1.1 * drawn_size));
+    }
+    if (options.drawing == Drawing::wire)
+        detail::draw_lines(canvas, detail::edge_lines(surface, style.ink, 0.7), surface, camera, {drawn_size, 0, 0, fine});
+    if (options.drawing == Drawing::lines || options.contours)
+        detail::draw_lines(canvas, detail::contour_lines(surface, camera, std::cos(options.crease * pi / 180), style.ink, 1.4),
+                           surface, camera, {drawn_size, 5 * drawn_size, 12 * drawn_size, std::max(fine, 0.1)});
+    detail::draw_lines(canvas, detail::lines_of(scene, surface), surface, camera, {drawn_size, 0, 0, fine});
+}
+
 }  // namespace
 
 void check_render_options(const RenderOptions& options) {
     check_options(options, "render");
     (void)parse_size(options.size);
     (void)parse_view(options.view);
+    (void)views_of(options);
     (void)parse_up(options.up);
-    (void)parse_colour(options.background);
+    if (options.background != "auto") (void)parse_colour(options.background);
 }
 
-Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options) {
+Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options, PictureKind kind) {
     check_render_options(options);
     const Size size = parse_size(options.size);
     const auto up = parse_up(options.up);
+    const bool dark = options.theme == RenderOptions::Theme::dark;
     detail::Style style;
-    style.background = parse_colour(options.background);
+    style.background = options.background != "auto" ? parse_colour(options.background)
+                       : dark                       ? Rgb{23, 25, 28}
+                                                    : Rgb{255, 255, 255};
     std::vector<Plan> plans = plan_panes(scenes, options);
     if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "make several pictures");
     style.size = detail::mark_size(size.width, size.height);
-    if (!options.transparent && style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110)
-        style.ink = {235, 235, 235};
+    const bool on_dark = style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110;
+    if (dark || (!options.transparent && on_dark)) style.ink = {235, 235, 235};
+    const bool deep = options.deep && kind == PictureKind::pixels;
 
     Rendering rendering;
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::unique_ptr<Surface>> surfaces;
+    const bool contours = options.contours || options.drawing == RenderOptions::Drawing::lines;
     for (const Scene& scene : scenes)
-        surfaces.push_back(std::make_unique<Surface>(scene, options.shading == RenderOptions::Shading::smooth));
+        surfaces.push_back(std::make_unique<Surface>(scene, contours || options.shading == RenderOptions::Shading::smooth));
     rendering.build_seconds = seconds_since(start);
 
     // The sheet: panes in columns and rows, each with a strip for a scale bar and a caption; a column at the right.
     const auto drawing_start = std::chrono::steady_clock::now();
-    Canvas canvas(size.width, size.height);
-    if (!options.transparent) canvas.fill(style.background);
+    Canvas canvas(size.width, size.height, kind);
+    if (!options.transparent && !deep) canvas.fill(style.background);
+    std::vector<detail::Light> under(deep ? static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) : 0,
+                                     detail::Light::Zero());
     const double edge = 18 * style.size;
     bool any_values = false, any_caption = false;
     for (const Scene& scene : scenes) any_values = any_values || !scene.vertex_values.empty() || !scene.face_values.empty();
     for (const Plan& plan : plans) any_caption = any_caption || !plan.caption.empty();
     const bool show = !options.no_legend;
-    const detail::SideColumn side(canvas, show ? merged_legend(scenes) : std::vector<LegendEntry>{},
+    const detail::SideColumn side(canvas, show && !options.labels ? merged_legend(scenes) : std::vector<LegendEntry>{},
                                   show && any_values ? options.scale : std::nullopt, 0.3 * size.width, size.height - 2 * edge,
                                   style);
     const double side_left = size.width - side.width() - (side.width() > 0 ? edge / 2 : 0);
-    const bool six = options.views == RenderOptions::Views::six;
+    const bool six = options.views == "six";
     const double strip = options.no_scale_bar ? 0 : detail::bar_strip * style.size, caption = any_caption ? 30 * style.size : 0;
     std::vector<std::array<double, 2>> extents;
     for (const Plan& plan : plans)
@@ -208,11 +305,13 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
         pane.top = static_cast<int>(cell_height * static_cast<double>(i / columns));
         pane.width = std::max(1, static_cast<int>(cell_width));
         pane.height = std::max(1, static_cast<int>(cell_height - strip - caption));
-        const Surface& surface = *surfaces[pane.scene];
-        const auto& points = scenes[pane.scene].mesh.points;
-        plans[i].camera = detail::fit_camera(
-            surface.used_points().size(), [&](std::size_t k) { return surface.to_local(points[surface.used_points()[k]]); },
-            plans[i].view, up, pane.width, pane.height, options.projection == RenderOptions::Projection::perspective);
+        const Scene& scene = scenes[pane.scene];
+        plans[i].label_column = options.labels ? detail::label_column(canvas, scene, pane.width, style) : 0;
+        pane.left += static_cast<int>(plans[i].label_column);
+        pane.width = std::max(1, pane.width - 2 * static_cast<int>(plans[i].label_column));
+        const Framed framed(scene, *surfaces[pane.scene]);
+        plans[i].camera = detail::fit_camera(framed.count(), framed, plans[i].view, up, pane.width, pane.height,
+                                             options.projection == RenderOptions::Projection::perspective);
     }
     share_scale(plans, surfaces, options.fit == RenderOptions::Fit::all);
 
@@ -234,16 +333,37 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
         const Surface& surface = *surfaces[pane.scene];
         plan.camera.scale *= options.zoom;
         pane.pixels_per_unit = plan.camera.scale / surface.unit_length();
-        canvas.paint(detail::shade(scene, surface, plan.camera, pane.width, pane.height, shading), pane.left, pane.top,
-                     pane.width, pane.height);
+        if (options.drawing == RenderOptions::Drawing::surface) {
+            // More samples than pixels: averaged where the picture is pixels, kept where it is a document.
+            const int wanted = options.supersample > 0 ? options.supersample : kind == PictureKind::pixels ? 1 : 2;
+            const int share = std::clamp(16384 / std::max(pane.width, pane.height), 1, wanted);
+            detail::Shading finer = shading;
+            finer.edge_width *= share;
+            Camera fine_camera = plan.camera;
+            for (double* value : {&fine_camera.scale, &fine_camera.middle_x, &fine_camera.middle_y}) *value *= share;
+            auto light = detail::shade(scene, surface, fine_camera, pane.width * share, pane.height * share, finer);
+            const bool average = kind == PictureKind::pixels && share > 1;
+            if (average) light = detail::averaged(light, pane.width, pane.height, share);
+            const int samples_wide = average ? pane.width : pane.width * share,
+                      samples_high = average ? pane.height : pane.height * share;
+            if (!deep)
+                canvas.paint(detail::to_pixels(light), samples_wide, samples_high, pane.left, pane.top, pane.width, pane.height);
+            else copy_into(under, size.width, light, pane);
+        }
         Camera sheet_camera = plan.camera;
         sheet_camera.middle_x += pane.left;
         sheet_camera.middle_y += pane.top;
         pane.camera = detail::in_mesh_coordinates(sheet_camera, surface.middle(), surface.unit_length());
         canvas.clip(pane.left, pane.top, pane.width, pane.height);
-        detail::draw_lines(canvas, scene, surface, sheet_camera, drawn_size);
+        draw_over(canvas, scene, surface, sheet_camera, options, style, drawn_size, kind);
         pane.markers_shown = detail::draw_markers(canvas, scene, surface, sheet_camera, small);
+        const PixelBox box{double(pane.left), double(pane.top), double(pane.width), double(pane.height)};
+        if (options.axes) detail::draw_axes(canvas, box, plan.camera, small);
         canvas.unclip();
+        if (plan.label_column > 0) {
+            pane.labels = detail::place_labels(canvas, scene, surface, sheet_camera, box, plan.label_column, style);
+            detail::draw_labels(canvas, pane.labels, style);
+        }
         const bool first = &plan == &plans.front();
         const bool first_of_scene = first || (&plan)[-1].pane.scene != pane.scene;
         if (!options.no_scale_bar && (first || (every_bar && first_of_scene)))
@@ -253,7 +373,12 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
                         pane.top + pane.height + strip + 19 * style.size, 17 * style.size, style.ink, Canvas::Align::centre);
     }
     side.draw(side_left, edge);
-    rendering.picture = canvas.picture();
+    if (kind == PictureKind::pixels) rendering.picture = canvas.picture();
+    else rendering.document = canvas.document();
+    if (deep) {
+        rendering.deep = composed(under, rendering.picture, options.transparent ? std::nullopt : std::optional(style.background));
+        rendering.picture = {};
+    }
     for (const Plan& plan : plans) rendering.panes.push_back(plan.pane);
     rendering.draw_seconds = seconds_since(drawing_start);
     return rendering;
@@ -262,7 +387,12 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options)
 void RenderOptions::describe(OptionList& visit) {
     visit("size", size, "width and height of the picture in pixels");
     visit("view", view, "where the viewer stands", view_words());
-    visit("views", views, "'six': front, right, back, left, top and bottom on one sheet", Choices{"", "six"});
+    visit("views", views, "several views on one sheet",
+          Words{{"", "six"}, "views like 'front;iso;120,10'", [](const std::string& text) {
+                    RenderOptions list;
+                    list.views = text;
+                    static_cast<void>(views_of(list));
+                }});
     visit("up", up, "the object's upward axis; auto: as the annotations say, else z",
           Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
                     static_cast<void>(parse_up(text));
@@ -275,8 +405,22 @@ void RenderOptions::describe(OptionList& visit) {
     visit("ambient-occlusion", ambient_occlusion, "rays a pixel that darken hollows, 0 for none", Range{0, 1024});
     visit("samples", samples, "rays a pixel where colours change, 1 for none extra", Range{1, 64});
     visit("edges", edges, "draw the edges of the mesh");
-    visit("background", background, "colour of the background",
-          Words{{"white", "black", "grey"}, "#rrggbb", [](const std::string& text) { static_cast<void>(parse_colour(text)); }});
+    visit("drawing", drawing,
+          "how the object is drawn: its surface; lines: contours, creases and borders, without hidden ones; wire: its edges; "
+          "points",
+          Choices{"surface", "lines", "wire", "points"});
+    visit("contours", contours, "draw contours, creases and borders over the surface");
+    visit("labels", labels, "names beside the object with lines to what they name, instead of the legend");
+    visit("axes", axes, "draw the directions of the mesh's axes");
+    visit("supersample", supersample,
+          "samples a pixel in each direction: averaged in a PNG, kept in SVG and PDF; 0: 1 in a PNG, 2 in the others",
+          Range{0, 4});
+    visit("deep", deep, "PNG with 16 bits a channel");
+    visit("theme", theme, "light or dark: what is written, and the background", Choices{"light", "dark"});
+    visit("background", background, "colour of the background; auto: as the theme",
+          Words{{"auto", "white", "black", "grey"}, "#rrggbb", [](const std::string& text) {
+                    if (text != "auto") static_cast<void>(parse_colour(text));
+                }});
     visit("transparent", transparent, "no background");
     visit("no-scale-bar", no_scale_bar, "leave out the scale bar");
     visit("no-legend", no_legend, "leave out the legend and the colour bar");

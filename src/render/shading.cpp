@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 namespace ostraka::detail {
 
@@ -32,9 +33,6 @@ const Tables& tables() {
     static const Tables instance;
     return instance;
 }
-
-/// Linear red, green, blue, multiplied by the coverage.
-using Light = Eigen::Array4f;
 
 Light to_light(const Rgb& colour) {
     const auto& t = tables();
@@ -86,6 +84,8 @@ public:
           camera_(camera),
           shading_(shading),
           sky_(sphere_directions(2 * shading.ambient_occlusion)) {
+        for (std::size_t i = 0; i < scene.patches.size(); ++i)
+            if (i == 0 || scene.patches[i].triangle != scene.patches[i - 1].triangle) patches_[scene.patches[i].triangle] = i;
         key_ = (-0.55 * camera.right + 0.6 * camera.up + 0.75 * camera.toward).normalized();
     }
 
@@ -143,6 +143,8 @@ private:
             }
             return colour_of(shading_.scale, value);
         }
+        if (!patches_.empty())
+            if (const auto found = patches_.find(hit.triangle); found != patches_.end()) return patch_colour(found->second, hit);
         if (!scene_.face_values.empty()) return colour_of(shading_.scale, scene_.face_values[hit.triangle]);
         if (!scene_.face_colours.empty()) return scene_.face_colours[hit.triangle];
         if (scene_.vertex_colours.empty()) return clay;
@@ -153,6 +155,18 @@ private:
         }
         return {static_cast<std::uint8_t>(std::lround(sum[0])), static_cast<std::uint8_t>(std::lround(sum[1])),
                 static_cast<std::uint8_t>(std::lround(sum[2]))};
+    }
+
+    /// Of the patches of a triangle, from this place in the list on.
+    [[nodiscard]] Rgb patch_colour(std::size_t first, const Surface::Hit& hit) const {
+        Rgb colour;
+        double most = -1;
+        for (std::size_t i = first; i < scene_.patches.size() && scene_.patches[i].triangle == hit.triangle; ++i) {
+            double weight = 0;
+            for (std::size_t k = 0; k < 3; ++k) weight += hit.weights[static_cast<int>(k)] * double(scene_.patches[i].weights[k]);
+            if (weight > most) most = weight, colour = scene_.patches[i].colour;
+        }
+        return colour;
     }
 
     /// How much of an edge line covers the pixel: 1 on the edge, 0 beyond its width.
@@ -179,12 +193,13 @@ private:
     const Camera& camera_;
     const Shading& shading_;
     std::vector<Eigen::Vector3d> sky_;
+    std::unordered_map<Index, std::size_t> patches_;  ///< where those of a triangle begin
     Eigen::Vector3d key_;
 };
 }  // namespace
 
-std::vector<std::uint32_t> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
-                                 const Shading& shading) {
+std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
+                         const Shading& shading) {
     const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
     const Shader shader(scene, surface, camera, shading);
     std::vector<Light> light(columns * rows, Light::Zero());
@@ -196,7 +211,7 @@ std::vector<std::uint32_t> shade(const Scene& scene, const Surface& surface, con
         },
         4);
 
-    std::vector<std::uint32_t> pixels(columns * rows);
+    std::vector<Light> finer(columns * rows);
     parallel_for(
         rows,
         [&](std::size_t row) {
@@ -214,11 +229,41 @@ std::vector<std::uint32_t> shade(const Scene& scene, const Surface& surface, con
                                              static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));
                     sum /= static_cast<float>(shading.samples);
                 }
-                pixels[here] = to_pixel(sum);
+                finer[here] = sum;
             }
         },
         4);
+    return finer;
+}
+
+std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int share) {
+    const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height),
+               n = static_cast<std::size_t>(share);
+    std::vector<Light> means(columns * rows, Light::Zero());
+    parallel_for(rows, [&](std::size_t row) {
+        for (std::size_t column = 0; column < columns; ++column) {
+            Light& sum = means[row * columns + column];
+            for (std::size_t y = 0; y < n; ++y)
+                for (std::size_t x = 0; x < n; ++x) sum += light[(row * n + y) * columns * n + column * n + x];
+            sum /= static_cast<float>(n * n);
+        }
+    });
+    return means;
+}
+
+std::vector<std::uint32_t> to_pixels(const std::vector<Light>& light) {
+    std::vector<std::uint32_t> pixels(light.size());
+    parallel_for(
+        light.size(), [&](std::size_t i) { pixels[i] = to_pixel(light[i]); }, 4096);
     return pixels;
+}
+
+std::array<std::uint16_t, 4> to_deep(const Light& light) {
+    const float coverage = std::min(light[3], 1.0F);
+    if (!(coverage > 0)) return {0, 0, 0, 0};
+    const auto step = [](double share) { return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))); };
+    const auto channel = [&](int i) { return step(coded(std::clamp(static_cast<double>(light[i]) / light[3], 0.0, 1.0))); };
+    return {channel(0), channel(1), channel(2), step(coverage)};
 }
 
 }  // namespace ostraka::detail

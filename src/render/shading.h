@@ -20,8 +20,20 @@ struct Shading {
     ColourScale scale;
 };
 
-/// Pixels 0xAARRGGBB, premultiplied, rows from the top; nothing where no triangle is seen.
-std::vector<std::uint32_t> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
-                                 const Shading& shading);
+/// Linear red, green, blue, multiplied by the coverage, and the coverage.
+using Light = Eigen::Array4f;
+
+/// Rows from the top; nothing where no triangle is seen.
+std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
+                         const Shading& shading);
+
+/// Each the mean of `share` by `share`.
+std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int share);
+
+/// Pixels 0xAARRGGBB, premultiplied.
+std::vector<std::uint32_t> to_pixels(const std::vector<Light>& light);
+
+/// Red, green, blue and alpha, not premultiplied, as an sRGB file of 16 bits holds them.
+std::array<std::uint16_t, 4> to_deep(const Light& light);
 
 }  // namespace ostraka::detail

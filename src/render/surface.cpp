@@ -37,6 +37,11 @@ void check(const Scene& scene) {
     length("values", scene.face_values.size(), mesh.triangles.size(), "faces");
     length("colours", scene.vertex_colours.size(), mesh.points.size(), "vertices");
     length("colours", scene.face_colours.size(), mesh.triangles.size(), "faces");
+    for (const ScenePatch& patch : scene.patches)
+        if (patch.triangle >= mesh.triangles.size()) fail_input(where, "colours a triangle that it does not have");
+    for (const SceneLabel& label : scene.labels)
+        for (const Index face : label.faces)
+            if (face >= mesh.triangles.size()) fail_input(where, "names a triangle that it does not have");
 }
 
 /// Keeps the nearest hit, and of equal ones the smallest index. The ray stays a little longer than the nearest hit, so that no

@@ -41,8 +41,12 @@ public:
     /// crease angle (given as its cosine) against the face hit, interpolated between the corners.
     [[nodiscard]] Eigen::Vector3d smooth_normal(const Hit& hit, double crease_cosine) const;
 
+    /// That sum at one corner of a face of this normal; of a surface that was made `smooth`.
+    [[nodiscard]] Eigen::Vector3f corner_normal(Index vertex, const Eigen::Vector3f& normal, float crease_cosine) const;
+
     [[nodiscard]] Eigen::Vector3d point(Index index) const { return points_[index].cast<double>(); }
     [[nodiscard]] const std::array<Index, 3>& corners(Index triangle) const { return triangles_[triangle]; }
+    [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
     [[nodiscard]] const std::vector<Index>& used_points() const { return used_; }
 
     [[nodiscard]] Eigen::Vector3d to_local(const std::array<double, 3>& point) const;
@@ -52,7 +56,6 @@ public:
     [[nodiscard]] const std::array<double, 3>& middle() const { return middle_; }
 
 private:
-    [[nodiscard]] Eigen::Vector3f corner_normal(Index vertex, const Eigen::Vector3f& normal, float crease_cosine) const;
     void measure_box(const Scene& scene);
     void build_tree();
     void gather_faces_around_points();

@@ -5,6 +5,7 @@
 #include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 
 #include <cmath>
@@ -21,20 +22,6 @@ constexpr std::array<Rgb, 7> colours{
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
     static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
     return CAIRO_STATUS_SUCCESS;
-}
-
-/// cairo numbers its surfaces over the whole run: without the numbers the same drawing gives the same bytes.
-std::string without_surface_numbers(const std::string& svg) {
-    const std::string name = "\"surface";
-    std::string result;
-    for (std::size_t at = 0; at < svg.size();) {
-        const std::size_t next = svg.find(name, at);
-        result.append(svg, at, next == std::string::npos ? next : next - at + name.size());
-        if (next == std::string::npos) break;
-        at = next + name.size();
-        while (at < svg.size() && svg[at] >= '0' && svg[at] <= '9') ++at;
-    }
-    return result;
 }
 
 /// What characters can be drawn: damaged and steering ones become U+FFFD or blanks.
@@ -63,12 +50,14 @@ Sheet::Sheet(double width, double height, Format format)
     : format_(format),
       width_(width),
       height_(height),
-      surface_(format == Format::svg
-                   ? cairo_svg_surface_create_for_stream(&append, &bytes_, width, height)
+      surface_(format == Format::svg ? cairo_svg_surface_create_for_stream(&append, &bytes_, width, height)
+               : format == Format::pdf
+                   ? cairo_pdf_surface_create_for_stream(&append, &bytes_, width, height)
                    : cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(png_scale * width)),
                                                 static_cast<int>(std::ceil(png_scale * height))),
                &cairo_surface_destroy),
       context_(cairo_create(surface_.get()), &cairo_destroy) {
+    if (format == Format::pdf) cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
     if (format == Format::png) cairo_scale(context_.get(), png_scale, png_scale);
     cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_font_options_t* font = cairo_font_options_create();
@@ -212,15 +201,16 @@ std::string Sheet::finish() {
     for (const cairo_status_t status : {drawn, written, cairo_surface_status(surface_.get())})
         if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
             throw Error(ErrorKind::failure, "plot", std::string("drawing failed: ") + cairo_status_to_string(status));
-    return format_ == Format::png ? std::move(bytes_) : without_surface_numbers(bytes_);
+    return format_ == Format::svg ? stable_svg(bytes_) : std::move(bytes_);
 }
 
 void write_sheet(const Path& file, const std::function<std::string(Sheet::Format)>& draw) {
     const std::string ending = extension(file);
-    if (ending != ".svg" && ending != ".png")
-        throw Error(ErrorKind::usage, file.string(), "drawings are written as SVG or PNG", "let the name end in .svg or .png");
+    if (ending != ".svg" && ending != ".png" && ending != ".pdf")
+        throw Error(ErrorKind::usage, file.string(), "drawings are written as SVG, PDF or PNG",
+                    "let the name end in .svg, .pdf or .png");
     make_folder(file.parent_path());
-    write_file(file, draw(ending == ".png" ? Sheet::Format::png : Sheet::Format::svg));
+    write_file(file, draw(ending == ".png" ? Sheet::Format::png : ending == ".pdf" ? Sheet::Format::pdf : Sheet::Format::svg));
 }
 
 }  // namespace ostraka::report

@@ -1,4 +1,4 @@
-// A sheet to draw on, that becomes an SVG or a PNG file.
+// A sheet to draw on, that becomes an SVG, a PDF or a PNG file.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -16,7 +16,7 @@ struct _cairo_surface;
 namespace ostraka::report {
 
 inline constexpr double text_size = 13, margin = 14;
-inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, paper{255, 255, 255};
+inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, quiet_line{150, 150, 150}, paper{255, 255, 255};
 
 /// Colours that colour-blind eyes distinguish too (Okabe and Ito), others after them.
 Rgb series_colour(std::size_t index);
@@ -33,7 +33,7 @@ struct Box {
 /// Lengths are in points of the SVG, y downward.
 class Sheet {
 public:
-    enum class Format { svg, png };
+    enum class Format { svg, png, pdf };
     Sheet(double width, double height, Format format = Format::svg);
     ~Sheet();
     Sheet(const Sheet&) = delete;

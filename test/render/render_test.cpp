@@ -1,7 +1,9 @@
 #include "ostraka/render/render.h"
 
 #include "ostraka/core/parallel.h"
+#include "read_png.h"
 #include "scenes.h"
+#include "scratch.h"
 
 #include <gtest/gtest.h>
 #include <set>
@@ -105,7 +107,7 @@ TEST(Render, ViewsShowTheSidesTheyName) {
         const std::uint32_t pixel = 0xFF000000U | std::uint32_t{c.red} << 16 | std::uint32_t{c.green} << 8 | c.blue;
         EXPECT_EQ(render({scene}, options).picture.at(150, 150), pixel) << names[side];
     }
-    options.views = RenderOptions::Views::six;
+    options.views = "six";
     options.size = "300x200";
     EXPECT_EQ(render({scene}, options).panes.size(), 6U);
 }
@@ -250,6 +252,182 @@ TEST(Render, RefusesWhatCannotBeDrawn) {
     EXPECT_EQ(with([](auto& o) { o.background = "beige"; }), ErrorKind::usage);
     EXPECT_EQ(with([](auto& o) { o.zoom = -1; }), ErrorKind::usage);
     EXPECT_EQ(with([](auto& o) { o.zoom = std::numeric_limits<double>::quiet_NaN(); }), ErrorKind::usage);
+}
+
+TEST(Render, ContoursOfASphereAreItsCircle) {
+    RenderOptions options = bare();
+    options.drawing = RenderOptions::Drawing::lines;
+    const Rendering rendering = render({test::sphere(40)}, options);
+    const double radius = rendering.panes[0].pixels_per_unit;
+    std::set<int> turns;
+    for (int y = 0; y < 300; ++y)
+        for (int x = 0; x < 300; ++x) {
+            if (rendering.picture.at(x, y) >> 24 < 128) continue;
+            const double dx = x + 0.5 - 150, dy = y + 0.5 - 150;
+            EXPECT_NEAR(std::hypot(dx, dy), radius, 0.02 * radius + 1.5);
+            turns.insert(static_cast<int>((std::atan2(dy, dx) + std::numbers::pi) * 36 / (2 * std::numbers::pi)));
+        }
+    EXPECT_GE(turns.size(), 36U);
+}
+
+TEST(Render, HiddenEdgesOfACubeAreNotDrawn) {
+    RenderOptions options = bare("600x600");
+    options.view = "iso";
+    options.drawing = RenderOptions::Drawing::lines;
+    const Rendering rendering = render({test::cube()}, options);
+    const PictureCamera& camera = rendering.panes[0].camera;
+    const auto drawn = [&](const Point& at) {
+        const auto place = camera.project(at);
+        for (int dy = -2; dy <= 2; ++dy)
+            for (int dx = -2; dx <= 2; ++dx)
+                if (rendering.picture.at(static_cast<int>((*place)[0]) + dx, static_cast<int>((*place)[1]) + dy) >> 24 > 100)
+                    return true;
+        return false;
+    };
+    // The viewer stands in front (-y), at the right (+x), above (+z): the three edges at the far corner are hidden.
+    std::size_t seen = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double a : {-1.0, 1.0})
+            for (const double b : {-1.0, 1.0}) {
+                const Point at = axis == 0 ? Point(0.3, a, b) : axis == 1 ? Point(a, 0.3, b) : Point(a, b, 0.3);
+                const bool hidden = axis == 0 ? a > 0 && b < 0 : axis == 1 ? a < 0 && b < 0 : a < 0 && b > 0;
+                EXPECT_EQ(drawn(at), !hidden) << axis << " " << a << " " << b;
+                seen += drawn(at);
+            }
+    EXPECT_EQ(seen, 9U);
+    // Half way across the front, where a diagonal runs, is no line of a drawing, but one of a wire.
+    const auto middle = *camera.project(Point(0, -1, 0));
+    const auto column = static_cast<int>(middle[0]), row = static_cast<int>(middle[1]);
+    EXPECT_EQ(rendering.picture.at(column, row) >> 24, 0U);
+    options.drawing = RenderOptions::Drawing::wire;
+    EXPECT_GT(render({test::cube()}, options).picture.at(column, row) >> 24, 0U);
+    options.drawing = RenderOptions::Drawing::points;
+    EXPECT_GT(covered(render({test::cube()}, options).picture), 0);
+}
+
+TEST(Render, LabelsNeitherOverlapNorCrossAndNameWhatIsThere) {
+    Scene scene = test::sphere(40);
+    for (int part = 0; part < 23; ++part) {
+        SceneLabel& label = scene.labels.emplace_back();
+        label.text = "part number " + std::to_string(part);
+        const std::size_t n = scene.mesh.triangles.size();
+        for (std::size_t t = n * static_cast<std::size_t>(part) / 23; t < n * static_cast<std::size_t>(part + 1) / 23; ++t)
+            label.faces.push_back(static_cast<Index>(t));
+    }
+    scene.labels.push_back({"a point in front", {}, {}, {{0, -1, 0}}});
+    scene.labels.push_back({"a point behind", {}, {}, {{0, 1, 0}}});
+    for (const char* size : {"900x700", "500x300"}) {
+        RenderOptions options;
+        options.size = size;
+        options.view = "front";
+        options.labels = true;
+        const Rendering rendering = render({scene}, options);
+        const Pane& pane = rendering.panes[0];
+        ASSERT_GT(pane.labels.size(), 10U);
+        const auto named = [&](const std::string& start) {
+            return std::any_of(pane.labels.begin(), pane.labels.end(), [&](const auto& l) { return l.text.starts_with(start); });
+        };
+        if (std::string(size) == "900x700") {
+            EXPECT_TRUE(named("a point in front"));
+        }
+        EXPECT_FALSE(named("a point behind"));
+        const auto side = [](double ax, double ay, double bx, double by, double cx, double cy) {
+            return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+        };
+        for (const PaneLabel& a : pane.labels) {
+            EXPECT_GE(a.left, 0);
+            EXPECT_GE(a.top, pane.top - 1e-9);
+            EXPECT_LE(a.top + a.height, pane.top + pane.height + 1e-9);
+            const bool a_left = a.left < a.place_x;
+            EXPECT_TRUE(a_left ? a.left + a.width < pane.left : a.left > pane.left + pane.width) << "beside the object";
+            for (const PaneLabel& b : pane.labels) {
+                if (&a == &b || (b.left < b.place_x) != a_left) continue;
+                EXPECT_TRUE(a.top + a.height <= b.top + 1e-6 || b.top + b.height <= a.top + 1e-6) << a.text << ", " << b.text;
+                const double edge = a_left ? pane.left - 5 : pane.left + pane.width + 5;
+                const double ay = a.top + a.height / 2, by = b.top + b.height / 2;
+                const bool crossing =
+                    side(edge, ay, a.place_x, a.place_y, edge, by) * side(edge, ay, a.place_x, a.place_y, b.place_x, b.place_y) <
+                        0 &&
+                    side(edge, by, b.place_x, b.place_y, edge, ay) * side(edge, by, b.place_x, b.place_y, a.place_x, a.place_y) <
+                        0;
+                EXPECT_FALSE(crossing) << a.text << ", " << b.text;
+            }
+        }
+        // The line of a region ends on it: the ray through its end hits one of its triangles.
+        for (const PaneLabel& label : pane.labels) {
+            if (!label.text.starts_with("part number ") || label.text.ends_with("\xE2\x80\xA6")) continue;
+            const std::size_t part = static_cast<std::size_t>(std::stoi(label.text.substr(12)));
+            const PictureCamera::Ray ray = pane.camera.ray(label.place_x, label.place_y);
+            const double across = ray.origin.x(), up = ray.origin.z();
+            const Point at(across, -std::sqrt(std::max(0.0, 1 - across * across - up * up)), up);
+            double nearest = 1e9;
+            for (const Index t : scene.labels[part].faces)
+                for (const Index v : scene.mesh.triangles[t]) {
+                    const auto& p = scene.mesh.points[v];
+                    nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(at, Point(p[0], p[1], p[2]))));
+                }
+            EXPECT_LT(nearest, 0.1) << label.text;
+        }
+    }
+}
+
+TEST(Render, DocumentsAreTheSameBytesInOneProcess) {
+    Scene scene = test::cube();
+    scene.labels.push_back({"front", {200, 0, 0}, {test::front_of_cube}, {}});
+    RenderOptions options = bare();
+    options.labels = options.axes = options.contours = true;
+    for (const PictureKind kind : {PictureKind::svg, PictureKind::pdf}) {
+        const std::string one = render({scene}, options, kind).document;
+        EXPECT_TRUE(one.starts_with(kind == PictureKind::svg ? "<?xml" : "%PDF-"));
+        EXPECT_EQ(one, render({scene}, options, kind).document);
+        EXPECT_EQ(one.find("CreationDate"), std::string::npos);
+    }
+    options.drawing = RenderOptions::Drawing::lines;
+    EXPECT_EQ(render({scene}, options, PictureKind::svg).document.find("<image"), std::string::npos) << "nothing but lines";
+}
+
+TEST(Render, DeepAndFinerPicturesShowTheSame) {
+    Scene scene = test::sphere(60);
+    scene.lines.push_back({{{-1, -1, 1}, {1, -1, 1}}, {0, 200, 0}, 5, true, true});
+    RenderOptions options;
+    options.size = "200x150";
+    const Picture plain = render({scene}, options).picture;
+    options.deep = true;
+    const DeepPicture deep = render({scene}, options).deep;
+    ASSERT_EQ(deep.rgba.size(), plain.argb.size());
+    std::set<int> levels;
+    for (std::size_t i = 0; i < deep.rgba.size(); ++i)
+        for (unsigned k = 0; k < 3; ++k) {
+            EXPECT_NEAR(deep.rgba[i][k] / 257.0, plain.argb[i] >> (16 - 8 * k) & 255U, 2.1);
+            levels.insert(deep.rgba[i][0]);
+        }
+    EXPECT_GT(levels.size(), 300U) << "more than 8 bits can hold";
+    options.deep = false;
+    options.supersample = 3;
+    double difference = 0;
+    const Picture fine = render({scene}, options).picture;
+    for (std::size_t i = 0; i < fine.argb.size(); ++i)
+        difference += std::abs(static_cast<double>(fine.argb[i] & 255U) - static_cast<double>(plain.argb[i] & 255U));
+    EXPECT_LT(difference / static_cast<double>(fine.argb.size()), 1.0);
+    const test::Scratch scratch;
+    write_png(scratch / "deep.png", deep);
+    const Picture read = test::read_png(scratch / "deep.png");
+    for (std::size_t i = 0; i < read.argb.size(); ++i) EXPECT_NEAR(read.argb[i] & 255U, plain.argb[i] & 255U, 3.1);
+}
+
+TEST(Render, PatchesColourWhereTheirWeightIsLargest) {
+    Scene scene;
+    scene.mesh.points = {{0, 0, 0}, {2, 0, 0}, {0, 0, 2}};
+    scene.mesh.triangles = {{0, 1, 2}};
+    const Rgb red{200, 0, 0}, blue{0, 0, 200};
+    scene.patches = {{0, red, {1, 0, 0}}, {0, blue, {0, 1, 1}}};  // equal half way from the first corner
+    const Rendering rendering = render({scene}, bare());
+    const auto colour_at = [&](double x, double z) {
+        const auto place = *rendering.panes[0].camera.project(Point(x, 0, z));
+        return rendering.picture.at(static_cast<int>(place[0]), static_cast<int>(place[1]));
+    };
+    EXPECT_EQ(colour_at(0.4, 0.4), 0xFFC80000U);
+    EXPECT_EQ(colour_at(0.6, 0.6), 0xFF0000C8U);
 }
 
 TEST(Render, SeveralObjectsShareTheirScale) {

@@ -281,13 +281,19 @@ def assemble(
 
 class _RenderResult(Result):
     picture: Bytes | Path | None
+    turntable: Folder | Path | None
 def render(
     meshes: MeshLike | Sequence[MeshLike],
     picture: FileName | bool | None = None,
     *,
     annotations: AnnotationsLike | None | Sequence[AnnotationsLike | None] | None = None,
     map: ArrayLike | None | Sequence[ArrayLike | None] | None = None,
+    cage: MeshLike | None | Sequence[MeshLike | None] | None = None,
+    turntable: FileName | bool | None = None,
     force_mesh: bool | None = False,
+    measures: bool | None = False,
+    outlines: Literal["exact", "smooth"] | None = 'exact',
+    frames: int | None = 72,
     title: Text | Sequence[Text] | None = None,
     map_on: Literal["auto", "vertex", "face"] | None = 'auto',
     map_label: Text | None = None,
@@ -296,7 +302,7 @@ def render(
     unit: Text | None = None,
     size: Text | None = '1200x900',
     view: Text | None = '30,20',
-    views: Literal["", "six"] | None = None,
+    views: Text | None = None,
     up: Text | None = 'auto',
     projection: Literal["orthographic", "perspective"] | None = 'orthographic',
     zoom: float | None = 1.0,
@@ -306,7 +312,14 @@ def render(
     ambient_occlusion: int | None = 0,
     samples: int | None = 8,
     edges: bool | None = False,
-    background: Text | None = 'white',
+    drawing: Literal["surface", "lines", "wire", "points"] | None = 'surface',
+    contours: bool | None = False,
+    labels: bool | None = False,
+    axes: bool | None = False,
+    supersample: int | None = 0,
+    deep: bool | None = False,
+    theme: Literal["light", "dark"] | None = 'light',
+    background: Text | None = 'auto',
     transparent: bool | None = False,
     no_scale_bar: bool | None = False,
     no_legend: bool | None = False,
@@ -316,10 +329,12 @@ def render(
 
 class _ReportResult(Result):
     page: Document | Bytes | Path | None
+    beside: Folder | Path | None
 def report(
     results: Input | Sequence[Input],
     page: FileName | bool | None = None,
     *,
+    beside: FileName | bool | None = None,
     title: Text | None = None,
     unit: Text | None = None,
     limit: int | None = 200000,

@@ -97,4 +97,4 @@ def export(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ExportResult:
-    """Write a graph for Graphviz."""
+    """Draw a graph, or write it for Graphviz."""

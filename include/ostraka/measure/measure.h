@@ -6,6 +6,8 @@
 
 namespace ostraka {
 
+class PathSearch;
+
 /// The value of a measure on the mesh as it is, in the mesh's unit. Pins are the measure's points, or its locations where it has
 /// them. ruler: Euclidean distance from pin to pin, summed. tape: shortest edge paths from pin to pin, summed (the thesis's
 /// approximate geodesic: some per cent longer than the true one), or, where the measure is `exact`, the shortest curves over the
@@ -51,6 +53,11 @@ bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& me
 /// Bounding measures that are extents on `before` get the pins of the extents on `after`: the same mesh with other points and a
 /// copy of its annotations, or another mesh to which these were carried. Annotations and attributes by their ids.
 void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& after, AnnotationSet& to);
+
+/// Where the pins of a measure are. A bounding measure goes from its first pin straight to the plane of the other.
+std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure);
+/// What a measure runs along: the edges between the pins of a tape along them; empty for others.
+std::vector<Point> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure);
 
 /// Adds it as an attribute of this name, under a free id.
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure);

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/file.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,10 +26,27 @@ struct Picture {
     }
 };
 
+/// 16 bits a channel, the colour not multiplied by alpha: red, green, blue, alpha of each pixel, rows from the top.
+struct DeepPicture {
+    int width = 0, height = 0;
+    std::vector<std::array<std::uint16_t, 4>> rgba;
+};
+
+/// What a picture is made of: pixels, or a document whose lines and letters stay sharp at any size.
+enum class PictureKind { pixels, svg, pdf };
+
+/// By the extension: .png, .svg, .pdf. Throws Error (usage) for another.
+PictureKind picture_kind(const std::string& file);
+
+/// What cairo wrote, with the numbers in its names counted from 1: cairo counts what a process has drawn so far.
+std::string stable_svg(const std::string& svg);
+
 /// "#rrggbb", "white", "black" or "grey". Throws Error (usage) for anything else.
 Rgb parse_colour(const std::string& text);
 
 /// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture);
+/// With 16 bits a channel.
+void write_png(const Path& file, const DeepPicture& picture);
 
 }  // namespace ostraka

@@ -15,7 +15,7 @@ namespace ostraka {
 struct RenderOptions {
     std::string size = "1200x900";
     std::string view = "30,20";
-    enum class Views { one, six } views = Views::one;
+    std::string views;  ///< "six", or several of what `view` takes, with ";" between them; empty: `view`
     std::string up = "auto";
     enum class Projection { orthographic, perspective } projection = Projection::orthographic;
     double zoom = 1;
@@ -25,7 +25,14 @@ struct RenderOptions {
     int ambient_occlusion = 0;
     int samples = 8;
     bool edges = false;
-    std::string background = "white";
+    enum class Drawing { surface, lines, wire, points } drawing = Drawing::surface;
+    bool contours = false;
+    bool labels = false;
+    bool axes = false;
+    int supersample = 0;
+    bool deep = false;
+    enum class Theme { light, dark } theme = Theme::light;
+    std::string background = "auto";
     bool transparent = false;
     bool no_scale_bar = false;
     bool no_legend = false;
@@ -37,6 +44,14 @@ struct RenderOptions {
 /// Throws Error (usage) for options that `render` would refuse; to be called before the meshes are read.
 void check_render_options(const RenderOptions& options);
 
+/// A name beside an object; pixels of the whole picture.
+struct PaneLabel {
+    std::string text;
+    Rgb colour;
+    double left = 0, top = 0, width = 0, height = 0;
+    double place_x = 0, place_y = 0;  ///< what it names is seen there
+};
+
 /// Where things stand in a picture, for tests and for those who draw on.
 struct Pane {
     std::size_t scene = 0;
@@ -46,11 +61,14 @@ struct Pane {
     double bar_length = 0;                         ///< of the scale bar in the mesh's unit, 0 if there is none
     double bar_pixels = 0;
     std::size_t markers_shown = 0;  ///< markers that are in sight
-    PictureCamera camera;           ///< in the pixels of the whole picture
+    std::vector<PaneLabel> labels;
+    PictureCamera camera;  ///< in the pixels of the whole picture
 };
 
 struct Rendering {
-    Picture picture;
+    Picture picture;       ///< of pixels
+    DeepPicture deep;      ///< the same with 16 bits, if they were asked for
+    std::string document;  ///< of SVG and PDF: the file
     std::vector<Pane> panes;
     double build_seconds = 0;  ///< spent on the search tree
     double draw_seconds = 0;   ///< spent on the rest
@@ -61,6 +79,7 @@ struct Rendering {
 /// free, with a tolerance of 0.2 % of the largest side of the box. The picture is the same to the bit for any number of threads.
 /// O((n + pixels) log n). Throws Error (usage) for bad options; Error (input) for an index out of range, a coordinate
 /// that is not finite or a list of the wrong length.
-Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options = {});
+/// Of documents the surface is an image within, everything else lines and letters.
+Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options = {}, PictureKind kind = PictureKind::pixels);
 
 }  // namespace ostraka

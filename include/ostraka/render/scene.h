@@ -14,16 +14,34 @@ namespace ostraka {
 struct SceneLine {
     std::vector<std::array<double, 3>> points;
     Rgb colour;
-    double width = 2.5;  ///< pixels, in a picture 900 pixels high
-    bool cased = false;  ///< drawn with a dark rim, to stand out from any surface
+    double width = 2.5;    ///< pixels, in a picture 900 pixels high
+    bool cased = false;    ///< drawn with a dark rim, to stand out from any surface
+    bool through = false;  ///< what the surface hides of it is drawn dashed
 };
 
 /// A dot on or near the surface.
 struct SceneMarker {
     std::array<double, 3> point{};
     Rgb colour;
-    double radius = 6;  ///< pixels, in a picture 900 pixels high
-    std::string label;  ///< written beside it
+    double radius = 6;     ///< pixels, in a picture 900 pixels high
+    std::string label;     ///< written beside it
+    bool through = false;  ///< drawn even where the surface hides it
+};
+
+/// A name for a part of the picture, written beside the object with a line to a place of the part that is in sight.
+struct SceneLabel {
+    std::string text;
+    Rgb colour;
+    std::vector<Index> faces = {};                   ///< of a region
+    std::vector<std::array<double, 3>> points = {};  ///< else of a poly-line or a point
+    bool through = false;                            ///< whether hidden places count as in sight
+};
+
+/// A colour of a triangle that has several. A place in the triangle has the colour of its largest interpolated weight.
+struct ScenePatch {
+    Index triangle = 0;
+    Rgb colour;
+    std::array<float, 3> weights{};  ///< at the corners
 };
 
 enum class LegendMark { area, line, point };
@@ -42,11 +60,14 @@ struct Scene {
     std::vector<double> face_values;    ///< empty or one per triangle
     std::vector<Rgb> face_colours;      ///< empty or one per triangle
     std::vector<Rgb> vertex_colours;    ///< empty or one per point, interpolated
+    std::vector<ScenePatch> patches;    ///< by ascending triangle; those triangles' colours are not used
     std::vector<SceneLine> lines;
     std::vector<SceneMarker> markers;
+    std::vector<SceneLabel> labels;
     std::vector<LegendEntry> legend;
-    std::string title;  ///< written under the object
-    std::string unit;   ///< of the coordinates, for the scale bar
+    std::vector<std::array<double, 3>> around;  ///< places beside the mesh that shall be in the picture too
+    std::string title;                          ///< written under the object
+    std::string unit;                           ///< of the coordinates, for the scale bar
 };
 
 /// The colour of a surface of which nothing is said.
