@@ -74,7 +74,7 @@ TEST(SliceSheet, KeepsTheNumbersOfItsSlices) {
 TEST(SliceSheet, RefusesWhatCannotBeDrawn) {
     const Scratch scratch;
     const Cut cut;
-    EXPECT_THROW(write_slice_sheet(scratch / "a.pdf", cut.sheet(2)), Error);
+    EXPECT_THROW(write_slice_sheet(scratch / "a.gif", cut.sheet(2)), Error);
     EXPECT_THROW(write_slice_sheet(scratch / "a.svg", SliceSheet{}), Error);
     const Slice empty;
     SliceSheet none;

@@ -198,7 +198,7 @@ TEST(SliceCommand, BadInputIsSaidAndWritesNothing) {
     expect_fails("slice " + vase + "--medial-axis 2 --output " + file, 2, "use a value from 0.001 to 1");
     expect_fails("slice " + vase + "--colour-by beauty --output " + (scratch / "o.ply").string(), 2, "beauty");
     expect_fails("slice " + vase + "--output " + (scratch / "o.txt").string(), 2, "end its name in");
-    expect_fails("slice " + vase + "--profile " + (scratch / "o.pdf").string(), 2, "no drawing");
+    expect_fails("slice " + vase + "--profile " + (scratch / "o.gif").string(), 2, "no drawing");
     expect_fails("slice " + data + "vase.ply --annotation foo", 2, "no annotation file is given");
     expect_fails("slice " + data + "vase.ply --output " + data + "vase.ply", 2, "vase.ply");
     const std::string ball = (scratch / "ball.ply").string();
