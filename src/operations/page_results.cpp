@@ -115,6 +115,8 @@ PageSlices page_slices(const JsonValue& document, const std::string& where) {
         level.height = from["height"].GetDouble();
         const JsonValue& frame = from["frame"];
         level.origin = triple_of(frame["origin"]);
+        const std::array<double, 3> normal = triple_of(frame["normal"]);
+        for (std::size_t k = 0; k < 3; ++k) level.origin[k] += level.height * normal[k];
         level.u = triple_of(frame["u"]);
         level.v = triple_of(frame["v"]);
         for (const PageSlices::Column& column : slices.columns)
@@ -242,10 +244,10 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
         return std::any_of(numbers.faces.begin(), numbers.faces.end(), [&](const PlyColumn& one) { return one.name == name; });
     };
     const std::vector<std::int32_t>& labels = mesh.extras.face_labels;
-    const bool completed =
-        has("fragment") && has("distance") && has("confidence") && labels.size() == mesh.mesh.number_of_faces() &&
-        std::all_of(labels.begin(), labels.end(),
-                    [](std::int32_t label) { return label >= 0 && label < static_cast<std::int32_t>(origins); });
+    const bool completed = has("distance") && has("confidence") && labels.size() == mesh.mesh.number_of_faces() &&
+                           std::all_of(labels.begin(), labels.end(), [](std::int32_t label) {
+                               return label >= 0 && label < static_cast<std::int32_t>(origins);
+                           });
     if (completed)
         maps.push_back({"origin",
                         "observed, interpolated or hypothesis",
@@ -253,7 +255,6 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
                         {{"observed", {186, 120, 82}}, {"interpolated", {214, 180, 120}}, {"hypothesis", {170, 180, 190}}}});
     for (PlyColumn& column : numbers.vertices) add(column.name, std::move(column.values), vertices);
     for (PlyColumn& column : numbers.faces) {
-        if (completed && column.name == "fragment") continue;
         const std::vector<double> values = of_triangles(column.values, mesh);
         if (values.size() == mesh.mesh.number_of_faces()) add(column.name, vertex_means(mesh.mesh, values), vertices);
     }

@@ -1,10 +1,13 @@
 import { gradient } from "./colours";
-import type { Blobs, Language } from "./data";
+import { Index } from "./collection";
+import { Constraints } from "./constraints";
+import type { Language } from "./data";
 import { Details } from "./details";
 import { Graph } from "./graph";
 import { Legend } from "./legend";
-import { address } from "./main";
+import { address, closeEntry } from "./main";
 import { Picture, view } from "./picture";
+import { Slices } from "./slices";
 import * as state from "./state";
 import { numberText, page, word } from "./state";
 import { Tables } from "./tables";
@@ -32,7 +35,7 @@ function Check(props: { label: string; checked: boolean; onChange: (value: boole
   );
 }
 
-function Slider(props: { label: string; value: number; min: number; max: number; onChange: (value: number) => void }) {
+function Slider(props: { label: string; value: number; min: number; max: number; step?: number; onChange: (value: number) => void }) {
   return (
     <label class="slider">
       {props.label}{" "}
@@ -40,7 +43,7 @@ function Slider(props: { label: string; value: number; min: number; max: number;
         type="range"
         min={props.min}
         max={props.max}
-        step={(props.max - props.min) / 200}
+        step={props.step ?? (props.max - props.min) / 200}
         value={props.value}
         onInput={(event) => props.onChange(+event.currentTarget.value)}
       />
@@ -51,6 +54,19 @@ function Slider(props: { label: string; value: number; min: number; max: number;
 function ColourBar() {
   const map = page.objects[state.object.value].maps[state.map.value];
   if (!map) return null;
+  if (map.categories) {
+    const all = map.histogram.reduce((sum, count) => sum + count, 0) || 1;
+    return (
+      <ul class="categories" aria-label={map.label}>
+        {map.categories.map((one, i) => (
+          <li key={i}>
+            <span class="swatch" style={{ "--colour": `rgb(${one.colour.join(",")})` }} aria-hidden="true" /> {one.text}{" "}
+            <span class="quiet">{numberText(+((100 * map.histogram[i]) / all).toFixed(1))} %</span>
+          </li>
+        ))}
+      </ul>
+    );
+  }
   const most = Math.max(1, ...map.histogram);
   const middle = (map.from + map.to) / 2;
   const low = (map.minimum < map.from ? "≤ " : "") + numberText(map.from);
@@ -111,11 +127,18 @@ function Toolbar() {
             label={word("objects")}
             value={String(state.object.value)}
             options={page.objects.map((one, i) => [String(i), one.name])}
-            onChange={(value) => {
-              state.object.value = +value;
-              state.chosen.value = -1;
-            }}
+            onChange={(value) => state.choose(-1, +value)}
           />
+          {!state.sideBySide.value && (
+            <Slider
+              label={word("step", state.object.value + 1, page.objects.length)}
+              value={state.object.value}
+              min={0}
+              max={page.objects.length - 1}
+              step={1}
+              onChange={(value) => state.choose(-1, value)}
+            />
+          )}
           <Check label={word("sideBySide")} checked={state.sideBySide.value} onChange={(value) => (state.sideBySide.value = value)} />
         </>
       )}
@@ -135,6 +158,9 @@ function Toolbar() {
           max={1}
           onChange={(value) => (state.blend.value = value)}
         />
+      )}
+      {about.parts && (
+        <Slider label={word("explode")} value={state.explode.value} min={0} max={2} onChange={(value) => (state.explode.value = value)} />
       )}
       {about.cage && <Check label={word("cage")} checked={state.cage.value} onChange={(value) => (state.cage.value = value)} />}
       <span class="group">
@@ -173,13 +199,20 @@ function Toolbar() {
   );
 }
 
-export function App({ blobs }: { blobs: Blobs }) {
+export function App() {
+  void state.turn.value; // another object of a collection: everything anew
   const about = page.objects[state.object.value];
   const { simplified } = about ?? {};
+  const ready = state.ready.value || !view;
   return (
     <>
       <header>
         <h1>{page.title}</h1>
+        {state.entry.value >= 0 && (
+          <button type="button" onClick={closeEntry}>
+            {word("backToIndex")}
+          </button>
+        )}
         <Choice
           label={word("language")}
           value={state.language.value}
@@ -197,7 +230,8 @@ export function App({ blobs }: { blobs: Blobs }) {
           onChange={state.setTheme}
         />
       </header>
-      <main>
+      <main key={state.turn.value}>
+        {page.collection && <Index />}
         {about && (
           <div class="stage">
             <div class="left">
@@ -210,33 +244,47 @@ export function App({ blobs }: { blobs: Blobs }) {
                 {state.message.value && ` – ${state.message.value}`}
               </p>
             </div>
-            <aside>
-              <ColourBar />
-              <Legend />
-              <Details />
+            <aside tabIndex={0} aria-label={word("annotations")}>
+              {ready && (
+                <>
+                  <ColourBar />
+                  <Legend />
+                  <Details />
+                </>
+              )}
             </aside>
           </div>
         )}
-        {about && <Graph />}
-        <Tables blobs={blobs} />
-        {page.notes.length > 0 && (
-          <section aria-labelledby="notes-title">
-            <h2 id="notes-title">{word("notes")}</h2>
-            <ul>
-              {page.notes.map((note, i) => (
-                <li key={i}>{note}</li>
-              ))}
-            </ul>
-          </section>
+        {ready && about && (
+          <>
+            <Constraints />
+            <Slices />
+            <Graph />
+          </>
         )}
-        <section aria-labelledby="about-title">
-          <details>
-            <summary>
-              <h2 id="about-title">{word("about")}</h2>
-            </summary>
-            <pre tabIndex={0}>{page.provenance}</pre>
-          </details>
-        </section>
+        {(ready || !about) && (
+          <>
+            <Tables blobs={state.blobs} />
+            {page.notes.length > 0 && (
+              <section aria-labelledby="notes-title">
+                <h2 id="notes-title">{word("notes")}</h2>
+                <ul>
+                  {page.notes.map((note, i) => (
+                    <li key={i}>{note}</li>
+                  ))}
+                </ul>
+              </section>
+            )}
+            <section aria-labelledby="about-title">
+              <details>
+                <summary>
+                  <h2 id="about-title">{word("about")}</h2>
+                </summary>
+                <pre tabIndex={0}>{page.provenance}</pre>
+              </details>
+            </section>
+          </>
+        )}
       </main>
     </>
   );

@@ -109,6 +109,8 @@ export interface PageObject {
   annotations: Annotation[];
   maps: ValueMap[];
   cage?: { geometry: number; vertices: number; origin: [number, number, number] };
+  /** The rows of a drawing of the relationships: annotations under what contains them. */
+  tree: { annotation: number; depth: number }[];
   relations: Relation[];
   constraints?: Constraint[];
   /** Constraints that cannot hold together, in words. */
@@ -129,6 +131,8 @@ export interface Relation {
   weight: number;
   holds?: boolean;
   text: string;
+  /** Beside the tree, from inside; undefined: the tree says it. */
+  lane?: number;
 }
 
 export interface Column {
@@ -200,13 +204,39 @@ function decodeBase64(text: string): Uint8Array {
   return bytes;
 }
 
-export async function readPage(): Promise<{ data: PageData; blobs: Blobs }> {
-  const text = (id: string) => document.getElementById(id)?.textContent?.trim() ?? "";
-  const data = JSON.parse(text("ostraka-data")) as PageData;
-  const packed = decodeBase64(text("ostraka-bytes"));
+export interface Content {
+  data: PageData;
+  blobs: Blobs;
+}
+
+async function unpack(data: PageData, text: string): Promise<Content> {
+  const packed = decodeBase64(text.trim());
   const stream = new Blob([packed as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   return { data, blobs: new Blobs(bytes, data.blobs) };
+}
+
+export function readPage(): Promise<Content> {
+  const text = (id: string) => document.getElementById(id)?.textContent ?? "";
+  return unpack(JSON.parse(text("ostraka-data")) as PageData, text("ostraka-bytes"));
+}
+
+/** An object of a collection. Its file is a script that calls `ostrakaObject`. */
+export function readEntry(file: string): Promise<Content> {
+  return new Promise((done, failed) => {
+    const script = document.createElement("script");
+    (window as unknown as Record<string, unknown>).ostrakaObject = (of: string, data: PageData, bytes: string) => {
+      if (of === file) done(unpack(data, bytes));
+    };
+    const ended = () => {
+      script.remove();
+      failed(new Error(file)); // unless it has called
+    };
+    script.onload = ended;
+    script.onerror = ended;
+    script.src = file;
+    document.head.append(script);
+  });
 }
 
 /** The triangles of a region: pairs of a gap and a run, as numbers of seven bits a byte. */

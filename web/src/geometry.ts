@@ -1,9 +1,8 @@
 // Objects as they are drawn: triangles with a colour of their own, regions, lines and points on them.
 import * as THREE from "three";
-import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { MeshBVH } from "three-mesh-bvh";
-import { readRuns, type Blobs, type PageObject } from "./data";
+import { readRuns, type Blobs, type PageObject, type Slice } from "./data";
 
 /** Vertices and triangles in the order of the object's file. */
 export interface Shape {
@@ -11,26 +10,31 @@ export interface Shape {
   triangles: Uint32Array;
 }
 
-const loader = new GLTFLoader();
-loader.setMeshoptDecoder(MeshoptDecoder);
-
+/** Of the GLB files that the command writes: one mesh of one primitive, both streams packed. */
 export async function readShape(bytes: Uint8Array): Promise<Shape> {
-  const copy = bytes.slice();
-  const { scene } = await loader.parseAsync(copy.buffer, "");
-  scene.updateMatrixWorld(true);
-  let shape: Shape | undefined;
-  scene.traverse((node) => {
-    const geometry = (node as THREE.Mesh).geometry as THREE.BufferGeometry | undefined;
-    if (!geometry || shape) return;
-    const given = geometry.getAttribute("position");
-    const positions = new Float32Array(3 * given.count);
-    const point = new THREE.Vector3();
-    for (let i = 0; i < given.count; ++i)
-      point.fromBufferAttribute(given, i).applyMatrix4(node.matrixWorld).toArray(positions, 3 * i);
-    shape = { positions, triangles: Uint32Array.from(geometry.index?.array ?? []) };
-  });
-  if (!shape) throw new Error("the page holds no shape");
-  return shape;
+  await MeshoptDecoder.ready;
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const jsonSize = view.getUint32(12, true);
+  const file = JSON.parse(new TextDecoder().decode(bytes.subarray(20, 20 + jsonSize)));
+  const binary = 20 + jsonSize + 8;
+  const primitive = file.meshes[0].primitives[0];
+  const unpacked = (accessor: number) => {
+    const packed = file.bufferViews[file.accessors[accessor].bufferView].extensions.EXT_meshopt_compression;
+    const made = new Uint8Array(packed.count * packed.byteStride);
+    const begin = binary + (packed.byteOffset ?? 0);
+    MeshoptDecoder.decodeGltfBuffer(made, packed.count, packed.byteStride, bytes.subarray(begin, begin + packed.byteLength), packed.mode, packed.filter);
+    return { made, stride: packed.byteStride as number, count: packed.count as number };
+  };
+  const points = unpacked(primitive.attributes.POSITION);
+  const steps = new Uint16Array(points.made.buffer);
+  const scale: number[] = file.nodes[0].scale ?? [1, 1, 1];
+  const moved: number[] = file.nodes[0].translation ?? [0, 0, 0];
+  const positions = new Float32Array(3 * points.count);
+  for (let i = 0; i < points.count; ++i)
+    for (let k = 0; k < 3; ++k) positions[3 * i + k] = moved[k] + scale[k] * steps[(i * points.stride) / 2 + k];
+  const corners = unpacked(primitive.indices);
+  const triangles = corners.stride === 2 ? Uint32Array.from(new Uint16Array(corners.made.buffer)) : new Uint32Array(corners.made.buffer);
+  return { positions, triangles };
 }
 
 function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Array {
@@ -117,46 +121,127 @@ function splitVertices(vertices: number, triangles: Uint32Array, sets: Uint32Arr
   return { source: Uint32Array.from(source), set: Uint32Array.from(set), index };
 }
 
-/** How the surface is lit and marked; the same for all objects, so that it is compiled once. */
-function surfaceMaterial(blend: { value: number }, patterns: { value: number }): THREE.MeshLambertMaterial {
-  const material = new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide });
-  material.onBeforeCompile = (shader) => {
-    shader.uniforms.blend = blend;
-    shader.uniforms.patterns = patterns;
-    shader.vertexShader = shader.vertexShader
-      .replace(
-        "#include <common>",
-        "#include <common>\nattribute vec3 otherPosition;\nattribute vec3 otherNormal;\nattribute float pattern;\nuniform float blend;\nflat varying float vPattern;",
-      )
-      .replace("#include <beginnormal_vertex>", "vec3 objectNormal = normalize(mix(normal, otherNormal, blend) + 1e-9);")
-      .replace("#include <begin_vertex>", "vec3 transformed = mix(position, otherPosition, blend);\nvPattern = pattern;");
-    shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nuniform float patterns;\nflat varying float vPattern;")
-      .replace(
-        "#include <color_fragment>",
-        `#include <color_fragment>
-        if (patterns > 0.5 && vPattern > 0.5) {
-          vec2 at = gl_FragCoord.xy;
-          float kind = mod(vPattern - 1.0, 6.0), period = 9.0 + 3.0 * floor((vPattern - 1.0) / 6.0);
-          float along = kind < 0.5 ? at.x + at.y : kind < 1.5 ? at.x - at.y : kind < 2.5 ? at.x : at.y;
-          bool mark = kind < 3.5 ? mod(along, period) < 1.5
-                    : kind < 4.5 ? min(mod(at.x, period), mod(at.y, period)) < 1.2
-                    : length(mod(at, period) - 0.5 * period) < 1.8;
-          if (mark) diffuseColor.rgb *= 0.45;
-        }`,
-      );
-  };
-  return material;
-}
+/** What all materials share. */
+export const shared = {
+  blend: { value: 0 },
+  explode: { value: 0 },
+  patterns: { value: 0 },
+  clip: { value: new THREE.Vector4(0, 0, 0, 1) },
+};
 
-export const blendShare = { value: 0 };
-export const patternShare = { value: 0 };
-const surface = surfaceMaterial(blendShare, patternShare);
+const clipping = `
+uniform vec4 clip;
+in vec3 place;
+`;
+
+/** A shader of its own: it is compiled in a fraction of the time that those of the library take. Colours are sRGB; light is added in
+ * their squares, which is near enough to linear light. */
+const surface = new THREE.RawShaderMaterial({
+  glslVersion: THREE.GLSL3,
+  side: THREE.DoubleSide,
+  uniforms: shared,
+  vertexShader: `
+    precision highp float;
+    uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
+    uniform float blend, explode;
+    in vec3 position, normal, otherPosition, otherNormal, apart, color;
+    in float pattern;
+    out vec3 place, facing, tint;
+    flat out float kind;
+    void main() {
+      vec4 at = modelMatrix * vec4(mix(position, otherPosition, blend) + explode * apart, 1.0);
+      place = at.xyz;
+      facing = mat3(viewMatrix) * mat3(modelMatrix) * mix(normal, otherNormal, blend);
+      tint = color;
+      kind = pattern;
+      gl_Position = projectionMatrix * viewMatrix * at;
+    }`,
+  fragmentShader: `
+    precision highp float;
+    ${clipping}
+    uniform float patterns;
+    in vec3 facing, tint;
+    flat in float kind;
+    out vec4 pixel;
+    void main() {
+      if (dot(vec4(place, 1.0), clip) < 0.0) discard;
+      vec3 n = normalize(facing + 1e-12);
+      if (!gl_FrontFacing) n = -n;
+      vec3 colour = tint * tint;
+      if (patterns > 0.5 && kind > 0.5) {
+        vec2 at = gl_FragCoord.xy;
+        float form = mod(kind - 1.0, 6.0), period = 9.0 + 3.0 * floor((kind - 1.0) / 6.0);
+        float along = form < 0.5 ? at.x + at.y : form < 1.5 ? at.x - at.y : form < 2.5 ? at.x : at.y;
+        bool mark = form < 3.5 ? mod(along, period) < 1.5
+                  : form < 4.5 ? min(mod(at.x, period), mod(at.y, period)) < 1.2
+                  : length(mod(at, period) - 0.5 * period) < 1.8;
+        if (mark) colour *= 0.45;
+      }
+      float key = max(0.0, dot(n, vec3(0.263, 0.473, 0.841)));
+      pixel = vec4(sqrt(min(vec3(1.0), colour * (0.36 + 0.1 * n.y + 0.72 * key))), 1.0);
+    }`,
+});
+
+/** Lines, dots and bands of one colour. */
+export function flatMaterial(colour: [number, number, number], dot = 0, through = false): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    side: THREE.DoubleSide,
+    depthTest: !through,
+    uniforms: { clip: shared.clip, colour: { value: new THREE.Vector3(...colour).divideScalar(255) }, size: { value: dot } },
+    vertexShader: `
+      precision highp float;
+      uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
+      uniform float size;
+      in vec3 position;
+      out vec3 place;
+      void main() {
+        vec4 at = modelMatrix * vec4(position, 1.0);
+        place = at.xyz;
+        gl_Position = projectionMatrix * viewMatrix * at;
+        gl_PointSize = size;
+      }`,
+    fragmentShader: `
+      precision highp float;
+      ${clipping}
+      uniform vec3 colour;
+      uniform float size;
+      out vec4 pixel;
+      void main() {
+        if (dot(vec4(place, 1.0), clip) < 0.0) discard;
+        if (size > 0.0 && length(gl_PointCoord - 0.5) > 0.5) discard;
+        pixel = vec4(colour, 1.0);
+      }`,
+  });
+}
 
 const clay: [number, number, number] = [201, 184, 160];
 
-/** sRGB bytes to the linear numbers that three.js shades with. */
-const linear = Float32Array.from({ length: 256 }, (_, i) => new THREE.Color().setRGB(i / 255, 0, 0, THREE.SRGBColorSpace).r);
+/** A plane's contours as bands, so that they are as wide as is seen well from every side. */
+function bandsOf(slice: Slice, points: Float32Array, begin: number, half: number): THREE.BufferGeometry {
+  const [origin, u, v] = [slice.origin, slice.u, slice.v].map((x) => new THREE.Vector3(...x));
+  const normal = u.clone().cross(v).normalize();
+  const corners: number[] = [];
+  const at = (i: number) => origin.clone().addScaledVector(u, points[2 * i]).addScaledVector(v, points[2 * i + 1]);
+  const band = (a: THREE.Vector3, b: THREE.Vector3, across: THREE.Vector3) => {
+    const [p, q, r, s] = [a.clone().sub(across), a.clone().add(across), b.clone().add(across), b.clone().sub(across)];
+    for (const one of [p, q, r, p, r, s]) corners.push(one.x, one.y, one.z);
+  };
+  let first = begin;
+  for (const contour of slice.contours) {
+    const last = contour.closed ? contour.points : contour.points - 1;
+    for (let i = 0; i < last; ++i) {
+      const a = at(first + i);
+      const b = at(first + ((i + 1) % contour.points));
+      band(a, b, normal.clone().multiplyScalar(half));
+      band(a, b, b.clone().sub(a).cross(normal).setLength(half));
+    }
+    first += contour.points;
+  }
+  return new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(Float32Array.from(corners), 3));
+}
+
+const cut = flatMaterial([194, 24, 91], 0, true);
 
 export class DrawnObject {
   readonly group = new THREE.Group();
@@ -169,6 +254,12 @@ export class DrawnObject {
   /** The smallest visible region of each triangle; -1: none. */
   readonly top: Int32Array;
   cage: THREE.Object3D | undefined;
+  /** Where the vertices are now, as far as they are blended and moved apart. */
+  private readonly current: Float32Array;
+  /** Of each vertex how it goes as the parts are moved apart; undefined: there are none. */
+  private readonly apart: Float32Array | undefined;
+  private moved = { blend: 0, explode: 0 };
+  private slice: THREE.Mesh | undefined;
   private bvhMade: MeshBVH | undefined;
   private readonly normals: Float32Array;
   private readonly sets: ReturnType<typeof setsOf>;
@@ -193,7 +284,10 @@ export class DrawnObject {
     geometry.setAttribute("normal", new THREE.BufferAttribute(gathered(this.normals, this.split.source), 3));
     geometry.setAttribute("otherPosition", geometry.getAttribute("position"));
     geometry.setAttribute("otherNormal", geometry.getAttribute("normal"));
-    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(3 * count), 3));
+    this.current = positions.slice();
+    this.apart = this.partMoves();
+    if (this.apart) geometry.setAttribute("apart", new THREE.BufferAttribute(gathered(this.apart, this.split.source), 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(3 * count), 3, true));
     geometry.setAttribute("pattern", new THREE.BufferAttribute(new Uint8Array(count), 1));
     this.mesh = new THREE.Mesh(geometry, surface);
     this.mesh.frustumCulled = false;
@@ -211,20 +305,82 @@ export class DrawnObject {
   get bvh(): MeshBVH {
     if (!this.bvhMade) {
       const indexed = new THREE.BufferGeometry();
-      indexed.setAttribute("position", new THREE.BufferAttribute(this.shape.positions, 3));
+      indexed.setAttribute("position", new THREE.BufferAttribute(this.current, 3));
       indexed.setIndex(new THREE.BufferAttribute(this.shape.triangles, 1));
       this.bvhMade = new MeshBVH(indexed, { indirect: true });
     }
     return this.bvhMade;
   }
 
+  /** Where a vertex is now. */
   vertex(index: number): THREE.Vector3 {
-    return new THREE.Vector3().fromArray(this.shape.positions, 3 * index);
+    return new THREE.Vector3().fromArray(this.current, 3 * index);
+  }
+
+  /** From the middle of all to the middle of each part. */
+  private partMoves(): Float32Array | undefined {
+    const { parts } = this.about;
+    if (!parts) return undefined;
+    const { positions, triangles } = this.shape;
+    const moves = new Float32Array(positions.length);
+    const middle = new THREE.Vector3(...this.about.size).multiplyScalar(0.5);
+    for (const part of parts) {
+      const sum = new THREE.Vector3();
+      const corners = [...this.regions[part]!].flatMap((f) => [triangles[3 * f], triangles[3 * f + 1], triangles[3 * f + 2]]);
+      for (const v of corners) sum.add(new THREE.Vector3().fromArray(positions, 3 * v));
+      sum.divideScalar(corners.length || 1).sub(middle);
+      for (const v of corners) sum.toArray(moves, 3 * v);
+    }
+    return moves;
+  }
+
+  /** What is asked of places from now on is asked of the shape that is drawn. */
+  moveTo(blend: number, explode: number) {
+    const wanted = { blend: this.other ? blend : 0, explode: this.apart ? explode : 0 };
+    if (wanted.blend === this.moved.blend && wanted.explode === this.moved.explode) return false;
+    this.moved = wanted;
+    const { positions } = this.shape;
+    for (let i = 0; i < positions.length; ++i) {
+      let x = positions[i];
+      if (wanted.blend > 0) x += wanted.blend * (this.other!.positions[i] - x);
+      if (wanted.explode > 0) x += wanted.explode * this.apart![i];
+      this.current[i] = x;
+    }
+    this.bvhMade?.refit();
+    return true;
+  }
+
+  /** The contours of a level of the slices; undefined: none. */
+  showSlice(level: number | undefined) {
+    if (this.slice) {
+      this.slice.geometry.dispose();
+      this.group.remove(this.slice);
+      this.slice = undefined;
+    }
+    const { slices } = this.about;
+    if (!slices || level === undefined || !slices.levels[level]) return;
+    this.slice = new THREE.Mesh(bandsOf(slices.levels[level], this.slicePoints(), this.firstPoint(level), 0.0025 * Math.hypot(...this.about.size)), cut);
+    this.slice.frustumCulled = false;
+    this.slice.renderOrder = 1;
+    this.group.add(this.slice);
+  }
+
+  /** Along u and v, of all contours of all levels. */
+  slicePoints(): Float32Array {
+    return new Float32Array(this.blobs.get(this.about.slices!.blob).slice().buffer);
+  }
+
+  firstPoint(level: number): number {
+    return this.about.slices!.levels.slice(0, level).reduce((sum, one) => sum + one.contours.reduce((n, c) => n + c.points, 0), 0);
+  }
+
+  dispose() {
+    this.group.traverse((one) => (one as THREE.Mesh).geometry?.dispose());
   }
 
   private line(lines: number[][], colour: [number, number, number]): THREE.Object3D {
     const group = new THREE.Group();
-    const material = new THREE.LineBasicMaterial({ color: new THREE.Color(...(colour.map((c) => linear[c]) as [number, number, number])) });
+    const material = flatMaterial(colour);
     const lift = this.lift();
     for (const one of lines) {
       const geometry = new THREE.BufferGeometry().setFromPoints(one.map((v) => this.vertex(v).addScaledVector(lift(v), 1)));
@@ -236,17 +392,7 @@ export class DrawnObject {
   private dots(points: number[], colour: [number, number, number]): THREE.Object3D {
     const lift = this.lift();
     const geometry = new THREE.BufferGeometry().setFromPoints(points.map((v) => this.vertex(v).add(lift(v))));
-    const material = new THREE.PointsMaterial({
-      color: new THREE.Color(...(colour.map((c) => linear[c]) as [number, number, number])),
-      size: 11,
-      sizeAttenuation: false,
-    });
-    material.onBeforeCompile = (shader) => {
-      shader.fragmentShader = shader.fragmentShader.replace(
-        "#include <color_fragment>",
-        "#include <color_fragment>\nif (length(gl_PointCoord - 0.5) > 0.5) discard;",
-      );
-    };
+    const material = flatMaterial(colour, 11);
     return new THREE.Points(geometry, material);
   }
 
@@ -278,12 +424,12 @@ export class DrawnObject {
     for (let face = 0; face < this.top.length; ++face) this.top[face] = topOf[sets.of[face]];
     const selects = chosen >= 0 && this.regions[chosen] !== undefined;
     const table = sets.members.map((regions, set) => {
-      const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 0.4] : [1, 0];
-      return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * linear[c] + pale);
+      const [own, pale] = selects && !regions.includes(chosen) ? [0.35, 160] : [1, 0];
+      return (topOf[set] < 0 ? clay : about.annotations[topOf[set]].colour).map((c) => own * c + pale);
     });
     const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
     const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
-    const colours = colour.array as Float32Array;
+    const colours = colour.array as Uint8Array;
     const patterns = pattern.array as Uint8Array;
     for (let i = 0; i < split.set.length; ++i) {
       const entry = table[split.set[i]];
@@ -302,16 +448,17 @@ export class DrawnObject {
     const values = this.mapValues(map);
     const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
     const pattern = this.mesh.geometry.getAttribute("pattern") as THREE.BufferAttribute;
-    const colours = colour.array as Float32Array;
-    const table = Array.from({ length: 256 }, (_, i) => colourOf(i / 255).map((c) => linear[c]));
+    const colours = colour.array as Uint8Array;
     const { source } = this.split;
-    const { minimum, maximum, from, to } = this.about.maps[map];
-    const none = [0.5, 0.5, 0.5];
-    const scale = (255 * (maximum - minimum)) / 65534 / (to - from || 1);
-    const offset = (255 * (minimum - from)) / (to - from || 1);
+    const { minimum, maximum, from, to, categories } = this.about.maps[map];
+    const none = [128, 128, 128];
+    // Of categories a step is a place in the list.
+    const table = categories ? categories.map((c) => c.colour) : Array.from({ length: 256 }, (_, i) => colourOf(i / 255));
+    const scale = categories ? 1 : (255 * (maximum - minimum)) / 65534 / (to - from || 1);
+    const offset = categories ? 0 : (255 * (minimum - from)) / (to - from || 1);
     for (let i = 0; i < source.length; ++i) {
       const value = values[source[i]];
-      const entry = value === 65535 ? none : table[Math.min(255, Math.max(0, Math.round(offset + scale * value)))];
+      const entry = value === 65535 ? none : table[Math.min(table.length - 1, Math.max(0, Math.round(offset + scale * value)))];
       colours[3 * i] = entry[0];
       colours[3 * i + 1] = entry[1];
       colours[3 * i + 2] = entry[2];
@@ -326,11 +473,12 @@ export class DrawnObject {
     return new Uint16Array(bytes.slice().buffer);
   }
 
-  /** What a map says at a vertex; undefined: nothing. */
-  mapValue(map: number, vertex: number): number | undefined {
-    const { minimum, maximum } = this.about.maps[map];
+  /** What a map says at a vertex, a number or the name of a category; undefined: nothing. */
+  mapValue(map: number, vertex: number): number | string | undefined {
+    const { minimum, maximum, categories } = this.about.maps[map];
     const step = this.mapValues(map)[vertex];
-    return step === 65535 ? undefined : minimum + (step / 65534) * (maximum - minimum);
+    if (step === 65535) return undefined;
+    return categories ? categories[step].text : minimum + (step / 65534) * (maximum - minimum);
   }
 
   /** All shown regions on a triangle, the smallest first. */

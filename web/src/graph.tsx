@@ -1,57 +1,27 @@
 // Relationships drawn: annotations as the tree of what contains what, and a bracket for each other relationship.
 import { useState } from "preact/hooks";
-import type { Relation } from "./data";
 import { choose, chosen, object, page, word } from "./state";
 
 const row = 22;
 const lane = 13;
 const colours = ["#4477aa", "#ee6677", "#228833", "#aa8800", "#3c9fc0", "#aa3377", "#7a7a7a"];
 
-/** The rows of the tree: annotation and depth. */
-function rowsOf(): { annotation: number; depth: number }[] {
-  const { annotations } = page.objects[object.value];
-  const rows: { annotation: number; depth: number }[] = [];
-  const add = (parent: number, depth: number) =>
-    annotations.forEach((one, i) => {
-      if (one.parent !== parent) return;
-      rows.push({ annotation: i, depth });
-      add(i, depth + 1);
-    });
-  add(-1, 0);
-  return rows;
-}
-
-/** For each relationship the first lane in which no other is in its way; short ones lie inside. */
-function lanesOf(relations: { relation: Relation; low: number; high: number }[]): number[] {
-  const lanes = new Array<number>(relations.length).fill(0);
-  const order = relations.map((_, i) => i).sort((a, b) => relations[a].high - relations[a].low - (relations[b].high - relations[b].low) || a - b);
-  const taken: [number, number][][] = [];
-  for (const i of order) {
-    const { low, high } = relations[i];
-    let at = 0;
-    while (taken[at]?.some(([a, b]) => a <= high && low <= b)) ++at;
-    (taken[at] ??= []).push([low, high]);
-    lanes[i] = at;
-  }
-  return lanes;
-}
-
 export function Graph() {
   const { annotations, relations } = page.objects[object.value];
   const types = [...new Set(relations.map((one) => one.type))].filter((type) => type !== "containment").sort();
   const [off, setOff] = useState<ReadonlySet<string>>(new Set());
   if (types.length === 0) return null;
-  const rows = rowsOf();
+  const { tree: rows } = page.objects[object.value];
   /** The row of what contains the one of row i. */
   const above = (i: number) => rows.findIndex((one) => one.annotation === annotations[rows[i].annotation].parent);
   const placeOf = new Map(rows.map((one, i) => [one.annotation, i]));
   const list = relations
-    .filter((one) => one.type !== "containment" && !off.has(one.type))
+    .filter((one) => one.lane !== undefined && !off.has(one.type))
     .map((relation) => {
       const places = relation.members.map((m) => placeOf.get(m)!).sort((a, b) => a - b);
       return { relation, low: places[0], high: places[places.length - 1] };
     });
-  const lanes = lanesOf(list);
+  const lanes = list.map((one) => one.relation.lane!);
   const names = Math.max(...rows.map((one) => 16 * one.depth + 7.2 * (annotations[one.annotation].tag || "#0").length)) + 30;
   const width = names + lane * (Math.max(0, ...lanes) + 2);
   const toggle = (type: string) => {

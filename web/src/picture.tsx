@@ -13,7 +13,10 @@ export let drawn: DrawnObject[] = [];
 export function setScene(made: View | undefined, objects: DrawnObject[]) {
   view = made;
   drawn = objects;
+  anchors.clear();
 }
+
+const anchors = new Map<string, THREE.Vector3[]>();
 
 /** Places of an annotation, the one nearest to its middle first; of a region where no smaller one covers it. */
 function anchorsOf(of: DrawnObject, annotation: number): THREE.Vector3[] {
@@ -32,7 +35,6 @@ function anchorsOf(of: DrawnObject, annotation: number): THREE.Vector3[] {
   const middle = some.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(some.length);
   return some.sort((a, b) => a.distanceToSquared(middle) - b.distanceToSquared(middle));
 }
-const anchors = new Map<string, THREE.Vector3[]>();
 
 interface Label {
   text: string;
@@ -50,6 +52,7 @@ function labelPlaces(width: number, height: number): Label[] {
   const share = 1 / state.panes.value.length;
   state.panes.value.forEach((o, pane) => {
     const of = drawn[o];
+    if (!of) return;
     const mine: Label[] = [];
     of.about.annotations.forEach((one, i) => {
       if (!state.isShown(o, i) || !one.tag) return;
@@ -90,7 +93,7 @@ function rulers(): { from: { x: number; y: number }; to: { x: number; y: number 
       if (from && to) list.push({ from, to, text: i === Math.ceil((pins.length - 1) / 2) ? text : "", ends: [i === 1, i === pins.length - 1] });
     }
   };
-  const one = page.objects[state.object.value].annotations[state.chosen.value];
+  const one = page.objects[state.object.value]?.annotations[state.chosen.value];
   for (const m of one?.measures ?? [])
     add(
       state.object.value,
@@ -162,6 +165,8 @@ function onKey(event: KeyboardEvent) {
     "=": () => void view!.controls.zoom(view!.camera.zoom * 0.25, true),
     "-": () => void view!.controls.zoom(-view!.camera.zoom * 0.2, true),
     "0": () => view!.home(),
+    "[": () => state.choose(-1, (state.object.value + page.objects.length - 1) % page.objects.length),
+    "]": () => state.choose(-1, (state.object.value + 1) % page.objects.length),
     n: () => step(1),
     p: () => step(-1),
     Escape: () => {
@@ -181,6 +186,7 @@ export function repaint() {
   const chosen = state.chosen.value;
   for (const o of state.panes.value) {
     const of = drawn[o];
+    if (!of) return; // another content is on its way
     const map = state.map.value;
     if (map >= 0 && map < of.about.maps.length)
       of.paintMap(map, (share) => colourOf(share, of.about.maps[map].colours));
@@ -214,7 +220,12 @@ export function Picture() {
       effect(() => {
         view!.clip = state.clip.value;
         view!.clipAxis = state.clipAxis.value;
-        view!.blend = state.blend.value;
+        view!.move(state.blend.value, state.explode.value);
+        const moved = drawn.map((one) => one.moveTo(state.blend.value, state.explode.value));
+        if (moved.some(Boolean)) anchors.clear();
+      }),
+      effect(() => {
+        for (const one of drawn) one.showSlice(one.index === state.object.value && state.level.value >= 0 ? state.level.value : undefined);
         view!.draw();
       }),
       effect(() => {
@@ -308,7 +319,7 @@ function Tip() {
       ))}
       {map && (
         <div>
-          {map.name}: {value === undefined ? word("noValue") : numberText(value)}
+          {map.name}: {value === undefined ? word("noValue") : typeof value === "string" ? value : numberText(value)}
         </div>
       )}
     </div>

@@ -1,6 +1,6 @@
 // What the page shows, as signals: every part of it follows them.
 import { computed, signal } from "@preact/signals";
-import type { Language, PageData } from "./data";
+import type { Blobs, Content, Language, PageData, Table } from "./data";
 import messages from "./messages.json";
 
 export type Word = keyof (typeof messages)["en"];
@@ -42,28 +42,56 @@ const whole = computed(() => new Intl.NumberFormat(language.value));
 export const numberText = (x: number) => (Number.isInteger(x) ? whole.value.format(x) : format.value.format(x));
 export const withUnit = (x: number, unit: string) => numberText(x) + (unit ? " " + unit : "");
 
-/** The page's content; set once, before anything is drawn. */
+/** What is shown: the page's content, or that of an object of a collection. */
 export let page: PageData;
-export const setPage = (data: PageData) => {
-  page = data;
-};
+export let blobs: Blobs;
+/** Counts what was shown before: what follows it is made anew. */
+export const turn = signal(0);
+export function setContent(content: Content) {
+  page = content.data;
+  blobs = content.blobs;
+  Object.values(defaults).forEach((reset) => reset());
+  turn.value += 1;
+}
 
-export const object = signal(0);
-export const sideBySide = signal(false);
-export const chosen = signal(-1);
-export const hovered = signal<{ object: number; annotations: number[]; vertex: number; x: number; y: number } | undefined>(undefined);
-export const hidden = signal<ReadonlySet<string>>(new Set());
-export const search = signal("");
-export const map = signal(-1);
-export const blend = signal(0);
-export const clip = signal(1);
+const defaults: (() => void)[] = [];
+/** A signal that begins anew with each content. */
+function fresh<T>(value: T) {
+  const made = signal(value);
+  defaults.push(() => (made.value = value));
+  return made;
+}
+
+export const object = fresh(0);
+export const sideBySide = fresh(false);
+export const chosen = fresh(-1);
+/** Of a table, what is marked though it is of no object. */
+export const marked = fresh<{ table: string; row: number }>({ table: "", row: -1 });
+export const hovered = fresh<{ object: number; annotations: number[]; vertex: number; x: number; y: number } | undefined>(undefined);
+export const hidden = fresh<ReadonlySet<string>>(new Set());
+export const search = fresh("");
+export const map = fresh(-1);
+export const blend = fresh(0);
+export const explode = fresh(0);
+/** Level of the slices of the shown object; -1: none is drawn. */
+export const level = fresh(-1);
+export const clip = fresh(1);
 export const clipAxis = signal(2);
 export const patterns = signal(false);
 export const labels = signal(true);
 export const cage = signal(true);
 export const measuring = signal(false);
-export const measured = signal<{ object: number; places: { x: number; y: number; z: number }[] }>({ object: -1, places: [] });
+export const measured = fresh<{ object: number; places: { x: number; y: number; z: number }[] }>({ object: -1, places: [] });
 export const message = signal("");
+/** The first picture is there: the rest of the page may follow. */
+export const ready = signal(false);
+
+/** The index of a collection, if the page is one, and which of its objects is open; -1: none. */
+export let index: Content | undefined;
+export const setIndex = (content: Content) => {
+  index = content;
+};
+export const entry = signal(-1);
 
 export const keyOf = (o: number, annotation: number) => `${o}/${annotation}`;
 export const isShown = (o: number, annotation: number) => !hidden.value.has(keyOf(o, annotation));
@@ -78,8 +106,21 @@ export function show(o: number, list: number[], shown: boolean) {
 }
 
 export function choose(annotation: number, of = object.value) {
-  if (of !== object.value) object.value = of;
+  if (of !== object.value) {
+    object.value = of;
+    level.value = -1;
+  }
   chosen.value = annotation;
+  marked.value = { table: "", row: -1 };
+}
+
+/** Whether a row of a table is what is chosen. */
+export function isRowChosen(table: Table, row: number): boolean {
+  const o = table.objects?.[row] ?? -1;
+  const a = table.annotations?.[row] ?? -1;
+  if (marked.value.table === table.name && marked.value.row === row) return true;
+  if (o < 0 || o !== object.value || page.objects.length === 0) return false;
+  return a < 0 ? !table.annotations : a === chosen.value;
 }
 
 /** The objects in the panes, from left to right. */

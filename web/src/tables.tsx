@@ -1,9 +1,18 @@
 // Tables and drawings that the command made; a row of an annotation chooses it, and is marked where it is chosen.
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import type { Blobs, Drawing, Table } from "./data";
-import { choose, chosen, numberText, object, page, word } from "./state";
+import { openEntry } from "./main";
+import { Plot } from "./plots";
+import { choose, isRowChosen, marked, numberText, page, word } from "./state";
 
 function TableView({ table }: { table: Table }) {
+  /** Marks a row, and shows what it is of. */
+  const go = (r: number) => {
+    const o = table.objects?.[r] ?? -1;
+    if (o >= 0 && !page.collection) return choose(table.annotations?.[r] ?? -1, o);
+    marked.value = { table: table.name, row: r };
+    if (o >= 0) void openEntry(o);
+  };
   return (
     <figure class="table">
       <figcaption>{table.title}</figcaption>
@@ -21,17 +30,15 @@ function TableView({ table }: { table: Table }) {
           <tbody>
             {table.rows.map((row, r) => {
               const o = table.objects?.[r] ?? -1;
-              const a = table.annotations?.[r] ?? -1;
-              const current = o >= 0 && o === object.value && (a < 0 ? !table.annotations : a === chosen.value);
-              const go = () => choose(a, o);
+              const current = isRowChosen(table, r);
               return (
-                <tr key={r} class={current ? "chosen" : o >= 0 ? "linked" : ""} data-row={r} onClick={o >= 0 ? go : undefined}>
+                <tr key={r} class={current ? "chosen" : o >= 0 ? "linked" : ""} data-row={r} onClick={() => (page.collection ? (marked.value = { table: table.name, row: r }) : go(r))}>
                   {row.map((cell, c) => {
                     const text = cell === null ? "–" : typeof cell === "number" ? numberText(cell) : cell;
                     return (
                       <td key={c} class={table.columns[c].numeric ? "number" : ""}>
                         {c === 0 && o >= 0 ? (
-                          <button type="button" class="link" onClick={go} aria-pressed={current}>
+                          <button type="button" class="link" onClick={() => go(r)} aria-pressed={current}>
                             {text}
                           </button>
                         ) : (
@@ -47,6 +54,7 @@ function TableView({ table }: { table: Table }) {
         </table>
       </div>
       {table.note && <p class="quiet">{table.note}</p>}
+      <Plot table={table} go={(r) => (page.collection ? (marked.value = { table: table.name, row: r }) : go(r))} />
     </figure>
   );
 }
@@ -57,6 +65,7 @@ function DrawingView({ drawing, blobs }: { drawing: Drawing; blobs: Blobs }) {
     () => URL.createObjectURL(new Blob([blobs.get(drawing.blob) as BlobPart], { type: "image/svg+xml" })),
     [drawing],
   );
+  useEffect(() => () => URL.revokeObjectURL(address), [address]);
   return (
     <figure class="drawing">
       <img src={address} alt={drawing.title} />

@@ -1,7 +1,7 @@
 // The picture: one canvas, one camera, a pane for each object shown.
 import CameraControls from "camera-controls";
 import * as THREE from "three";
-import { blendShare, type DrawnObject } from "./geometry";
+import { shared, type DrawnObject } from "./geometry";
 
 CameraControls.install({ THREE });
 
@@ -15,12 +15,21 @@ export interface Hit {
 }
 
 /** Without a graphics card smooth edges cost most of the time of a picture. */
-function drawsInSoftware(): boolean {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const about = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = about ? String(gl!.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+function drawsInSoftware(gl: WebGL2RenderingContext): boolean {
+  const about = gl.getExtension("WEBGL_debug_renderer_info");
+  return /swiftshader|llvmpipe|software|basic render/i.test(about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "");
+}
+
+/** A canvas with its context: one that smooths edges only where a graphics card does it. */
+function makeCanvas(): { canvas: HTMLCanvasElement; context: WebGL2RenderingContext } {
+  for (const antialias of [false, true]) {
+    const canvas = document.createElement("canvas");
+    const context = canvas.getContext("webgl2", { antialias, alpha: true, stencil: false, powerPreference: "high-performance" });
+    if (!context) break;
+    if (antialias || drawsInSoftware(context)) return { canvas, context };
+    context.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+  throw new Error("no WebGL 2");
 }
 
 /** Half the width and height of what a pane shows, before any zoom: what is a unit large fits. */
@@ -29,17 +38,20 @@ function halfSizes(aspect: number): [number, number] {
 }
 
 export class View {
+  readonly canvas: HTMLCanvasElement;
+  private objects: DrawnObject[] = [];
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: CameraControls;
   readonly camera: THREE.OrthographicCamera;
   private readonly scene = new THREE.Scene();
   private last = performance.now();
-  private readonly light = new THREE.DirectionalLight(0xffffff, 2.1);
   private readonly plane = new THREE.Plane();
   private panes: DrawnObject[] = [];
   private frames: { centre: THREE.Vector3; scale: number; turn: THREE.Quaternion }[] = [];
   /** The first view has been fitted to the canvas. */
   private placed = false;
+  /** The first picture is there. */
+  private seen = false;
   private wanted = true;
   private running = false;
   clip = 1;
@@ -48,12 +60,10 @@ export class View {
   onMove: () => void = () => {};
   onDrawn: () => void = () => {};
 
-  constructor(
-    readonly canvas: HTMLCanvasElement,
-    private readonly objects: DrawnObject[],
-    reducedMotion: boolean,
-  ) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !drawsInSoftware() });
+  constructor(reducedMotion: boolean) {
+    const { canvas, context } = makeCanvas();
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
     this.renderer.debug.checkShaderErrors = false; // asking waits until they are made
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -20, 20);
@@ -65,7 +75,18 @@ export class View {
     this.controls.draggingSmoothTime = reducedMotion ? 0.001 : 0.06;
     this.controls.dollyToCursor = true;
     this.controls.addEventListener("update", () => this.draw());
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8d8478, 1.5), this.light);
+  }
+
+  /** What there is to see, instead of what there was. */
+  setObjects(objects: DrawnObject[]) {
+    for (const one of this.objects) {
+      this.scene.remove(one.group);
+      one.dispose();
+    }
+    this.objects = objects;
+    this.panes = [];
+    this.frames = [];
+    this.placed = false;
     this.frame();
     for (const one of objects) {
       const { centre, scale, turn } = this.frames[one.index];
@@ -188,20 +209,25 @@ export class View {
       this.camera.updateProjectionMatrix();
     }
     this.camera.updateMatrixWorld();
-    this.light.position.set(0.5, 0.9, 1.6).applyQuaternion(this.camera.quaternion);
     renderer.setClearColor(this.background);
     renderer.setScissorTest(false);
     renderer.clear();
     renderer.setScissorTest(true);
     const normal = new THREE.Vector3().setComponent(this.clipAxis, -1);
     this.plane.set(normal, this.clip);
-    renderer.clippingPlanes = this.clip < 1 ? [this.plane] : [];
+    if (this.clip < 1) shared.clip.value.set(normal.x, normal.y, normal.z, this.clip);
+    else shared.clip.value.set(0, 0, 0, 1);
     this.panes.forEach((pane, i) => {
       for (const one of this.objects) one.group.visible = one === pane;
       renderer.setViewport(i * width, 0, width, height);
       renderer.setScissor(i * width, 0, width, height);
       renderer.render(this.scene, this.camera);
     });
+    if (!this.seen) {
+      this.seen = true;
+      renderer.getContext().finish();
+      performance.mark("first picture");
+    }
     this.onDrawn();
   }
 
@@ -241,8 +267,10 @@ export class View {
     return { object: pane.index, face: hit.faceIndex, vertex: corners[0], point: hit.point };
   }
 
-  set blend(share: number) {
-    blendShare.value = share;
+  /** How far the shown objects turn into others, and their parts are apart. */
+  move(blend: number, explode: number) {
+    shared.blend.value = blend;
+    shared.explode.value = explode;
     this.draw();
   }
 

@@ -172,7 +172,7 @@ try {
     writeFileSync(at("taller.obj"), taller);
     ostraka("report", at("rest.obj"), at("taller.obj"), at("two.html"));
     const { page, told, close } = await open(at("two.html"));
-    await page.locator('input[type="range"]').first().fill("1");
+    await page.locator("label.slider", { hasText: "From rest" }).locator("input").fill("1");
     const far = await page.evaluate(() => {
       const { objects, state } = globalThis.ostraka;
       const other = objects[1];
@@ -205,10 +205,146 @@ try {
     await close();
   });
 
+  await test("a slice is drawn where the plane cuts, and slider and plot set the height", async () => {
+    ostraka("slice", at("pot.ply"), at("pot.ant.json"), "--output", at("cut"), "--count", "9");
+    ostraka("report", at("pot.ply"), at("pot.ant.json"), at("cut/slices.json"), at("cut.html"));
+    const written = JSON.parse(readFileSync(at("cut/slices.json"), "utf8"));
+    const { page, told, close } = await open(at("cut.html"));
+    await page.locator("#slice-level").focus();
+    for (let k = 0; k < 5; ++k) await page.keyboard.press("ArrowRight"); // from none to level 4
+    const level = written.slices[4];
+    const seen = await page.evaluate(() => {
+      const { objects, state } = globalThis.ostraka;
+      const { about } = objects[0];
+      const band = objects[0].group.children.find((one) => one.renderOrder === 1).geometry.getAttribute("position");
+      const points = [];
+      // Four corners of a band lie around each end of a segment.
+      for (let i = 0; i < band.count; i += 6) points.push([0, 1, 2].map((k) => (band.getComponent(i, k) + band.getComponent(i + 1, k)) / 2 + about.origin[k]));
+      return { at: state.level.value, points };
+    });
+    assert.equal(seen.at, 4);
+    const { origin, u, v, normal } = level.frame;
+    const wanted = level.contours.flatMap((c) => c.points.map(([x, y]) => [0, 1, 2].map((k) => origin[k] + level.height * normal[k] + x * u[k] + y * v[k])));
+    assert.equal(seen.points.length, 2 * wanted.length);
+    for (let i = 0; i < wanted.length; ++i)
+      assert.ok(Math.hypot(...wanted[i].map((x, k) => x - seen.points[2 * i][k])) < 1e-3 * level.height, `corner ${i}: ${seen.points[2 * i]} for ${wanted[i]}`);
+    const box = await page.locator("svg.plot").first().boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + 10);
+    assert.equal(await page.evaluate(() => globalThis.ostraka.state.level.value), 8);
+    assert.deepEqual(told, []);
+    await close();
+  });
+
+  await test("constraints are shown with their verdicts and choose their parts", async () => {
+    const evil = `</script><img src=x onerror="globalThis.broken=1">`;
+    const constraint = (verdict, extra) => ({ id: 1, type: "same level", parts: ["flower 1", "flower 2"], weight: 1, hard: true, before: "holds", verdict, text: evil,
+      deviations: [{ quantity: evil, before: 0, value: 3.25, tolerance: 1, unit: evil }], residual: { mean: 0.5, max: 2 }, ...extra });
+    writeFileSync(at("moved.json"), JSON.stringify({ format: "ostraka-report", command: "deform", result: {
+      constraints: [constraint("holds"), constraint("fails", { id: 2, type: evil }), constraint("unknown", { id: 3 })], conflicts: [{ id: 2, freed: [1] }], rounds: 3 } }));
+    ostraka("report", at("pot.ply"), at("pot.ant.json"), at("moved.json"), at("moved.html"));
+    const { page, told, close } = await open(at("moved.html"));
+    const verdicts = await page.locator(".constraints > li").evaluateAll((list) => list.map((one) => one.dataset.verdict));
+    assert.deepEqual(verdicts, ["holds", "broken", "unknown"]);
+    assert.ok((await page.locator(".constraints").innerText()).includes("3.25"));
+    assert.equal(await page.locator(".conflicts li").count(), 1);
+    await page.locator(".constraints > li button", { hasText: "flower 2" }).first().click();
+    const tag = await page.evaluate(() => globalThis.ostraka.state.page.objects[0].annotations[globalThis.ostraka.state.chosen.value].tag);
+    assert.equal(tag, "flower 2");
+    assert.equal(await page.evaluate(() => globalThis.broken), undefined);
+    assert.equal(await page.locator("img").count(), 0);
+    assert.deepEqual(told, []);
+    await close();
+  });
+
+  await test("points of a plot and rows choose each other, by pointer and by keys", async () => {
+    const { page, close } = await open(at("pot.html"));
+    await page.locator(".scatter summary").first().click();
+    await page.locator('.scatter circle[data-row="2"]').first().dispatchEvent("click");
+    assert.equal(await page.evaluate(() => globalThis.ostraka.state.chosen.value), 2);
+    assert.equal(await page.locator('tbody tr.chosen[data-row="2"]').count(), 1);
+    await page.locator('.scatter [role="group"]').first().focus();
+    await page.keyboard.press("ArrowRight");
+    const moved = await page.evaluate(() => globalThis.ostraka.state.chosen.value);
+    assert.notEqual(moved, 2);
+    const place = await page.locator(`.scatter circle[data-row="${moved}"]`).first().evaluate((one) => [one.getAttribute("cx"), one.getAttribute("cy")]);
+    const mark = await page.locator(".scatter circle.chosen").first().evaluate((one) => [one.getAttribute("cx"), one.getAttribute("cy")]);
+    assert.deepEqual(mark, place);
+    await close();
+  });
+
+  await test("parts move apart, and what is under the pointer follows", async () => {
+    const lines = (name) => readFileSync(at(name), "utf8").split("\n");
+    ostraka("mesh", "make", "teapot", at("part.ply"), "--vertices", "2000");
+    ostraka("mesh", "convert", at("part.ply"), at("part.obj"));
+    const points = lines("part.obj").filter((l) => l.startsWith("v ")).map((l) => l.split(" ").slice(1, 4).map(Number));
+    const faces = lines("part.obj").filter((l) => l.startsWith("f ")).map((l) => l.split(" ").slice(1, 4).map((x) => parseInt(x) - 1));
+    const all = [...points, ...points.map(([x, y, z]) => [x, y, z + 130])];
+    const both = [...faces.map((f) => [f, 1]), ...faces.map((f) => [f.map((v) => v + points.length), 2])];
+    writeFileSync(at("two-parts.ply"), ["ply", "format ascii 1.0", `element vertex ${all.length}`, "property double x", "property double y", "property double z",
+      `element face ${both.length}`, "property list uchar int vertex_indices", "property int label", "end_header",
+      ...all.map((p) => p.join(" ")), ...both.map(([f, l]) => `3 ${f.join(" ")} ${l}`), ""].join("\n"));
+    ostraka("report", at("two-parts.ply"), at("apart.html"));
+    const { page, told, close } = await open(at("apart.html"));
+    const before = await page.evaluate(() => globalThis.ostraka.objects[0].vertex(0).toArray());
+    await page.locator('.toolbar input[type="range"]').first().fill("0.5");
+    const after = await page.evaluate(() => globalThis.ostraka.objects[0].vertex(0).toArray());
+    assert.ok(after[2] < before[2] - 10, "the lower part goes down");
+    const places = await probe(page, 12);
+    assert.equal(places.length, 12);
+    const hits = await page.evaluate((list) => list.map(({ x, y }) => globalThis.ostraka.view.pick(x, y)?.face ?? -1), places);
+    assert.deepEqual(hits, places.map((one) => one.face));
+    assert.deepEqual(told, []);
+    await close();
+  });
+
+  await test("categories have names and swatches", async () => {
+    // What fit writes: labels say observed, interpolated, hypothesis.
+    const faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    writeFileSync(at("completed.ply"), ["ply", "format ascii 1.0", "element vertex 4", "property double x", "property double y", "property double z", "element face 4",
+      "property list uchar int vertex_indices", "property int label", "property int fragment", "property double distance", "property double confidence", "end_header",
+      "0 0 0", "1 0 0", "0 1 0", "0 0 1", ...faces.map((f, i) => `3 ${f.join(" ")} ${i % 3} 0 ${0.1 * i} ${1 - 0.2 * i}`), ""].join("\n"));
+    ostraka("report", at("completed.ply"), at("completed.html"));
+    const { page, close } = await open(at("completed.html"), { hash: "#map=0" });
+    const names = await page.locator(".categories li").allInnerTexts();
+    assert.equal(names.length, 3);
+    for (const [i, name] of ["observed", "interpolated", "hypothesis"].entries()) assert.ok(names[i].includes(name), names[i]);
+    await close();
+  });
+
+  await test("a collection is searched, and its objects are read from beside the page", async () => {
+    const evil = "<img src=x onerror=globalThis.broken=1>";
+    for (const name of ["pot", "part"]) ostraka("mesh", "convert", at(`${name}.ply`), at(`in-${name}.ply`));
+    writeFileSync(at("in-pot.ant.json"), readFileSync(at("pot.ant.json")));
+    ostraka("mesh", "convert", at("part.ply"), at(`${evil}.ply`));
+    ostraka("report", at("in-pot.ply"), at("in-part.ply"), at(`${evil}.ply`), at("all.html"), "--beside", at("all objects"), "--title", evil);
+    const { page, told, close } = await open(at("all.html"));
+    assert.equal(await page.locator(".card").count(), 3);
+    await page.waitForFunction(() => [...document.images].every((one) => one.naturalWidth > 0));
+    await page.locator('.buttons input[type="search"]').fill("flower 3");
+    assert.equal(await page.locator(".cards li:not([hidden])").count(), 1, "found by its tag");
+    await page.locator(".cards li:not([hidden]) button").click();
+    await page.waitForFunction(() => globalThis.ostraka.objects.length === 1);
+    assert.equal(await page.evaluate(() => globalThis.ostraka.state.page.objects[0].name), "in-pot");
+    await page.waitForTimeout(300);
+    await page.locator("header button").click();
+    await page.waitForFunction(() => globalThis.ostraka.objects.length === 0);
+    await page.locator('.buttons input[type="search"]').fill("");
+    assert.equal(await page.locator(".cards li:not([hidden])").count(), 3);
+    await page.locator('.card[data-entry="2"]').click();
+    await page.waitForFunction(() => globalThis.ostraka.objects.length === 1);
+    assert.equal(await page.evaluate(() => globalThis.broken), undefined);
+    assert.deepEqual(told, []);
+    rmSync(at("all objects/0002.js"));
+    await page.locator("header button").click();
+    await page.locator('.card[data-entry="1"]').click();
+    await page.waitForFunction(() => document.body.innerText.includes("0002.js"), undefined, { timeout: 5000 });
+    await close();
+  });
+
   await test("axe finds nothing serious, in each language and theme", async () => {
     const source = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
-    for (const [locale, colorScheme] of [["en-GB", "light"], ["de-DE", "dark"], ["it-IT", "light"]]) {
-      const { page, close } = await open(at("pot.html"), { locale, colorScheme });
+    for (const [locale, colorScheme, file] of [["en-GB", "light", "cut.html"], ["de-DE", "dark", "moved.html"], ["it-IT", "light", "all.html"]]) {
+      const { page, close } = await open(at(file), { locale, colorScheme });
       assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
       await page.evaluate(source);
       const found = await page.evaluate(async () => (await globalThis.axe.run()).violations.map((v) => `${v.impact} ${v.id}: ${v.nodes[0].html}`));
