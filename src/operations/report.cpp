@@ -5,6 +5,7 @@
 
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/csv.h"
+#include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/page/page.h"
@@ -95,18 +96,11 @@ Json cell_of(const auto& value) {
     return cell;
 }
 
-/// The path as an address relative to the page, in the characters that addresses have.
+/// The path as an address relative to the page.
 std::string address_of(const Path& path) {
-    static constexpr char hex[] = "0123456789ABCDEF";
-    std::string address;
-    for (const char c : path.generic_string()) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool plain = (byte >= '0' && byte <= '9') || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
-                           std::string_view("/-._~").find(c) != std::string_view::npos;
-        if (plain) address += c;
-        else (address += '%') += hex[byte >> 4U], address += hex[byte & 15U];
-    }
-    return address;
+    std::vector<std::string> parts;
+    for (const Path& part : path) parts.push_back(percent_encoded(part.string()));
+    return joined(parts, "/");
 }
 
 struct MakeReport final : Operation {

@@ -22,7 +22,7 @@ std::unique_ptr<Operation> make_template_pack(), make_template_check(), make_tem
 std::unique_ptr<Operation> make_cage_make(), make_cage_edit(), make_cage_check(), make_cage_weights(), make_cage_influence();
 std::unique_ptr<Operation> make_study_make_proportions(), make_study_make_moulds(), make_study_make_technique(),
     make_study_landmarks(), make_study_proportions(), make_study_moulds(), make_study_technique(), make_study_segments();
-std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(),
+std::unique_ptr<Operation> make_axis(), make_slice(), make_deform(), make_fit(), make_pair(), make_assemble(), make_render(), make_report(), make_publish(),
     make_run(), make_replay(), make_conformance_run(), make_conformance_self(), make_operations();
 
 namespace {
@@ -93,6 +93,7 @@ constexpr OperationEntry entries[]{
     {"pair", "lay two fragments together by the break they share; exit code 3 if it cannot be told how", make_pair},
     {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble, 2},
     {"render", "make a picture of meshes, their annotations and maps", make_render},
+    {"publish", "write an annotated object as a folder that any web server serves: IIIF manifest, GLB with features, annotations, a page", make_publish},
     {"report", "make one HTML page of results that opens anywhere: objects in 3D, tables, drawings", make_report, 2},
     {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run},
     {"replay", "repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs", make_replay},

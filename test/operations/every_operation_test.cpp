@@ -111,6 +111,8 @@ const std::vector<Step>& steps() {
         {"slice", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "count": 12, "output": "slices/"})"},
         {"study segments", R"({"mesh": "pot.ply", "output": "slices.ant.json", "curve": "curve.svg"})"},
         {"render", R"({"meshes": ["pot.ply"], "annotations": ["pot.ant.json"], "picture": "pot.png", "size": "300x200"})"},
+        {"publish",
+         R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "folder": "published/", "address": "https://pots.example/1"})"},
         {"report", R"({"results": ["pot.ply", "pot.ant.json", "pot.graph.json"], "page": "pot.html"})"},
         {"template pack",
          R"({"output": "pot.template.json", "mesh": "pot.ply", "annotations": "pot.ant.json", "graph": "pot.graph.json"})",

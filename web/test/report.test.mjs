@@ -341,6 +341,42 @@ try {
     await close();
   });
 
+  await test("what is published is valid, and its comments lie on the model", async () => {
+    const { validateBytes } = require("gltf-validator");
+    ostraka("publish", at("pot.ply"), at("pot.ant.json"), at("published"), "--address", "https://pots.example/1");
+    const bytes = readFileSync(at("published/model.glb"));
+    const { issues } = await validateBytes(new Uint8Array(bytes), { maxIssues: 100 });
+    assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.filter((one) => one.severity === 0)));
+    const manifest = JSON.parse(readFileSync(at("published/manifest.json"), "utf8"));
+    assert.equal(manifest["@context"], "http://iiif.io/api/presentation/4/context.json");
+    const ids = [];
+    const visit = (one) => {
+      if (Array.isArray(one)) return one.forEach(visit);
+      if (one === null || typeof one !== "object") return;
+      if (one.id && !one.id.startsWith("https://pots.example/1/")) ids.push(one.id);
+      Object.values(one).forEach(visit);
+    };
+    visit(manifest);
+    assert.deepEqual(ids, []);
+    for (const name of ["model.glb", "thumbnail.png", "index.html", "annotations.jsonld"]) assert.ok(readFileSync(at(`published/${name}`)).length > 1000);
+    // The box of the model as glTF shows it: in metres, y up.
+    const [scene] = manifest.items;
+    const set = JSON.parse(readFileSync(at("pot.ant.json"), "utf8"));
+    const comments = scene.annotations[0].items;
+    assert.equal(comments.length, set.annotations.length);
+    const json = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
+    const { min, max } = json.accessors[json.meshes[0].primitives[0].attributes.POSITION];
+    const scale = json.nodes.find((one) => one.scale)?.scale[0] ?? 1;
+    const reach = scale * Math.hypot(...[0, 1, 2].map((k) => Math.max(Math.abs(min[k]), Math.abs(max[k]))));
+    for (const { target } of comments) {
+      const { type, x, y, z } = target.selector[0];
+      assert.equal(type, "PointSelector");
+      assert.ok(Math.hypot(x, y, z) <= reach, `${x} ${y} ${z}`);
+    }
+    const knob = comments.find((one) => one.body.value.startsWith("top of the knob")).target.selector[0];
+    assert.ok(comments.every((one) => one.target.selector[0].y <= knob.y + 1e-9), "y is up");
+  });
+
   await test("axe finds nothing serious, in each language and theme", async () => {
     const source = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
     for (const [locale, colorScheme, file] of [["en-GB", "light", "cut.html"], ["de-DE", "dark", "moved.html"], ["it-IT", "light", "all.html"]]) {

@@ -327,6 +327,22 @@ def render(
 ) -> _RenderResult:
     """Make a picture of meshes, their annotations and maps."""
 
+class _PublishResult(Result):
+    folder: Folder | Path | None
+def publish(
+    mesh: MeshLike,
+    annotations: AnnotationsLike,
+    folder: FileName | bool | None = None,
+    *,
+    force_mesh: bool | None = False,
+    address: Text | None = None,
+    title: Text | None = None,
+    rights: Text | None = None,
+    credit: Text | None = None,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _PublishResult:
+    """Write an annotated object as a folder that any web server serves: IIIF manifest, GLB with features, annotations, a page."""
+
 class _ReportResult(Result):
     page: Document | Bytes | Path | None
     beside: Folder | Path | None

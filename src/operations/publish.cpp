@@ -1,0 +1,185 @@
+// publish: an annotated object as a folder that any web server serves: IIIF manifest, GLB with features, annotations, a page.
+#include "annotated_scene.h"
+#include "operations.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/words.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/interchange/feature_glb.h"
+#include "ostraka/interchange/web_annotation.h"
+#include "ostraka/io/glb.h"
+#include "ostraka/page/page.h"
+#include "ostraka/render/render.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <limits>
+
+namespace ostraka {
+
+namespace {
+
+/// Where a viewer that draws the GLB has a point of the mesh: the node that shows it turns and scales.
+class ShownPlace {
+public:
+    explicit ShownPlace(const std::string& file) {
+        const glb::Reader reader(file, "model.glb");
+        for (const JsonValue& node : list_in(reader.document(), "nodes")) {
+            const auto rotation = list_in(node, "rotation");
+            if (rotation.Size() == 4)
+                turn_ = Eigen::Quaterniond(rotation[3].GetDouble(), rotation[0].GetDouble(), rotation[1].GetDouble(),
+                                           rotation[2].GetDouble());
+            if (const auto scale = list_in(node, "scale"); scale.Size() == 3) scale_ = scale[0].GetDouble();
+        }
+    }
+    [[nodiscard]] Eigen::Vector3d operator()(const Point& p) const {
+        return scale_ * (turn_ * Eigen::Vector3d(p.x(), p.y(), p.z()));
+    }
+
+private:
+    Eigen::Quaterniond turn_{1, 0, 0, 0};
+    double scale_ = 1;
+};
+
+/// A place on the annotation: of a region the centroid of the face nearest to its middle, of a line its middle vertex.
+std::optional<Point> place_on(const Mesh& mesh, const Annotation& annotation) {
+    if (!annotation.points.empty()) return mesh.point(Vertex(annotation.points.front()));
+    if (!annotation.polylines.empty() && !annotation.polylines.front().empty()) {
+        const auto& line = annotation.polylines.front();
+        return mesh.point(Vertex(line[line.size() / 2]));
+    }
+    if (annotation.faces.empty()) return std::nullopt;
+    const auto centroid = [&](Index face) {
+        const auto [a, b, c] = corners(mesh, Face(face));
+        return CGAL::centroid(mesh.point(a), mesh.point(b), mesh.point(c));
+    };
+    Vector sum(0, 0, 0);
+    for (const Index face : annotation.faces) sum = sum + (centroid(face) - CGAL::ORIGIN);
+    const Point middle = CGAL::ORIGIN + sum / static_cast<double>(annotation.faces.size());
+    return centroid(*std::min_element(annotation.faces.begin(), annotation.faces.end(), [&](Index a, Index b) {
+        return CGAL::squared_distance(centroid(a), middle) < CGAL::squared_distance(centroid(b), middle);
+    }));
+}
+
+struct Publish final : AnnotatedMeshOperation {
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        p.output("folder", Kind::folder, folder, "folder to write; made if it is missing");
+        p.options("address", address, "where the folder will be served, such as https://museum.example/pot");
+        p.options("title", title, "of the object; else the name of the mesh");
+        p.options("rights", rights, "address of the licence, such as http://creativecommons.org/licenses/by/4.0/");
+        p.options("credit", credit, "statement that a viewer must show");
+        p.report.values(text("manifest"), integer("annotations", "annotations"));
+    }
+
+    void check() const override {
+        for (const auto& [name, value, wanted] : {std::tuple("address", address, true), std::tuple("rights", rights, false)}) {
+            const bool good = (value.starts_with("https://") || value.starts_with("http://")) &&
+                              value.find_first_of(" <>\"\\^`{|}#?\n\t") == std::string::npos && value.size() > 8;
+            if (!good && (wanted || !value.empty()))
+                fail_usage("--" + std::string(name) + " '" + value + "' is no address of the web",
+                           "give one that begins with https:// and has neither blanks nor # and ?");
+        }
+    }
+
+    void run(Context& context, Report& report) override {
+        const Mesh& on = mesh->mesh;
+        const AnnotationSet& known = set();
+        const std::string name = title.empty() ? Path(mesh.file_name()).stem().string() : title;
+        folder.open();
+        std::vector<std::string> notes;
+        const std::string model = feature_glb(on, known, mesh.file(), context.provenance(), notes);
+        report.notes(notes);
+        write_file(folder.in("model.glb"), model);
+        write_file(folder.in("annotations.jsonld"), web_annotations(on, known, mesh.file(), context.provenance()));
+        Scene scene;
+        scene.mesh = to_soup(on);
+        draw_annotations(scene, on, known);
+        RenderOptions drawing;
+        drawing.size = "400x300";
+        drawing.no_scale_bar = drawing.no_legend = true;
+        if (known.up) drawing.up = joined(*known.up, ",", [](double x) { return number(x, 17); });
+        write_png(folder.in("thumbnail.png"), render({scene}, drawing).picture);
+        Page page(name);
+        PageObject shown;
+        shown.name = name;
+        shown.mesh = &on;
+        shown.annotations = &known;
+        page.add(shown);
+        if (!known.annotations.empty()) page.add(annotation_table(on, known, 0, name));
+        write_file(folder.in("index.html"), page.html(context.provenance().to_line()));
+        std::size_t placed = 0;
+        const Json document = manifest(on, known, name, ShownPlace(model), placed);
+        write_json(folder.in("manifest.json"), document);
+        report("manifest", at("manifest.json"))("annotations", placed);
+    }
+
+    [[nodiscard]] std::string at(const std::string& place) const { return address + (address.ends_with('/') ? "" : "/") + place; }
+
+    /// IIIF Presentation API 4: one Scene, the GLB painted into it, and a comment at a place of each annotation.
+    Json manifest(const Mesh& on, const AnnotationSet& known, const std::string& name, const ShownPlace& place,
+                  std::size_t& placed) const {
+        Json document;
+        document.SetObject();
+        auto& a = document.GetAllocator();
+        const auto words = [&](const std::string& text) {
+            return json_object(a, "none", json_list_of(json_string(printable(text, 2000), a), a));
+        };
+        const auto one = [&](JsonValue value) { return json_list_of(std::move(value), a); };
+        const std::string scene = at("scene");
+        const auto scene_reference = [&] { return json_object(a, "id", scene, "type", "Scene"); };
+        JsonValue comments(rapidjson::kArrayType);
+        for (const Annotation& annotation : known.annotations) {
+            const auto where = place_on(on, annotation);
+            if (!where) continue;
+            const Eigen::Vector3d p = place(*where);
+            std::string text = annotation.tag.empty() ? "annotation " + std::to_string(annotation.id) : annotation.tag;
+            if (!annotation.note.empty()) text += ": " + annotation.note;
+            for (const Attribute& attribute : annotation.attributes)
+                if (attribute.type == AttributeType::measure && attribute.measure.value)
+                    text += "; " + attribute.name + " " + digits(*attribute.measure.value, 5) +
+                            (attribute.measure.unit.empty() ? "" : " " + attribute.measure.unit);
+            JsonValue selector = json_object(a, "type", "PointSelector", "x", p.x(), "y", p.y(), "z", p.z());
+            JsonValue target = json_object(a, "id", at("annotation/" + std::to_string(annotation.id) + "/target"), "type",
+                                           "SpecificResource", "source", scene_reference(), "selector", one(std::move(selector)));
+            JsonValue body = json_object(a, "type", "TextualBody", "value", printable(text, 2000), "format", "text/plain");
+            comments.PushBack(
+                json_object(a, "id", at("annotation/" + std::to_string(annotation.id)), "type", "Annotation", "motivation",
+                            std::array{"commenting"}, "body", std::move(body), "target", std::move(target)),
+                a);
+            ++placed;
+        }
+        JsonValue model = json_object(a, "id", at("model.glb"), "type", "Model", "format", "model/gltf-binary");
+        JsonValue painting = json_object(a, "id", at("painting/1"), "type", "Annotation", "motivation", std::array{"painting"},
+                                         "body", std::move(model), "target", scene_reference());
+        JsonValue painted = json_object(a, "id", at("painting"), "type", "AnnotationPage", "items", one(std::move(painting)));
+        JsonValue shown = json_object(a, "id", scene, "type", "Scene", "label", words(name), "items", one(std::move(painted)));
+        if (!comments.Empty())
+            add_members(shown, a, "annotations",
+                        one(json_object(a, "id", at("comments"), "type", "AnnotationPage", "items", std::move(comments))));
+        add_members(document, a, "@context", "http://iiif.io/api/presentation/4/context.json", "id", at("manifest.json"), "type",
+                    "Manifest", "label", words(name));
+        if (!rights.empty()) add_members(document, a, "rights", rights);
+        if (!credit.empty())
+            add_members(document, a, "requiredStatement", json_object(a, "label", words("credit"), "value", words(credit)));
+        add_members(
+            document, a, "thumbnail",
+            one(json_object(a, "id", at("thumbnail.png"), "type", "Image", "format", "image/png", "width", 400, "height", 300)),
+            "rendering", one(json_object(a, "id", at("index.html"), "type", "Text", "label", words(name), "format", "text/html")),
+            "seeAlso",
+            one(json_object(a, "id", at("annotations.jsonld"), "type", "Dataset", "format", "application/ld+json", "profile",
+                            "http://www.w3.org/ns/anno.jsonld", "label", words("annotations"))),
+            "items", one(std::move(shown)));
+        return document;
+    }
+
+    FolderOutput folder;
+    std::string address, title, rights, credit;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_publish() { return make<Publish>(); }
+
+}  // namespace ostraka
