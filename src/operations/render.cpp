@@ -49,6 +49,8 @@ struct Render final : Operation {
 
     void check() const override {
         if (!picture.file().empty()) static_cast<void>(picture_kind(picture.file()));
+        if (options.deep && !picture.file().empty() && picture_kind(picture.file()) != PictureKind::pixels)
+            fail_usage("--deep with '" + picture.file() + "'", "16 bits a channel are for .png");
         if (turntable.size() > 0 && !options.views.empty())
             fail_usage("--turntable with --views", "give one view: the turn begins there");
         for (const auto& [flag, count] : {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()},

@@ -295,7 +295,7 @@ struct MakeReport final : Operation {
             if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
             const std::string kind = extension(name);
             if (is_document(name)) {
-                const std::string format = format_of(folder / name);
+                const std::string format = format_if_readable(folder / name);
                 reassembled = reassembled || format == "ostraka-reassembly";
                 if (format != "ostraka-slices" && format != "ostraka-report" && format != "ostraka-assembly" &&
                     format != "ostraka-reassembly")
@@ -323,6 +323,16 @@ struct MakeReport final : Operation {
             const bool one_object = current && places == before;
             if (format == "ostraka-slices" && !one_object) made->note(name + " is left out: no mesh has its name");
             else read_here(name);
+        }
+    }
+
+    /// Of a file that happens to lie in a folder.
+    std::string format_if_readable(const Path& file) {
+        try {
+            return format_of(file);
+        } catch (const Error& error) {
+            made->note(file.filename().string() + " is left out: " + error.problem());
+            return {};
         }
     }
 

@@ -407,7 +407,8 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     std::filesystem::create_directory(scratch / "empty");
     refuse((scratch / "empty").string(), 1, "nothing that a page can show");
     EXPECT_EQ(make(data + "vase.ply " + (scratch / "c.png").string()).code, 2);
-    // A folder: its cage is no object of its own.
+    // A folder: its cage is no object of its own, and a file that cannot be read is none of its results.
+    write_file(scratch / "empty/broken.json", "[1,");
     for (const char* name : {"vase.ply", "vase.ant.json"})
         write_file(scratch / ("empty/" + std::string(name)), read_file(data + name));
     write_file(scratch / "empty/vase.cage.ply", read_file(data + "vase.ply"));
@@ -415,6 +416,7 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     const ReadPage folder(read_file(scratch / "d.html"));
     ASSERT_EQ(folder.data["objects"].Size(), 1U);
     EXPECT_GT(folder.data["objects"][0]["annotations"].Size(), 0U);
+    EXPECT_NE(std::string(folder.data["notes"][0].GetString()).find("broken.json"), std::string::npos);
 }
 
 TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
