@@ -4,9 +4,11 @@
 #include "ostraka/annotation/outline.h"
 #include "ostraka/annotation/smooth_regions.h"
 #include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/operation/report.h"
 
 #include <algorithm>
 #include <map>
@@ -232,6 +234,23 @@ void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, 
         for (const Annotation& annotation : set.annotations) drawing.draw_measures(search, annotation, set.unit);
     }
     scene.unit = set.unit;
+}
+
+std::string up_words(const AnnotationSet& set) {
+    return set.up ? joined(*set.up, ",", [](double x) { return number(x, 17); }) : "auto";
+}
+
+Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const std::string& size) {
+    Scene scene;
+    scene.mesh = to_soup(mesh);
+    RenderOptions options;
+    options.size = size;
+    options.no_scale_bar = options.no_legend = true;
+    if (set != nullptr) {
+        draw_annotations(scene, mesh, *set);
+        options.up = up_words(*set);
+    }
+    return render({scene}, options).picture;
 }
 
 void draw_cage(Scene& scene, const Mesh& cage) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
-#include "ostraka/render/scene.h"
+#include "ostraka/render/render.h"
 
 namespace ostraka {
 
@@ -16,6 +16,12 @@ struct AnnotationStyle {
 /// regions are outlines in their colours; else their faces are painted, the smallest on top, and of an outline what no smaller
 /// region covers is drawn. Each has a label.
 void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style = {});
+
+/// Their upward direction as `render` takes it.
+std::string up_words(const AnnotationSet& set);
+
+/// A small picture of an object and its annotations, if it has any.
+Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const std::string& size);
 
 /// Adds the edges and control points of a cage, which hide nothing and are not hidden.
 void draw_cage(Scene& scene, const Mesh& cage);

@@ -1,6 +1,6 @@
 #include "page_results.h"
 
-#include "ostraka/core/json.h"
+#include "ostraka/core/csv.h"
 #include "ostraka/core/words.h"
 #include "ostraka/io/ply.h"
 #include "ostraka/slicing/slice_descriptors.h"
@@ -20,14 +20,9 @@ std::string title_of(std::string name) {
     return name;
 }
 
-Json cell_of(const JsonValue& value) {
+Json copy_of(const JsonValue& value) {
     Json cell;
     cell.CopyFrom(value, cell.GetAllocator());
-    return cell;
-}
-Json text_cell(const std::string& text) {
-    Json cell;
-    static_cast<JsonValue&>(cell) = json_string(text, cell.GetAllocator());
     return cell;
 }
 
@@ -38,14 +33,14 @@ void add_cells(const JsonValue& record, const std::string& before, Cells& cells)
         if (value.IsObject()) {
             add_cells(value, name + ".", cells);
         } else if (value.IsBool()) {
-            cells.emplace_back(name, text_cell(value.GetBool() ? "yes" : "no"));
+            cells.emplace_back(name, cell_of(std::string(value.GetBool() ? "yes" : "no")));
         } else if (value.IsArray()) {
             std::vector<std::string> texts;
             for (const JsonValue& one : value.GetArray())
                 if (one.IsString()) texts.push_back(one.GetString());
-            if (texts.size() == value.Size() && !texts.empty()) cells.emplace_back(name, text_cell(joined(texts, ", ")));
+            if (texts.size() == value.Size() && !texts.empty()) cells.emplace_back(name, cell_of(joined(texts, ", ")));
         } else {
-            cells.emplace_back(name, cell_of(value));
+            cells.emplace_back(name, copy_of(value));
         }
     }
 }
@@ -224,11 +219,66 @@ std::vector<PageTable> record_tables(const JsonValue& result, const std::string&
     add_cells(rest, "", singles);
     for (auto& [name, cell] : singles) {
         PageTable::Row& row = single.rows.emplace_back();
-        row.cells.push_back(text_cell(title_of(name)));
+        row.cells.push_back(cell_of(title_of(name)));
         row.cells.push_back(std::move(cell));
     }
     if (!single.rows.empty()) tables.insert(tables.begin(), std::move(single));
     return tables;
+}
+
+bool is_mesh_name(const std::string& name) {
+    const std::string kind = extension(name);
+    return kind == ".ply" || kind == ".obj" || kind == ".off" || kind == ".stl";
+}
+
+void PageNames::add(const std::string& object, const AnnotationSet* set) {
+    const int place = count_++;
+    objects_.try_emplace(object, place);
+    if (set == nullptr) return;
+    for (std::size_t i = 0; i < set->annotations.size(); ++i) {
+        const std::string& tag = set->annotations[i].tag;
+        // What several objects have names none of them.
+        if (const auto [found, fresh] = annotations_.try_emplace(tag, place, static_cast<int>(i)); !fresh)
+            found->second = {-1, -1};
+    }
+}
+
+void PageNames::link(PageTable& table) const {
+    for (PageTable::Row& row : table.rows) {
+        for (const Json& cell : row.cells)
+            if (cell.IsString() && row.object < 0) row.object = object(cell.GetString());
+        for (const Json& cell : row.cells) {
+            if (!cell.IsString() || row.annotation >= 0) continue;
+            const auto found = annotations_.find(cell.GetString());
+            if (found == annotations_.end() || found->second.first < 0) continue;
+            if (row.object < 0) row.object = found->second.first;
+            if (row.object == found->second.first) row.annotation = found->second.second;
+        }
+    }
+}
+
+int PageNames::object(const std::string& text) const {
+    auto found = objects_.find(text);
+    if (found == objects_.end() && is_mesh_name(text)) found = objects_.find(Path(text).stem().string());
+    return found == objects_.end() ? -1 : found->second;
+}
+
+PageTable csv_table(const Path& file, const std::string& name) {
+    const std::string content = read_file(file);
+    const auto rows = csv_rows(content, csv_separator(content), name);
+    PageTable table;
+    table.title = Path(name).stem().string();
+    if (rows.empty()) return table;
+    for (const std::string& cell : rows.front().cells) table.columns.push_back(unguarded(cell));
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+        PageTable::Row& row = table.rows.emplace_back();
+        for (std::size_t k = 0; k < table.columns.size(); ++k) {
+            const std::string value = k < rows[r].cells.size() ? unguarded(rows[r].cells[k]) : std::string();
+            if (const auto x = number_of(value)) row.cells.push_back(cell_of(*x));
+            else row.cells.push_back(value.empty() ? Json() : cell_of(value));
+        }
+    }
+    return table;
 }
 
 std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {

@@ -9,12 +9,10 @@
 #include "ostraka/interchange/web_annotation.h"
 #include "ostraka/io/glb.h"
 #include "ostraka/page/page.h"
-#include "ostraka/render/render.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <limits>
 
 namespace ostraka {
 
@@ -93,14 +91,7 @@ struct Publish final : AnnotatedMeshOperation {
         report.notes(notes);
         write_file(folder.in("model.glb"), model);
         write_file(folder.in("annotations.jsonld"), web_annotations(on, known, mesh.file(), context.provenance()));
-        Scene scene;
-        scene.mesh = to_soup(on);
-        draw_annotations(scene, on, known);
-        RenderOptions drawing;
-        drawing.size = "400x300";
-        drawing.no_scale_bar = drawing.no_legend = true;
-        if (known.up) drawing.up = joined(*known.up, ",", [](double x) { return number(x, 17); });
-        write_png(folder.in("thumbnail.png"), render({scene}, drawing).picture);
+        write_png(folder.in("thumbnail.png"), thumbnail(on, &known, "400x300"));
         Page page(name);
         PageObject shown;
         shown.name = name;

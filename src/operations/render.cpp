@@ -88,29 +88,19 @@ struct Render final : Operation {
         report.run("drawSeconds", rendering.draw_seconds);
         const Stopwatch writing;
         write(picture.path(), rendering);
-        const Size size = size_of(how);
         if (turntable.size() > 0) write_turn(scenes, how, kind);
         report.run("writeSeconds", writing.seconds());
         report.run("threads", threads());
-        report("picture", picture.file_name())("width", size.width)("height", size.height);
+        report("picture", picture.file_name())("width", rendering.width)("height", rendering.height);
         report.empty_table("panes");
         for (const Pane& pane : rendering.panes) {
             const Scene& scene = scenes[pane.scene];
             const auto bar = pane.bar_length > 0 ? std::optional(pane.bar_length) : std::nullopt;
             report.row("panes")("object", pane.scene)("view", pane.view)("vertices", scene.mesh.points.size())(
                 "faces", scene.mesh.triangles.size())("pixelsPerUnit", pane.pixels_per_unit)("scaleBar", bar)(
-                "markers", scene.markers.size())("markersShown", pane.markers_shown)("camera",
-                                                                                     camera_json(pane, size, report.allocator()));
+                "markers", scene.markers.size())("markersShown", pane.markers_shown)(
+                "camera", camera_json(pane, rendering, report.allocator()));
         }
-    }
-
-    struct Size {
-        int width = 0, height = 0;
-    };
-    static Size size_of(const RenderOptions& how) {
-        Size size;
-        std::sscanf(how.size.c_str(), "%dx%d", &size.width, &size.height);
-        return size;
     }
 
     static void write(const Path& file, const Rendering& rendering) {
@@ -126,9 +116,7 @@ struct Render final : Operation {
         const std::string ending = kind == PictureKind::pixels ? ".png" : kind == PictureKind::svg ? ".svg" : ".pdf";
         for (std::uint64_t i = 0; i < frames; ++i) {
             how.view = number(begin.azimuth + 360.0 * double(i) / double(frames), 17) + "," + number(begin.elevation, 17);
-            std::string name = std::to_string(i + 1);
-            name.insert(0, name.size() < 4 ? 4 - name.size() : 0, '0');
-            write(turntable.in(name + ending), render(scenes, how, kind));
+            write(turntable.in(padded(i + 1, std::max<std::uint64_t>(9999, frames)) + ending), render(scenes, how, kind));
         }
     }
 
@@ -163,7 +151,7 @@ struct Render final : Operation {
             style.measures = measures;
             style.painted = how.drawing == RenderOptions::Drawing::surface || how.drawing == RenderOptions::Drawing::points;
             draw_annotations(scene, mesh, set, style);
-            if (how.up == "auto" && set.up) how.up = joined(*set.up, ",", [](double x) { return number(x, 17); });
+            if (how.up == "auto" && set.up) how.up = up_words(set);
         } else if (!maps.has(k) && how.drawing != RenderOptions::Drawing::lines && how.drawing != RenderOptions::Drawing::wire) {
             colour_by_file(scene, extras, meshes.file(k));
         }
@@ -263,7 +251,7 @@ struct Render final : Operation {
     }
 
     /// As recipes take it, so that pixels of this picture can be picked.
-    static JsonValue camera_json(const Pane& pane, const Size& picture, JsonAllocator& allocator) {
+    static JsonValue camera_json(const Pane& pane, const Rendering& picture, JsonAllocator& allocator) {
         const PictureCamera& camera = pane.camera;
         const auto triple = [](const auto& v) { return std::array{v.x(), v.y(), v.z()}; };
         const bool parallel = camera.distance == 0;

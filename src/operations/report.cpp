@@ -4,19 +4,16 @@
 #include "page_results.h"
 
 #include "ostraka/annotation/label_file.h"
-#include "ostraka/core/csv.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/page/page.h"
-#include "ostraka/render/render.h"
 #include "ostraka/render/values.h"
 #include "ostraka/transfer/bound_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <unordered_map>
 
 namespace ostraka {
 
@@ -36,64 +33,9 @@ struct ShownObject {
     std::string unit;
 };
 
-/// Where rows of tables find what they are of.
-class Names {
-public:
-    void add(const std::string& object, const AnnotationSet* set) {
-        const int place = count_++;
-        objects_.try_emplace(object, place);
-        if (set == nullptr) return;
-        for (std::size_t i = 0; i < set->annotations.size(); ++i) {
-            const std::string& tag = set->annotations[i].tag;
-            // What several objects have names none of them.
-            if (const auto [found, fresh] = annotations_.try_emplace(tag, place, static_cast<int>(i)); !fresh)
-                found->second = {-1, -1};
-        }
-    }
-
-    /// Rows show the object that the first of their texts to name one names, by its name or that of its file; else the annotation
-    /// that only one object has.
-    void link(PageTable& table) const {
-        for (PageTable::Row& row : table.rows) {
-            for (const Json& cell : row.cells)
-                if (cell.IsString() && row.object < 0) row.object = object(cell.GetString());
-            for (const Json& cell : row.cells) {
-                if (!cell.IsString() || row.annotation >= 0) continue;
-                const auto found = annotations_.find(cell.GetString());
-                if (found == annotations_.end() || found->second.first < 0) continue;
-                if (row.object < 0) row.object = found->second.first;
-                if (row.object == found->second.first) row.annotation = found->second.second;
-            }
-        }
-    }
-
-private:
-    [[nodiscard]] int object(const std::string& text) const {
-        auto found = objects_.find(text);
-        if (found == objects_.end() && is_mesh_name(text)) found = objects_.find(Path(text).stem().string());
-        return found == objects_.end() ? -1 : found->second;
-    }
-
-    int count_ = 0;
-    std::unordered_map<std::string, int> objects_;
-    std::unordered_map<std::string, std::pair<int, int>> annotations_;
-
-public:
-    static bool is_mesh_name(const std::string& name) {
-        const std::string kind = extension(name);
-        return kind == ".ply" || kind == ".obj" || kind == ".off" || kind == ".stl";
-    }
-};
-
 bool is_document(const std::string& name) {
     return extension(name) == ".json" && !name.ends_with(".ant.json") && !name.ends_with(".graph.json") &&
            !name.ends_with(".template.json");
-}
-
-Json cell_of(const auto& value) {
-    Json cell;
-    static_cast<JsonValue&>(cell) = json_value(value, cell.GetAllocator());
-    return cell;
 }
 
 /// The path as an address relative to the page.
@@ -188,11 +130,11 @@ struct MakeReport final : Operation {
             ShownObject& of = object_for(name);
             of.maps.push_back({Path(name).stem().string(), Path(name).stem().string(), vertex_values(of, file, name)});
         } else if (kind == ".csv") {
-            read_table(file, name);
+            tables.push_back(csv_table(file, name));
         } else if (kind == ".svg") {
             made->add_drawing(Path(name).stem().string(), read_file(file));
             ++drawings;
-        } else if (Names::is_mesh_name(name)) {
+        } else if (is_mesh_name(name)) {
             read_object(context, report, file, name);
         } else {
             fail_input(name, "is nothing that a page can show",
@@ -229,7 +171,7 @@ struct MakeReport final : Operation {
         const Path assembly = mesh.parent_path() / "assembly.json";
         if (!file_exists(assembly)) return known;
         const Json document = read_json(assembly);
-        if (!document.IsObject() || text_in(document, "format") != "ostraka-reassembly") return known;
+        if (format_of(document) != "ostraka-reassembly") return known;
         std::int32_t label = 0;
         for (const JsonValue& fragment : list_in(document, "fragments")) known[++label] = text_in(fragment, "name");
         return known;
@@ -252,7 +194,7 @@ struct MakeReport final : Operation {
 
     /// Slices, and the constraints of a deformation, belong to the object before them; what else it says becomes tables.
     void read_document(const Json& document, const std::string& name) {
-        const std::string format = document.IsObject() ? text_in(document, "format") : std::string();
+        const std::string format = format_of(document);
         constexpr std::array known{"ostraka-slices",         "ostraka-report",      "ostraka-assembly", "ostraka-reassembly",
                                    "ostraka-classification", "ostraka-proportions", "ostraka-study",    "ostraka-technique"};
         if (std::find(known.begin(), known.end(), format) == known.end())
@@ -285,59 +227,64 @@ struct MakeReport final : Operation {
         std::vector<std::string> files = files_in(folder);
         std::sort(files.begin(), files.end());
         const auto stem = [](const std::string& name) { return Path(name).stem().string(); };
-        std::multimap<std::string, std::string> of_meshes;  // documents by the names of the meshes that they are of
-        std::vector<std::string> first, after;
+        // Documents by the names of the meshes that they are of; empty: of none.
+        std::multimap<std::string, std::pair<std::string, Json>> documents;
+        std::vector<std::string> others;
         std::set<std::string> meshes;
         bool reassembled = false;
         for (const std::string& name : files)
-            if (Names::is_mesh_name(name)) meshes.insert(stem(name));
+            if (is_mesh_name(name)) meshes.insert(stem(name));
         for (const std::string& name : files) {
             if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
             const std::string kind = extension(name);
             if (is_document(name)) {
-                const std::string format = format_if_readable(folder / name);
+                Json document = document_in(folder / name);
+                const std::string format = format_of(document);
                 reassembled = reassembled || format == "ostraka-reassembly";
                 if (format != "ostraka-slices" && format != "ostraka-report" && format != "ostraka-assembly" &&
                     format != "ostraka-reassembly")
                     continue;
-                if (meshes.contains(stem(name))) of_meshes.emplace(stem(name), name);
-                else after.push_back(name);
-            } else if (name.ends_with(".template.json") || kind == ".csv" || kind == ".svg" || Names::is_mesh_name(name)) {
-                first.push_back(name);
+                documents.emplace(meshes.contains(stem(name)) ? stem(name) : std::string(), std::pair(name, std::move(document)));
+            } else if (name.ends_with(".template.json") || kind == ".csv" || kind == ".svg" || is_mesh_name(name)) {
+                others.push_back(name);
             }
         }
-        if (first.empty() && after.empty())
+        if (others.empty() && documents.empty())
             fail_input(folder.string(), "holds nothing that a page can show", "give a folder with meshes, tables or drawings");
         const auto read_here = [&](const std::string& name) {
             in_file((folder / name).string(), [&] { read(context, report, folder / name, name); });
         };
         const std::size_t before = places;
-        for (const std::string& name : first) {
+        bool one_object = true;
+        const auto read_documents = [&](const std::string& of) {
+            for (auto [at, end] = documents.equal_range(of); at != end; ++at) {
+                const auto& [name, document] = at->second;
+                if (format_of(document) == "ostraka-slices" && !one_object)
+                    made->note(name + " is left out: no mesh has its name");
+                else in_file((folder / name).string(), [&] { read_document(document, name); });
+            }
+        };
+        for (const std::string& name : others) {
             if (reassembled && name.find(".placed.") != std::string::npos) continue;  // the groups hold them
             read_here(name);
-            if (!Names::is_mesh_name(name)) continue;
-            for (auto [at, end] = of_meshes.equal_range(stem(name)); at != end; ++at) read_here(at->second);
+            if (!is_mesh_name(name)) continue;
+            read_documents(stem(name));
         }
-        for (const std::string& name : after) {
-            const std::string format = format_of(folder / name);
-            const bool one_object = current && places == before;
-            if (format == "ostraka-slices" && !one_object) made->note(name + " is left out: no mesh has its name");
-            else read_here(name);
-        }
+        one_object = current && places == before;
+        read_documents("");
     }
 
-    /// Of a file that happens to lie in a folder.
-    std::string format_if_readable(const Path& file) {
+    /// Of a file that happens to lie in a folder; null where it cannot be read.
+    Json document_in(const Path& file) {
         try {
-            return format_of(file);
+            return read_json(file);
         } catch (const Error& error) {
             made->note(file.filename().string() + " is left out: " + error.problem());
-            return {};
+            return Json();
         }
     }
 
-    static std::string format_of(const Path& file) {
-        const Json document = read_json(file);
+    static std::string format_of(const Json& document) {
         return document.IsObject() ? text_in(document, "format") : std::string();
     }
 
@@ -359,23 +306,6 @@ struct MakeReport final : Operation {
         return vertex_means(mesh, values);
     }
 
-    void read_table(const Path& file, const std::string& name) {
-        const std::string content = read_file(file);
-        const auto rows = csv_rows(content, csv_separator(content), name);
-        if (rows.empty()) return;
-        PageTable& table = tables.emplace_back();
-        table.title = Path(name).stem().string();
-        for (const std::string& cell : rows.front().cells) table.columns.push_back(unguarded(cell));
-        for (std::size_t r = 1; r < rows.size(); ++r) {
-            PageTable::Row& row = table.rows.emplace_back();
-            for (std::size_t k = 0; k < table.columns.size(); ++k) {
-                const std::string value = k < rows[r].cells.size() ? unguarded(rows[r].cells[k]) : std::string();
-                if (const auto x = number_of(value)) row.cells.push_back(cell_of(*x));
-                else row.cells.push_back(value.empty() ? Json() : cell_of(value));
-            }
-        }
-    }
-
     // ---- the page ----
 
     /// The object that was read goes into the page, or into a file of its own beside it.
@@ -390,10 +320,9 @@ struct MakeReport final : Operation {
         const std::size_t place = places++;
         if (!is_collection()) return add(*made, one, place, nullptr);
         Page alone(one.name);
-        Picture thumbnail;
-        add(alone, one, 0, &thumbnail);
-        std::string number = std::to_string(place + 1);
-        number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
+        Picture small;
+        add(alone, one, 0, &small);
+        const std::string number = padded(place + 1, std::max<std::size_t>(9999, place + 1));
         const Path relative = from_page(beside.path());
         PageEntry entry;
         entry.name = one.name;
@@ -408,7 +337,7 @@ struct MakeReport final : Operation {
         entry.tags.assign(tags.begin(), tags.end());
         made->add(entry);
         write_file(beside.in(number + ".js"), alone.script(entry.file, context.provenance().to_line()));
-        write_png(beside.in(number + ".png"), thumbnail);
+        write_png(beside.in(number + ".png"), small);
         add_to_overview(one, place);
     }
 
@@ -450,7 +379,7 @@ struct MakeReport final : Operation {
             while (any.cells.size() < overview.columns.size()) any.cells.emplace_back();
     }
 
-    void add(Page& to, ShownObject& one, std::size_t place, Picture* thumbnail) const {
+    void add(Page& to, ShownObject& one, std::size_t place, Picture* small) const {
         PageObject shown;
         shown.name = one.name;
         shown.unit = !one.unit.empty() ? one.unit : unit;
@@ -478,20 +407,7 @@ struct MakeReport final : Operation {
         }
         to.add(shown);
         if (!table.rows.empty()) to.add(std::move(table));
-        if (thumbnail != nullptr) *thumbnail = picture_of(shown);
-    }
-
-    static Picture picture_of(const PageObject& shown) {
-        Scene scene;
-        scene.mesh = to_soup(*shown.mesh);
-        RenderOptions options;
-        options.size = "240x180";
-        options.no_scale_bar = options.no_legend = true;
-        if (shown.annotations != nullptr) {
-            draw_annotations(scene, *shown.mesh, *shown.annotations);
-            if (shown.annotations->up) options.up = joined(*shown.annotations->up, ",", [](double x) { return number(x, 17); });
-        }
-        return render({scene}, options).picture;
+        if (small != nullptr) *small = thumbnail(*shown.mesh, shown.annotations, "240x180");
     }
 
     /// For the eye only: measures keep the values of the whole object.
@@ -531,7 +447,7 @@ struct MakeReport final : Operation {
     std::optional<Page> made;
     std::optional<ShownObject> current;  ///< what follows belongs to it
     std::size_t places = 0, drawings = 0;
-    Names names;
+    PageNames names;
     PageTable overview;  ///< of a collection
     std::vector<PageTable> tables;
 };

@@ -38,8 +38,6 @@ std::string clean_text(const std::string& text) {
     return clean;
 }
 
-namespace {
-
 cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length) {
     try {
         static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
@@ -48,6 +46,8 @@ cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int
     }
     return CAIRO_STATUS_SUCCESS;
 }
+
+namespace {
 
 cairo_surface_t* surface_of(PictureKind kind, int width, int height, std::string* bytes) {
     if (kind == PictureKind::svg) {

@@ -15,6 +15,9 @@ namespace ostraka::detail {
 /// become U+FFFD.
 std::string clean_text(const std::string& text);
 
+/// For cairo to write to a std::string.
+cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length);
+
 class Canvas {
 public:
     /// Width and height in pixels; of a PDF document one is 1/96 inch.

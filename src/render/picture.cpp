@@ -1,5 +1,6 @@
 #include "ostraka/render/picture.h"
 
+#include "canvas.h"
 #include "ostraka/core/error.h"
 
 #include <cairo.h>
@@ -15,15 +16,6 @@ namespace ostraka {
 
 namespace {
 using CairoSurface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-
-cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
-    try {
-        static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
-    } catch (const std::bad_alloc&) {
-        return CAIRO_STATUS_NO_MEMORY;
-    }
-    return CAIRO_STATUS_SUCCESS;
-}
 
 }  // namespace
 
@@ -89,7 +81,8 @@ void write_png(const Path& file, const Picture& picture) {
         std::memcpy(rows + row * stride, picture.argb.data() + row * width, width * sizeof(std::uint32_t));
     cairo_surface_mark_dirty(surface.get());
     std::string bytes;
-    if (const auto status = cairo_surface_write_to_png_stream(surface.get(), &append, &bytes); status != CAIRO_STATUS_SUCCESS)
+    if (const auto status = cairo_surface_write_to_png_stream(surface.get(), &detail::append_bytes, &bytes);
+        status != CAIRO_STATUS_SUCCESS)
         failed(status);
     write_file(file, bytes);
 }

@@ -268,6 +268,8 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
     const bool deep = options.deep && kind == PictureKind::pixels;
 
     Rendering rendering;
+    rendering.width = size.width;
+    rendering.height = size.height;
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::unique_ptr<Surface>> surfaces;
     const bool contours = options.contours || options.drawing == RenderOptions::Drawing::lines;

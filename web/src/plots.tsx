@@ -7,7 +7,8 @@ const width = 460;
 const high = 300;
 const edge = { left: 64, right: 14, top: 12, bottom: 44 };
 
-const range = (values: number[]): [number, number] => {
+/** What an axis goes over. */
+export const range = (values: number[]): [number, number] => {
   const low = Math.min(...values);
   const top = Math.max(...values);
   return low < top ? [low, top] : [low - 0.5, top + 0.5];

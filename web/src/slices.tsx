@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import type { Slice, Slices as Data } from "./data";
 import { drawn } from "./picture";
+import { range } from "./plots";
 import { level, numberText, object, page, withUnit, word } from "./state";
 
 const column = signal(0);
@@ -9,20 +10,14 @@ const width = 300;
 const high = 260;
 const edge = { left: 58, right: 10, top: 8, bottom: 40 };
 
-const spread = (values: number[]): [number, number] => {
-  const low = Math.min(...values);
-  const top = Math.max(...values);
-  return low < top ? [low, top] : [low - 0.5, top + 0.5];
-};
-
 function Plot({ slices }: { slices: Data }) {
   const { levels, columns, unit } = slices;
   const shown = columns[column.value] ?? columns[0];
   if (!shown) return null;
   const of = columns.indexOf(shown);
   const known = levels.map((one, i) => ({ i, height: one.height, value: one.values[of] })).filter((one) => one.value !== null);
-  const [low, top] = spread(levels.map((one) => one.height));
-  const [from, to] = known.length > 0 ? spread(known.map((one) => one.value!)) : [0, 1];
+  const [low, top] = range(levels.map((one) => one.height));
+  const [from, to] = known.length > 0 ? range(known.map((one) => one.value!)) : [0, 1];
   const x = (value: number) => edge.left + ((value - from) / (to - from)) * (width - edge.left - edge.right);
   const y = (value: number) => high - edge.bottom - ((value - low) / (top - low)) * (high - edge.top - edge.bottom);
   const choose = (event: PointerEvent) => {

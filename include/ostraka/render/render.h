@@ -66,9 +66,10 @@ struct Pane {
 };
 
 struct Rendering {
-    Picture picture;       ///< of pixels
-    DeepPicture deep;      ///< the same with 16 bits, if they were asked for
-    std::string document;  ///< of SVG and PDF: the file
+    int width = 0, height = 0;  ///< pixels
+    Picture picture;            ///< of pixels
+    DeepPicture deep;           ///< the same with 16 bits, if they were asked for
+    std::string document;       ///< of SVG and PDF: the file
     std::vector<Pane> panes;
     double build_seconds = 0;  ///< spent on the search tree
     double draw_seconds = 0;   ///< spent on the rest
