@@ -342,11 +342,14 @@ try {
   });
 
   await test("what is published is valid, and its comments lie on the model", async () => {
-    const { validateBytes } = require("gltf-validator");
     ostraka("publish", at("pot.ply"), at("pot.ant.json"), at("published"), "--address", "https://pots.example/1");
     const bytes = readFileSync(at("published/model.glb"));
-    const { issues } = await validateBytes(new Uint8Array(bytes), { maxIssues: 100 });
-    assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.filter((one) => one.severity === 0)));
+    // scripts/test --browser fetches the validator.
+    const validator = process.env.OSTRAKA_GLTF_VALIDATOR;
+    if (validator) {
+      const { issues } = await require(validator).validateBytes(new Uint8Array(bytes), { maxIssues: 100 });
+      assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.filter((one) => one.severity === 0)));
+    } else console.log("# SKIPPED: the GLB is not validated, OSTRAKA_GLTF_VALIDATOR is not set");
     const manifest = JSON.parse(readFileSync(at("published/manifest.json"), "utf8"));
     assert.equal(manifest["@context"], "http://iiif.io/api/presentation/4/context.json");
     const ids = [];
