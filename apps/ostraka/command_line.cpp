@@ -1,5 +1,7 @@
-// The only file that knows CLI11.
+// Operations as commands.
 #include "command_line.h"
+
+#include "workbench.h"
 
 #include "ostraka/core/file.h"
 #include "ostraka/core/nearest_name.h"
@@ -409,6 +411,7 @@ int run_command_line(int argc, char** argv) {
         for (const std::string& word : completions({argv + 2, argv + argc})) std::cout << printable(word) << '\n';
         return done;
     }
+    if (argc > 1 && std::string_view(argv[1]) == "workbench") return run_workbench({argv + 2, argv + argc});
     CLI::App tool("Semantics-aware modelling of 3D shapes", "ostraka");
     tool.set_version_flag("--version", version());
     tool.require_subcommand(1);
@@ -452,6 +455,7 @@ int run_command_line(int argc, char** argv) {
         by_count = add_parameters(*command, *call, words);
         command->allow_extras();
     }
+    tool.add_subcommand("workbench", workbench_help);
     if (call) {
         const auto behind = given.begin() + static_cast<long>(words_of(call->entry().name).size());
         const std::vector<std::string> checked = checked_words(*call, {behind, given.end()});

@@ -1,4 +1,4 @@
-#include "page_results.h"
+#include "ostraka/operations/page_results.h"
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/words.h"

@@ -1,7 +1,7 @@
 // report: one HTML page of results, objects in 3D with tables and drawings, that opens anywhere without a network.
 #include "annotated_scene.h"
 #include "operations.h"
-#include "page_results.h"
+#include "ostraka/operations/page_results.h"
 
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/text.h"

@@ -114,6 +114,8 @@ std::string Page::script(const std::string& file, const std::string& made_how) c
            base64(deflated(bytes_)) + "\");\n";
 }
 
+Page::Content Page::content(const std::string& made_how) const { return {data(made_how), bytes_}; }
+
 PageTable annotation_table(const Mesh& mesh, const AnnotationSet& set, int object, const std::string& name) {
     PageTable table;
     table.title = name;

@@ -97,6 +97,22 @@ std::string values_text(const Descriptor& descriptor) {
     return joined(texts, ", ") + (descriptor.unit.empty() ? "" : " " + descriptor.unit);
 }
 
+/// Positions relative to the box in single precision, and triangles, as they are.
+JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObject::Exact& exact, const Keep& keep,
+                     JsonAllocator& allocator) {
+    JsonValue entry = json_object(allocator, "key", exact.key);
+    if (!exact.sends_shape) return entry;
+    std::vector<float> places;
+    places.reserve(3 * soup.points.size());
+    for (const Triple& p : soup.points)
+        for (std::size_t k = 0; k < 3; ++k) places.push_back(static_cast<float>(p[k] - low[k]));
+    const auto bytes_of = [](const auto& values) {
+        return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values.front());
+    };
+    add_members(entry, allocator, "positions", keep(bytes_of(places)), "triangles", keep(bytes_of(soup.triangles)));
+    return entry;
+}
+
 JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const ContainmentOrder& order, const Relative& relative,
                            const Keep& keep, JsonAllocator& allocator) {
     const auto& parents = order.parent;
@@ -187,7 +203,7 @@ JsonValue relations_json(const PageObject& object, const AnnotationSet& set, con
             for (const int id : one.annotations)
                 for (std::size_t i = 0; i < set.annotations.size(); ++i)
                     if (set.annotations[i].id == id) members.push_back(i);
-            JsonValue entry = json_object(allocator, "type", one.type, "members", members, "directed", one.directed, "constraint",
+            JsonValue entry = json_object(allocator, "id", one.id, "type", one.type, "members", members, "directed", one.directed, "constraint",
                                           one.is_constraint, "weight", one.weight, "text", "");
             if (layout.lanes[r]) add_members(entry, allocator, "lane", *layout.lanes[r]);
             if (r < object.checks.size() && object.checks[r].verdict != Verdict::unknown) {
@@ -277,9 +293,19 @@ std::size_t Page::add(const PageObject& object) {
         json_object(allocator, "name", printable(object.name, 200), "unit", unit, "vertices",
                     object.whole ? object.whole->vertices : soup.points.size(), "faces",
                     object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size, "up",
-                    set.up ? *set.up : object.up, "geometry", add_bytes(quantised_glb(soup, box.low, box.largest())),
-                    "annotations", std::move(annotations), "maps", std::move(maps), "tree", std::move(tree), "relations",
+                    set.up ? *set.up : object.up, "annotations", std::move(annotations), "maps", std::move(maps), "tree", std::move(tree), "relations",
                     relations_json(object, set, layout, allocator));
+    // Packed, or exact for a viewer beside the command.
+    const auto add_shape = [&](JsonValue& to, const TriangleSoup& of, const Box& around, const std::string& part) {
+        if (!object.exact) {
+            add_members(to, allocator, "geometry", add_bytes(quantised_glb(of, around.low, around.largest())));
+            return;
+        }
+        PageObject::Exact exact = *object.exact;
+        exact.key += part;
+        add_members(to, allocator, "shape", exact_json(of, around.low, exact, keep, allocator));
+    };
+    add_shape(entry, soup, box, "");
     add_given(entry, allocator, "constraints", json_list(object.constraints, allocator, [&](const PageConstraint& one) {
                   return constraint_json(one, allocator);
               }));
@@ -293,9 +319,9 @@ std::size_t Page::add(const PageObject& object) {
         // In the object's own frame, which its steps begin below.
         TriangleSoup cage = to_soup(*object.cage);
         const Box around = box_of(cage);
-        add_members(entry, allocator, "cage",
-                    json_object(allocator, "geometry", add_bytes(quantised_glb(cage, around.low, around.largest())), "vertices",
-                                cage.points.size(), "origin", relative(around.low)));
+        JsonValue shown = json_object(allocator, "vertices", cage.points.size(), "origin", relative(around.low));
+        add_shape(shown, cage, around, "-cage");
+        add_members(entry, allocator, "cage", std::move(shown));
     }
     const std::string_view corner_bytes(reinterpret_cast<const char*>(soup.triangles.data()),
                                         soup.triangles.size() * sizeof soup.triangles.front());

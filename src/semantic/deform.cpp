@@ -9,8 +9,10 @@
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/with_points.h"
+#include "ostraka/semantic/live.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -63,6 +65,13 @@ struct Outcome {
     std::vector<semantic::Measured> measured;
 };
 
+/// Constraints over the vertices of a cage.
+struct CageSystem {
+    /// Rows for the cage's own points below those of the mesh, so that handles are constrained like any point.
+    std::unique_ptr<CageWeights> extended;
+    std::unique_ptr<CageSpaceSolver> solver;
+};
+
 class Deformer {
 public:
     Deformer(const HandleSpace& space, const RelationGraph& graph, const DeformOptions& options,
@@ -112,6 +121,31 @@ public:
         result = finish(std::move(result));
         result.acceptable = result.objections.empty();
         return result;
+    }
+
+    /// For a drag of these handles from where the edit leaves the cage, whose vertices are handed over; no solver where no
+    /// constraint asks for anything.
+    CageSystem begin(const JsonValue& edit, const std::vector<Index>& handles, std::vector<Point>& cage) {
+        last_.handles = points_of(*space_.cage);
+        last_.touched.assign(last_.handles.size(), false);
+        last_.named.assign(space_.mesh.number_of_vertices(), false);
+        for (auto& state : follow_edit(edit, space_, where_)) last_ = std::move(state);
+        for (const Index handle : handles) last_.touched[handle] = true;
+        last_.by_handles = true;
+        cage = last_.handles;
+        const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
+        edited_ = columns_of(shape);
+        edited_mesh_ = with_points(space_.mesh, shape);
+        EditState dragged = last_;  // somewhere: what counts is which vertices go along
+        for (const Index handle : handles)
+            dragged.handles[handle] = dragged.handles[handle] + Vector(0, 0, 0.01 * box_diagonal(space_.mesh));
+        asked_ = semantic::asked_vertices(space_, dragged, columns_of(shape_of_edit(space_, dragged, options_)) - rest_);
+        DeformResult result;
+        understand(result);
+        Outcome outcome;
+        outcome.points = edited_;
+        outcome.texts.resize(statements_.size());
+        return lower(used(result), outcome) ? cage_system() : CageSystem();
     }
 
 private:
@@ -216,8 +250,8 @@ private:
         return false;
     }
 
-    /// Starts from the outcome; parts that others refer to are as it has them. False if there is nothing to solve.
-    bool solve_once(const std::vector<bool>& active, Outcome& outcome) {
+    /// The low-level constraints, from the outcome so far: parts that others refer to are as it has them. False if there are none.
+    bool lower(const std::vector<bool>& active, Outcome& outcome) {
         lowered_.clear();
         support_.clear();
         owner_.clear();
@@ -248,6 +282,12 @@ private:
                         "are Green coordinates, which serve unconstrained deformation only: constraints are solved without their "
                         "normal term",
                         "use mean value coordinates, or a graph without constraints");
+        return true;
+    }
+
+    /// Starts from the outcome. False if there is nothing to solve.
+    bool solve_once(const std::vector<bool>& active, Outcome& outcome) {
+        if (!lower(active, outcome)) return false;
         if (options_.space == DeformOptions::Space::mesh) solve_mesh(outcome);
         else solve_cage(outcome);
         if (!outcome.summary.usable)
@@ -303,13 +343,14 @@ private:
         }
     }
 
-    void solve_cage(Outcome& outcome) {
-        // Rows for the cage's own points below those of the mesh, so that handles are constrained like any point.
+    /// All constraints over the cage's vertices. Its first one holds the handles that steps moved, if there are any.
+    CageSystem cage_system() {
+        CageSystem system;
         const WeightMatrix& weights = space_.coordinates->vertex;
         const Eigen::Index n = weights.rows(), c = weights.cols();
-        CageWeights extended(n + c, c);
-        extended.topRows(n) = weights;
-        extended.bottomRows(c).setIdentity();
+        system.extended = std::make_unique<CageWeights>(n + c, c);
+        system.extended->topRows(n) = weights;
+        system.extended->bottomRows(c).setIdentity();
         const Points rest_cage = columns_of(*space_.cage), edited_cage = columns_of(last_.handles);
         Points rest(3, n + c);
         rest << rest_, rest_cage;
@@ -333,13 +374,19 @@ private:
                 list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(*space_.cage, v, static_cast<int>(n)),
                                                share * options_.laplacian, {}, shape));
             }
-        CageSpaceSolver solver(take(std::move(list)), extended, rest_cage);
+        system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);
         // What must hold counts a thousandfold: a cage may not be able to do it.
         for (std::size_t i = 0; i < owner_.size(); ++i)
-            if (statements_[owner_[i]].hard) solver.set_weight(first_ + i, 1e3 * solver.constraint(first_ + i).weight());
-        outcome.cage = edited_cage;
-        outcome.summary = solver.solve(outcome.cage, options_.solve);
-        outcome.points = points_of(extended, outcome.cage).leftCols(n);
+            if (statements_[owner_[i]].hard)
+                system.solver->set_weight(first_ + i, 1e3 * system.solver->constraint(first_ + i).weight());
+        return system;
+    }
+
+    void solve_cage(Outcome& outcome) {
+        const CageSystem system = cage_system();
+        outcome.cage = columns_of(last_.handles);
+        outcome.summary = system.solver->solve(outcome.cage, options_.solve);
+        outcome.points = points_of(*system.extended, outcome.cage).leftCols(space_.coordinates->vertex.rows());
     }
 
     /// Of the low-level constraints of each, divided by their points (section 4.2.3), on the finished shape: against axes as they
@@ -445,6 +492,76 @@ private:
 };
 
 }  // namespace
+
+struct LiveDeformation::State {
+    State(const HandleSpace& given, const RelationGraph& relations, const DeformOptions& how, const RelationOptions& exactness)
+        : space(given),
+          options(how),
+          tolerances(exactness),
+          deformer(space, graph, options, tolerances, "the drag", "graph") {
+        graph.relationships = relations.relationships;
+    }
+    HandleSpace space;
+    RelationGraph graph;
+    DeformOptions options;
+    RelationOptions tolerances;
+    Deformer deformer;
+    std::vector<Index> handles;
+    std::vector<int> held;  ///< vertices of the cage that steps moved, in the order of the constraint that holds them
+    std::vector<Point> cage;
+    Points points;  ///< the same
+    CageSystem system;
+};
+
+LiveDeformation::LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit,
+                                 std::vector<Index> handles, const DeformOptions& options, const RelationOptions& tolerances) {
+    if (space.cage == nullptr || space.coordinates == nullptr)
+        throw Error(ErrorKind::usage, "the drag", "has no cage", "give a cage and its coordinates");
+    for (const Index handle : handles)
+        if (handle >= space.cage->number_of_vertices())
+            throw Error(ErrorKind::usage, "the drag", "handle " + std::to_string(handle) + " is no vertex of the cage",
+                        "the cage has " + std::to_string(space.cage->number_of_vertices()));
+    DeformOptions live = options;
+    live.space = DeformOptions::Space::cage;
+    state_ = std::make_unique<State>(space, graph, live, tolerances);
+    state_->handles = std::move(handles);
+    state_->system = state_->deformer.begin(edit, state_->handles, state_->cage);
+    state_->points = columns_of(with_points(*space.cage, state_->cage));
+    if (state_->system.solver) {
+        const auto offset = static_cast<int>(space.coordinates->vertex.rows());
+        for (const int id : state_->system.solver->constraint(0).ids()) state_->held.push_back(id - offset);
+        state_->system.solver->initialize();
+    }
+}
+
+LiveDeformation::~LiveDeformation() = default;
+
+const std::vector<Point>& LiveDeformation::cage() const { return state_->cage; }
+bool LiveDeformation::has_constraints() const { return state_->system.solver != nullptr; }
+
+const std::vector<Point>& LiveDeformation::follow(const std::vector<Point>& places) {
+    State& state = *state_;
+    if (places.size() != state.handles.size())
+        throw Error(ErrorKind::usage, "the drag", "has " + counted(places.size(), "place") + " for " +
+                                                      counted(state.handles.size(), "handle"),
+                    "give one for each");
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Point& p = places[i];
+        if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(p.z()))
+            throw Error(ErrorKind::usage, "the drag", "place " + std::to_string(i) + " is not finite", "give finite numbers");
+        state.cage[state.handles[i]] = p;
+    }
+    for (const Index handle : state.handles) state.points.col(handle) = eigen(state.cage[handle]);
+    if (!state.system.solver) return state.cage;
+    Points targets(3, static_cast<Eigen::Index>(state.held.size()));
+    for (std::size_t i = 0; i < state.held.size(); ++i)
+        targets.col(static_cast<Eigen::Index>(i)) = state.points.col(state.held[i]);
+    state.system.solver->set_target(0, targets);
+    constexpr SolveOptions few{4, 1e-5, 0, 2};
+    state.system.solver->solve(state.points, few);
+    state.cage = list_of(state.points);
+    return state.cage;
+}
 
 std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options) {
     if (space.cage != nullptr) return deformed(*space.coordinates, *space.cage, state.handles);

@@ -4,7 +4,7 @@
 # usage: browser.sh PROJECT COMMAND viewer|browser
 set -euo pipefail
 project=$1 command=$2 what=$3
-[ "$what" != viewer ] || (cd "$project/web" && sha256sum --quiet -c viewer.sha256)
+[ "$what" != viewer ] || (cd "$project/web" && sha256sum --quiet -c pages.sha256)
 skip() { echo "SKIPPED: $1; scripts/test --browser installs it" >&2; exit 77; }
 command -v node >/dev/null || skip "Node is missing"
 [ -d "$project/web/node_modules/three" ] || skip "the packages of web/ are missing"

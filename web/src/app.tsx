@@ -5,7 +5,7 @@ import type { Language } from "./data";
 import { Details } from "./details";
 import { Graph } from "./graph";
 import { Legend } from "./legend";
-import { address, closeEntry } from "./main";
+import { address, closeEntry } from "./content";
 import { Picture, view } from "./picture";
 import { Slices } from "./slices";
 import * as state from "./state";

@@ -1,7 +1,7 @@
 // The index of a collection: a card for each object, found by name, tag and number; one is read when it is chosen.
 import { signal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import { openEntry } from "./main";
+import { openEntry } from "./content";
 import { numericColumns } from "./plots";
 import { index, message, numberText, word } from "./state";
 

@@ -95,7 +95,13 @@ export interface Constraint {
   residual?: { mean: number; largest: number };
 }
 
-export interface PageObject {
+/** A shape: packed in a blob, or exact (32 bit floats relative to the box, triangles), which may have been sent before. */
+export interface Shown {
+  geometry?: number;
+  shape?: { key: string; positions?: number; triangles?: number };
+}
+
+export interface PageObject extends Shown {
   name: string;
   unit: string;
   /** Vertices and triangles of the object; of what is shown, if that is less. */
@@ -105,10 +111,9 @@ export interface PageObject {
   origin: [number, number, number];
   size: [number, number, number];
   up: [number, number, number];
-  geometry: number;
   annotations: Annotation[];
   maps: ValueMap[];
-  cage?: { geometry: number; vertices: number; origin: [number, number, number] };
+  cage?: Shown & { vertices: number; origin: [number, number, number] };
   /** The rows of a drawing of the relationships: annotations under what contains them. */
   tree: { annotation: number; depth: number }[];
   relations: Relation[];
@@ -123,6 +128,7 @@ export interface PageObject {
 }
 
 export interface Relation {
+  id: number;
   type: string;
   /** Indices in `annotations`. */
   members: number[];

@@ -127,6 +127,9 @@ export const shared = {
   explode: { value: 0 },
   patterns: { value: 0 },
   clip: { value: new THREE.Vector4(0, 0, 0, 1) },
+  /** While handles follow one affine map x -> A x + t: A - I, and t. */
+  bend: { value: new THREE.Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0) },
+  shift: { value: new THREE.Vector3() },
 };
 
 const clipping = `
@@ -144,12 +147,16 @@ const surface = new THREE.RawShaderMaterial({
     precision highp float;
     uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
     uniform float blend, explode;
+    uniform mat3 bend;
+    uniform vec3 shift;
     in vec3 position, normal, otherPosition, otherNormal, apart, color;
+    in vec4 drag; // where there is none it is 0, 0, 0, 1
     in float pattern;
     out vec3 place, facing, tint;
     flat out float kind;
     void main() {
-      vec4 at = modelMatrix * vec4(mix(position, otherPosition, blend) + explode * apart, 1.0);
+      vec3 moved = mix(position, otherPosition, blend) + explode * apart + bend * drag.xyz + (drag.w - 1.0) * shift;
+      vec4 at = modelMatrix * vec4(moved, 1.0);
       place = at.xyz;
       facing = mat3(viewMatrix) * mat3(modelMatrix) * mix(normal, otherNormal, blend);
       tint = color;
@@ -264,7 +271,9 @@ export class DrawnObject {
   private readonly normals: Float32Array;
   private readonly sets: ReturnType<typeof setsOf>;
   private readonly split: ReturnType<typeof splitVertices>;
-  private other: Shape | undefined;
+  /** Where the vertices are in the object that this one turns into. */
+  private other: Float32Array | undefined;
+  private partner: DrawnObject | undefined;
 
   constructor(
     readonly index: number,
@@ -342,7 +351,7 @@ export class DrawnObject {
     const { positions } = this.shape;
     for (let i = 0; i < positions.length; ++i) {
       let x = positions[i];
-      if (wanted.blend > 0) x += wanted.blend * (this.other!.positions[i] - x);
+      if (wanted.blend > 0) x += wanted.blend * (this.other![i] - x);
       if (wanted.explode > 0) x += wanted.explode * this.apart![i];
       this.current[i] = x;
     }
@@ -404,12 +413,54 @@ export class DrawnObject {
 
   /** The shape that `blend` leads to; the same triangles. */
   blendTo(other: DrawnObject | undefined) {
-    if (this.other === other?.shape) return;
-    this.other = other?.shape;
+    if (this.partner === other) return;
+    this.partner = other;
+    // Positions are relative to the box of their own object.
+    const apart = other ? other.about.origin.map((x, k) => x - this.about.origin[k]) : [0, 0, 0];
+    this.other = other?.shape.positions.map((x, i) => x + apart[i % 3]);
     const geometry = this.mesh.geometry;
     const of = (values: Float32Array) => new THREE.BufferAttribute(gathered(values, this.split.source), 3);
-    geometry.setAttribute("otherPosition", other ? of(other.shape.positions) : geometry.getAttribute("position"));
+    geometry.setAttribute("otherPosition", this.other ? of(this.other) : geometry.getAttribute("position"));
     geometry.setAttribute("otherNormal", other ? of(other.normals) : geometry.getAttribute("normal"));
+  }
+
+  /** How much each vertex follows the handles that are dragged: four numbers each, or none. */
+  follows(weights: Float32Array | undefined) {
+    const { geometry } = this.mesh;
+    if (!weights) {
+      geometry.deleteAttribute("drag");
+      return;
+    }
+    const made = new Float32Array(4 * this.split.source.length);
+    this.split.source.forEach((v, i) => {
+      for (let k = 0; k < 4; ++k) made[4 * i + k] = weights[4 * v + k] + (k === 3 ? 1 : 0);
+    });
+    geometry.setAttribute("drag", new THREE.BufferAttribute(made, 4));
+  }
+
+  /** Other places of the vertices, until the object is shown anew. */
+  moveVertices(positions: Float32Array) {
+    const attribute = this.mesh.geometry.getAttribute("position") as THREE.BufferAttribute;
+    const places = attribute.array as Float32Array;
+    this.split.source.forEach((v, i) => {
+      places[3 * i] = positions[3 * v];
+      places[3 * i + 1] = positions[3 * v + 1];
+      places[3 * i + 2] = positions[3 * v + 2];
+    });
+    attribute.needsUpdate = true;
+    this.current.set(positions);
+    this.bvhMade?.refit();
+  }
+
+  /** Colours by a number of each vertex, from 0 (as clay is) to 1 (red). */
+  paintValues(values: Float32Array) {
+    const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
+    const colours = colour.array as Uint8Array;
+    this.split.source.forEach((v, i) => {
+      const share = Math.min(1, Math.max(0, values[v]));
+      [214, 40, 40].forEach((c, k) => (colours[3 * i + k] = clay[k] + share * (c - clay[k])));
+    });
+    colour.needsUpdate = true;
   }
 
   /** Colours by annotations, those that are shown; smaller ones over larger ones. `chosen`: the others are paler. */

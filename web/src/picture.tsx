@@ -209,6 +209,7 @@ export function Picture() {
     // The tree that tells what is in sight is made once the first picture is there.
     let soon = true;
     view.onMove = () => {
+      state.moves.value += 1;
       if (!soon) return drawOverlay(svg);
       soon = false;
       setTimeout(() => drawOverlay(svg), 30);
@@ -284,6 +285,7 @@ export function hover(x: number, y: number) {
 }
 
 export function click(x: number, y: number) {
+  if (!state.clicks.value) return;
   const hit = view?.pick(x, y);
   if (state.measuring.value) {
     if (!hit) return;

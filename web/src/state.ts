@@ -80,9 +80,13 @@ export const clipAxis = signal(2);
 export const patterns = signal(false);
 export const labels = signal(true);
 export const cage = signal(true);
+/** Whether a click chooses what is there; not while a tool has the pointer. */
+export const clicks = signal(true);
 export const measuring = signal(false);
 export const measured = fresh<{ object: number; places: { x: number; y: number; z: number }[] }>({ object: -1, places: [] });
 export const message = signal("");
+/** Counts the pictures that were drawn: what is drawn over them follows it. */
+export const moves = signal(0);
 /** The first picture is there: the rest of the page may follow. */
 export const ready = signal(false);
 

@@ -1,7 +1,7 @@
 // Tables and drawings that the command made; a row of an annotation chooses it, and is marked where it is chosen.
 import { useEffect, useMemo } from "preact/hooks";
 import type { Blobs, Drawing, Table } from "./data";
-import { openEntry } from "./main";
+import { openEntry } from "./content";
 import { Plot } from "./plots";
 import { choose, isRowChosen, marked, numberText, page, word } from "./state";
 

@@ -78,7 +78,7 @@ export class View {
   }
 
   /** What there is to see, instead of what there was. */
-  setObjects(objects: DrawnObject[]) {
+  setObjects(objects: DrawnObject[], keepsCamera = false) {
     for (const one of this.objects) {
       this.scene.remove(one.group);
       one.dispose();
@@ -86,7 +86,7 @@ export class View {
     this.objects = objects;
     this.panes = [];
     this.frames = [];
-    this.placed = false;
+    this.placed = keepsCamera && this.placed;
     this.frame();
     for (const one of objects) {
       const { centre, scale, turn } = this.frames[one.index];
@@ -96,7 +96,14 @@ export class View {
       one.group.updateMatrixWorld(true);
       this.scene.add(one.group);
     }
-    this.home(false);
+    if (!this.placed) this.home(false);
+  }
+
+  /** Takes its objects back from where they were shown meanwhile. */
+  adopt() {
+    for (const one of this.objects) this.scene.add(one.group);
+    this.scene.updateMatrixWorld(true);
+    this.draw();
   }
 
   /** Objects of one place are drawn in one frame, so that a difference is seen; others each in the middle. */
@@ -189,6 +196,7 @@ export class View {
 
   paint() {
     const { clientWidth, clientHeight } = this.canvas;
+    if (this.renderer.xr.isPresenting) return; // the headset has the picture
     if (clientWidth === 0 || clientHeight === 0) return;
     const { renderer } = this;
     const ratio = Math.min(2, window.devicePixelRatio);

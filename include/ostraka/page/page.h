@@ -82,6 +82,13 @@ struct PageObject {
         double deviation = 0;  ///< the largest distance of its vertices from what is shown
     };
     std::optional<Whole> whole = {};
+    /// Instead of packed geometry: the shape as it is, in single precision relative to the box, and a key that says which shape it
+    /// is. Without `sends_shape` only the key is there: the reader has that shape.
+    struct Exact {
+        std::string key;
+        bool sends_shape = true;
+    };
+    std::optional<Exact> exact = {};
 };
 
 /// A cell is a text, a number, or nothing.
@@ -124,6 +131,11 @@ public:
     [[nodiscard]] std::string html(const std::string& made_how) const;
     /// The same content as a script that a page of a collection reads as `file`, which an entry names.
     [[nodiscard]] std::string script(const std::string& file, const std::string& made_how) const;
+    /// The content alone, for a viewer that is open already: the page's data (JSON), and the bytes that they refer to.
+    struct Content {
+        std::string data, bytes;
+    };
+    [[nodiscard]] Content content(const std::string& made_how) const;
 
 private:
     std::size_t add_bytes(std::string_view bytes);

@@ -1,0 +1,107 @@
+// What a person did in the workbench, step by step: each step is an operation of the table or a choice, and all of it is kept in a
+// folder, can be undone as far back as it goes, and is a study file that the command repeats (doc/workbench.md).
+#pragma once
+
+#include "ostraka/operations/table.h"
+
+#include <optional>
+
+namespace ostraka {
+
+/// What one sees as one thing: a mesh with what belongs to it. Files are named relative to the session's folder, with '/'.
+struct SessionObject {
+    std::string name;
+    std::map<std::string, std::string> parts;  ///< by session_parts()
+    [[nodiscard]] std::string part(const std::string& which) const;
+};
+
+/// "mesh", "annotations", "graph", "cage", "coordinates", "recipe", and of a deformation under way "edit", "deformed",
+/// "deformed cage", "deformed annotations".
+const std::vector<std::string>& session_parts();
+
+/// A file that a step made and that is no part of an object: a table, a drawing, a map.
+struct SessionFile {
+    std::string name, kind, file;
+};
+
+/// What there is after a step. Files never change: a step makes new ones.
+struct SessionState {
+    std::vector<SessionObject> objects;
+    std::size_t active = 0;  ///< the object that is worked on
+    std::vector<SessionFile> files;
+    [[nodiscard]] const SessionObject* object() const { return active < objects.size() ? &objects[active] : nullptr; }
+};
+JsonValue to_json(const SessionState& state, JsonAllocator& allocator);
+
+struct SessionStep {
+    std::string name;       ///< "s012"; its folder in "steps" if it is an operation
+    std::string title;      ///< what was done, for people
+    std::string operation;  ///< of the table; empty: a choice, which makes no file
+    Json with, keep;        ///< as study files say it: inputs and options; outputs with the names of their files
+    std::map<std::string, std::string> sha256;  ///< of the outputs, by their names
+    bool holds = true;
+    SessionState state;  ///< after it
+};
+
+class Session {
+public:
+    /// Goes on with the session in `folder`, or begins one there. Files are opened from `root` and the folders in it, and saved
+    /// there. Throws Error (input) for a folder that holds something else, or a session that is damaged or whose files are gone.
+    Session(Path folder, Path root);
+
+    [[nodiscard]] const SessionState& state() const;
+    [[nodiscard]] const std::vector<SessionStep>& steps() const { return steps_; }
+    /// How many of the steps count: those behind were undone.
+    [[nodiscard]] std::size_t place() const { return place_; }
+    [[nodiscard]] const Path& folder() const { return folder_; }
+
+    /// Meshes and templates that can be opened, by their names relative to the root.
+    [[nodiscard]] std::vector<std::string> openable() const;
+    /// A mesh with what lies beside it under its name (.ant.json, .graph.json, .cage.ply with .npy), or a template. Throws Error
+    /// (input) for a name that is none of `openable`.
+    void open(const std::string& name);
+
+    /// {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as": "deformed"}: runs an operation. A value of an
+    /// input is {"part": PART, "object": INDEX} (INDEX: else the active one), {"file": FILE of the state}, {"document": JSON} or a
+    /// list of these. Outputs that the operation needs, and those of "keep", become parts of the object they are of, new objects,
+    /// or files. "as": "deformed": a mesh that is made is the object's under deformation, not a new one. The report is handed
+    /// over. Where it fails nothing has changed.
+    Report run(const JsonValue& request, Context& context);
+
+    /// {"do": "activate" or "close", "object": INDEX}; {"do": "accept" or "withdraw"} a deformation.
+    void change(const JsonValue& request);
+
+    /// Undoes or repeats steps until so many count. Throws Error (usage) where there are fewer.
+    void go_to(std::size_t place);
+
+    /// Copies the active object into the folder NAME of the root, as a template that is checked as a whole. Returns the template's
+    /// file. Throws Error (usage) for a name that is no plain one, (input) where there are no annotations or something else is
+    /// there.
+    Path save(const std::string& name, Context& context) const;
+
+    /// The file that the state names. Throws Error (usage) where it names none such.
+    [[nodiscard]] Path path_of(const std::string& file) const;
+
+    /// The steps that count as a study file: 'ostraka run' repeats them. It is written beside the session after each step.
+    [[nodiscard]] Json study() const;
+
+private:
+    struct Settings;
+    [[nodiscard]] std::string relative(const Path& file) const;
+    [[nodiscard]] std::string reference(const std::string& file) const;
+    [[nodiscard]] Path resolved(const JsonValue& value, const std::string& slot, const std::string& step, Settings& settings) const;
+    void name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const;
+    void take_outputs(const Call& call, const JsonValue& request, const Settings& settings, SessionStep& step) const;
+    [[nodiscard]] std::string next_name() const;
+    void add(SessionStep step);
+    void write() const;
+    void read();
+    void check_file(const std::string& file) const;
+
+    Path folder_, root_;
+    std::vector<SessionStep> steps_;
+    std::size_t place_ = 0, counter_ = 0;
+    SessionState begin_;
+};
+
+}  // namespace ostraka

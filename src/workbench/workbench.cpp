@@ -1,0 +1,401 @@
+#include "ostraka/workbench/workbench.h"
+
+#include "request.h"
+#include "scene.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/stopwatch.h"
+#include "ostraka/core/words.h"
+#include "ostraka/select/recipe.h"
+
+#include <cmath>
+
+namespace ostraka {
+
+namespace {
+
+constexpr std::size_t kept_meshes = 12;
+
+JsonValue error_json(const std::string& problem, const std::string& where, const std::string& remedy, JsonAllocator& a) {
+    return json_object(a, "problem", problem, "where", where, "remedy", remedy);
+}
+
+template <class Numbers>
+std::string_view bytes_of(const Numbers& numbers) {
+    return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(*numbers.data())};
+}
+
+/// Adds bytes at the next multiple of eight and says where they are.
+JsonValue keep(std::string& bytes, std::string_view more, JsonAllocator& a) {
+    bytes.resize((bytes.size() + 7) / 8 * 8, '\0');
+    JsonValue place = json_value(std::array{bytes.size(), more.size()}, a);
+    bytes += more;
+    return place;
+}
+
+}  // namespace
+
+/// A mesh with what is said of it, as it is shown.
+struct Workbench::Shape {
+    std::shared_ptr<const MeshFile> mesh, cage;
+    std::optional<AnnotationSet> set;
+    std::optional<RelationGraph> graph;
+};
+
+/// What a drag needs: it is kept from one frame to the next.
+struct Workbench::Deformation {
+    std::size_t place = 0;  ///< of the session
+    std::string of;         ///< the object's name
+    std::shared_ptr<const Shape> rest;
+    const AnnotationSet* set = nullptr;
+    Coordinates coordinates;
+    Json edit;
+    std::vector<Index> handles;
+    std::array<double, 3> low{};  ///< of the box of the shape that is shown: positions are relative to it
+    std::unique_ptr<LiveDeformation> live;
+};
+
+Workbench::Workbench(Path folder, Path root)
+    : session_(std::move(folder), std::move(root)), context_(std::make_unique<Context>()) {
+    context_->keep_objects = true;
+    context_->watch.on_progress = [this](const std::string& phase, double share) {
+        if (on_progress) on_progress(phase, share);
+    };
+}
+
+Workbench::~Workbench() = default;
+
+void Workbench::cancel() {
+    const std::lock_guard lock(mutex_);
+    context_->watch.cancel();
+}
+
+const std::map<std::string, Workbench::Answer>& Workbench::answers() {
+    static const std::map<std::string, Answer> all{
+        {"hello", &Workbench::hello},         {"scene", &Workbench::scene}, {"select", &Workbench::select},
+        {"run", &Workbench::run},             {"grab", &Workbench::grab},   {"drag", &Workbench::drag},
+        {"influence", &Workbench::influence}, {"file", &Workbench::file},   {"handles", &Workbench::handles},
+    };
+    return all;
+}
+
+Workbench::Reply Workbench::answer(std::string_view text) {
+    Reply reply;
+    Json document(rapidjson::kObjectType), result(rapidjson::kObjectType);
+    auto& a = document.GetAllocator();
+    double id = 0;
+    const std::size_t place = session_.place(), count = session_.steps().size();
+    const auto fail = [&](const std::string& problem, const std::string& where, const std::string& remedy) {
+        add_members(document, a, "id", id, "ok", false, "error", error_json(problem, where, remedy, a));
+    };
+    // A request that was cancelled leaves its watch cancelled: each has its own.
+    if (context_->watch.is_cancelled()) {
+        auto fresh = std::make_unique<Context>();
+        fresh->keep_objects = true;
+        fresh->watch.on_progress = context_->watch.on_progress;
+        const std::lock_guard lock(mutex_);
+        context_ = std::move(fresh);
+    }
+    try {
+        const Json request = parse_json(text, "the message");
+        if (!request.IsObject()) fail_request("a message that is no object", "load the page again");
+        if (const JsonValue* number = find_member(request, "id"); number != nullptr && number->IsNumber()) id = number->GetDouble();
+        const JsonValue* word = find_member(request, "do");
+        const std::string what = word != nullptr && word->IsString() ? text_of(*word) : std::string();
+        const WatchScope watched(&context_->watch);
+        if (const auto known = answers().find(what); known != answers().end()) {
+            (this->*known->second)(request, result, reply.bytes);
+        } else if (what == "open") {
+            const JsonValue* name = find_member(request, "name");
+            session_.open(name != nullptr && name->IsString() ? text_of(*name) : std::string());
+        } else if (what == "go") {
+            const JsonValue* to = find_member(request, "place");
+            if (to == nullptr || !to->IsUint()) fail_request("no place is given", "load the page again");
+            session_.go_to(to->GetUint());
+        } else if (what == "save") {
+            const JsonValue* name = find_member(request, "name");
+            const Path file = session_.save(name != nullptr && name->IsString() ? text_of(*name) : std::string(), *context_);
+            add_members(result, result.GetAllocator(), "file", file.string());
+        } else {
+            session_.change(request);
+        }
+        add_members(document, a, "id", id, "ok", true, "result", JsonValue(result, a));
+    } catch (const Error& error) {
+        fail(error.problem(), error.where(), error.remedy());
+    } catch (const std::bad_alloc&) {
+        fail("there is no memory for it", "", "use a smaller mesh");
+    } catch (const std::exception& error) {
+        fail(std::string("internal error: ") + error.what(), "", "please report it with what you did");
+    }
+    reply.changed = place != session_.place() || count != session_.steps().size();
+    if (!document["ok"].GetBool()) reply.bytes.clear();
+    reply.json = to_compact_text(document);
+    return reply;
+}
+
+// ---- what there is ----
+
+void Workbench::add_session(Json& result) const {
+    auto& a = result.GetAllocator();
+    add_members(result, a, "place", session_.place(), "state", to_json(session_.state(), a), "history",
+                json_list(session_.steps(), a, [&](const SessionStep& step) {
+                    return json_object(a, "name", step.name, "title", step.title, "operation", step.operation, "holds", step.holds);
+                }));
+}
+
+void Workbench::hello(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
+    auto& a = result.GetAllocator();
+    add_members(result, a, "version", version(), "openable", session_.openable(), "operations",
+                json_list(operations(), a, [&](const OperationEntry& entry) { return Call(entry).declaration(a); }));
+    add_session(result);
+}
+
+std::shared_ptr<const MeshFile> Workbench::mesh_of(const std::string& file) {
+    const Path path = session_.path_of(file);
+    std::error_code ignored;
+    const auto changed = std::filesystem::last_write_time(path, ignored).time_since_epoch().count();
+    const std::string key = path.string() + "@" + std::to_string(changed) + "/" + std::to_string(size_of_file(path));
+    if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
+    if (meshes_.size() >= kept_meshes) meshes_.clear();
+    return meshes_[key] = std::make_shared<const MeshFile>(in_file(path.string(), [&] { return read_mesh(path); }));
+}
+
+std::shared_ptr<const Workbench::Shape> Workbench::shape_of(const SessionObject& object, bool deformed) {
+    auto shape = std::make_shared<Shape>();
+    const std::string before = deformed ? "deformed" : "";
+    const auto part = [&](const std::string& name) {
+        const std::string own = object.part(deformed ? "deformed " + name : name);
+        return own.empty() && deformed && name != "cage" ? object.part(name) : own;
+    };
+    shape->mesh = mesh_of(object.part(deformed ? "deformed" : "mesh"));
+    if (const std::string file = part("annotations"); !file.empty()) {
+        ReadAnnotationsOptions reading;
+        reading.force_mesh = deformed;
+        shape->set = read_annotations(session_.path_of(file), shape->mesh->mesh, reading);
+    }
+    if (const std::string file = object.part("graph"); !file.empty() && shape->set)
+        shape->graph = read_graph(session_.path_of(file), *shape->set);
+    if (const std::string file = part("cage"); !file.empty()) shape->cage = mesh_of(file);
+    return shape;
+}
+
+void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes) {
+    auto& a = result.GetAllocator();
+    std::vector<std::string> known;
+    for (const JsonValue& key : list_in(request, "known"))
+        if (key.IsString()) known.push_back(text_of(key));
+    const SessionState& state = session_.state();
+    workbench::Scene scene(known);
+    JsonValue shown(rapidjson::kArrayType);
+    for (std::size_t i = 0; i < state.objects.size(); ++i) {
+        const SessionObject& object = state.objects[i];
+        for (const bool deformed : {false, true}) {
+            if (deformed && object.part("deformed").empty()) continue;
+            const auto shape = shape_of(object, deformed);
+            const std::string file = object.part(deformed ? "deformed" : "mesh");
+            workbench::ShownShape one;
+            one.name = deformed ? object.name + " (deformed)" : object.name;
+            one.key = file + "@" + std::to_string(size_of_file(session_.path_of(file)));
+            if (shape->cage) one.key += "+" + object.part(deformed ? "deformed cage" : "cage");
+            one.mesh = &shape->mesh->mesh;
+            one.set = shape->set ? &*shape->set : nullptr;
+            one.graph = shape->graph ? &*shape->graph : nullptr;
+            one.cage = shape->cage ? &shape->cage->mesh : nullptr;
+            if (i == state.active) one.files = workbench::files_for(session_, deformed);
+            scene.add(one);
+            shown.PushBack(json_object(a, "object", i, "deformed", deformed), a);
+        }
+    }
+    if (session_.place() > 0)
+        if (const SessionStep& step = session_.steps()[session_.place() - 1]; !step.operation.empty())
+            scene.add_report(session_.folder() / "steps" / step.name / "report.json", step.operation);
+    Page::Content content = scene.content("the workbench");
+    add_members(result, a, "shown", std::move(shown), "content", content.data);
+    add_session(result);
+    add_members(result, a, "openable", session_.openable());
+    bytes = std::move(content.bytes);
+}
+
+// ---- selecting ----
+
+void Workbench::select(const JsonValue& request, Json& result, std::string& bytes) {
+    const SessionObject* object = session_.state().object();
+    if (object == nullptr) fail_request("no object is open", "open a mesh or a template");
+    const JsonValue* expression = find_member(request, "expression");
+    if (expression == nullptr) fail_request("nothing is selected", "load the page again");
+    const auto shape = shape_of(*object, false);
+    const JsonValue* type_asked = find_member(request, "type");
+    const std::string asked = type_asked != nullptr && type_asked->IsString() ? text_of(*type_asked) : "region";
+    Json recipe = json_document("recipe");
+    auto& r = recipe.GetAllocator();
+    add_members(recipe, r, "annotations",
+                json_list_of(json_object(r, "id", 0, "tag", "selection", "type", asked, "select", JsonValue(*expression, r)), r));
+    if (shape->set && shape->set->up) add_members(recipe, r, "up", *shape->set->up);
+    RecipeStart start;
+    start.face_labels = shape->mesh->extras.face_labels;
+    if (shape->set) {  // what a selection may name
+        start.annotations.annotations = shape->set->annotations;
+        start.annotations.up = shape->set->up;
+        int id = 0;
+        for (const Annotation& one : shape->set->annotations) id = std::max(id, one.id + 1);
+        recipe["annotations"][0]["id"].SetInt(id);
+    }
+    const int own = recipe["annotations"][0]["id"].GetInt();
+    const AnnotationSet set = follow_recipe(recipe, shape->mesh->mesh, std::move(start), "the selection");
+    const Annotation* found = set.find(own);
+    auto& a = result.GetAllocator();
+    const std::string type = to_string(found->type);
+    add_members(result, a, "type", type);
+    if (found->type == AnnotationType::region) {
+        std::vector<std::uint32_t> faces(found->faces.begin(), found->faces.end());
+        add_members(result, a, "count", faces.size(), "faces", keep(bytes, bytes_of(faces), a));
+    } else if (found->type == AnnotationType::line) {
+        add_members(result, a, "count", found->polylines.size(), "lines", found->polylines);
+    } else {
+        add_members(result, a, "count", found->points.size(), "points", found->points);
+    }
+}
+
+// ---- working ----
+
+void Workbench::run(const JsonValue& request, Json& result, std::string& /*bytes*/) {
+    const Stopwatch watch;
+    const Report report = session_.run(request, *context_);
+    auto& a = result.GetAllocator();
+    add_members(result, a, "holds", report.holds(), "text", report.to_text(ReportFormat::table), "notes", report.noted(), "result",
+                JsonValue(report.result(), a), "seconds", watch.seconds());
+}
+
+void Workbench::file(const JsonValue& request, Json& result, std::string& bytes) {
+    const JsonValue* name = find_member(request, "file");
+    const Path path = session_.path_of(name != nullptr && name->IsString() ? text_of(*name) : std::string());
+    if (is_folder(path)) fail_request(path.filename().string() + " is a folder", "look into " + path.string());
+    bytes = read_file(path);
+    add_members(result, result.GetAllocator(), "name", path.filename().string());
+}
+
+// ---- deforming ----
+
+Workbench::Deformation& Workbench::deformation() {
+    const SessionObject* object = session_.state().object();
+    if (object == nullptr) fail_request("no object is open", "open a mesh or a template");
+    if (object->part("cage").empty()) fail_request(object->name + " has no cage", "make one first");
+    if (object->part("coordinates").empty()) fail_request(object->name + " is not linked with its cage", "link them first");
+    if (deformation_ && deformation_->place == session_.place() && deformation_->of == object->name) return *deformation_;
+    auto fresh = std::make_unique<Deformation>();
+    fresh->place = session_.place();
+    fresh->of = object->name;
+    fresh->rest = shape_of(*object, false);
+    // They are the same from drag to drag.
+    const std::string file = object->part("coordinates");
+    static const AnnotationSet none;
+    if (deformation_ && deformation_->of == object->name && !deformation_->coordinates.kind.empty() &&
+        deformation_->rest->mesh == fresh->rest->mesh && deformation_->rest->cage == fresh->rest->cage)
+        fresh->coordinates = std::move(deformation_->coordinates);
+    else fresh->coordinates = read_coordinates(session_.path_of(file), fresh->rest->mesh->mesh, fresh->rest->cage->mesh);
+    fresh->set = fresh->rest->set ? &*fresh->rest->set : &none;
+    fresh->edit = json_document("edit");
+    if (const std::string edit = object->part("edit"); !edit.empty()) fresh->edit = read_json(session_.path_of(edit));
+    else add_members(fresh->edit, fresh->edit.GetAllocator(), "steps", JsonValue(rapidjson::kArrayType));
+    const std::string shown = object->part("deformed");
+    const CGAL::Bbox_3 box = bounding_box(shown.empty() ? fresh->rest->mesh->mesh : mesh_of(shown)->mesh);
+    fresh->low = {box.xmin(), box.ymin(), box.zmin()};
+    deformation_ = std::move(fresh);
+    return *deformation_;
+}
+
+/// The vertices of the cage that an annotation means: {"annotation": ID, "threshold": NUMBER or "auto-mesh", "auto-cage"}.
+void Workbench::handles(const JsonValue& request, Json& result, std::string& /*bytes*/) {
+    Deformation& drag = deformation();
+    const JsonValue *id = find_member(request, "annotation"), *threshold = find_member(request, "threshold");
+    const Annotation* one = id != nullptr && id->IsInt() ? drag.set->find(id->GetInt()) : nullptr;
+    if (one == nullptr) fail_request("there is no such annotation", "choose one of the list");
+    const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, *one);
+    const double least = threshold != nullptr && threshold->IsNumber() ? threshold->GetDouble()
+                         : influence_threshold(drag.coordinates.vertex,
+                                               threshold != nullptr && threshold->IsString() ? text_of(*threshold) : "auto-mesh", rows);
+    add_members(result, result.GetAllocator(), "handles", influential(drag.coordinates, rows, least), "threshold", least);
+}
+
+/// Of each vertex how much the handles move it, from 0 to 1: {"handles": [INDEX, ...]}.
+void Workbench::influence(const JsonValue& request, Json& result, std::string& bytes) {
+    Deformation& drag = deformation();
+    const WeightMatrix& weights = drag.coordinates.vertex;
+    std::vector<float> sums(static_cast<std::size_t>(weights.rows()), 0);
+    for (const JsonValue& one : list_in(request, "handles")) {
+        if (!one.IsUint() || one.GetUint() >= weights.cols()) fail_request("a handle is no vertex of the cage", "load the page again");
+        for (Eigen::Index i = 0; i < weights.rows(); ++i)
+            sums[static_cast<std::size_t>(i)] += static_cast<float>(weights(i, one.GetUint()));
+    }
+    auto& a = result.GetAllocator();
+    add_members(result, a, "values", keep(bytes, bytes_of(sums), a));
+}
+
+/// Begins a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. While all handles follow one affine map x -> A x + t, a vertex
+/// v goes to v + (A - I) m + w t, with m and w of its four numbers.
+void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes) {
+    Deformation& drag = deformation();
+    const Index count = static_cast<Index>(drag.rest->cage->mesh.number_of_vertices());
+    drag.handles.clear();
+    for (const JsonValue& one : list_in(request, "handles")) {
+        if (!one.IsUint() || one.GetUint() >= count) fail_request("a handle is no vertex of the cage", "load the page again");
+        drag.handles.push_back(one.GetUint());
+    }
+    std::sort(drag.handles.begin(), drag.handles.end());
+    drag.handles.erase(std::unique(drag.handles.begin(), drag.handles.end()), drag.handles.end());
+    if (drag.handles.empty()) fail_request("no control point is chosen", "choose some");
+    RelationGraph graph;
+    if (flag_in(request, "constraints") && drag.rest->graph)
+        for (const Relationship& one : drag.rest->graph->relationships)
+            if (one.is_constraint) graph.relationships.push_back(one);
+    const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    drag.live = std::make_unique<LiveDeformation>(space, graph, drag.edit, drag.handles);
+    const auto& cage = drag.live->cage();
+    auto& a = result.GetAllocator();
+    const WeightMatrix& weights = drag.coordinates.vertex;
+    std::vector<float> moved(4 * static_cast<std::size_t>(weights.rows()), 0);
+    for (Eigen::Index i = 0; i < weights.rows(); ++i) {
+        std::array<double, 4> sum{};
+        for (const Index h : drag.handles) {
+            const double w = weights(i, h);
+            sum[0] += w * (cage[h].x() - drag.low[0]);
+            sum[1] += w * (cage[h].y() - drag.low[1]);
+            sum[2] += w * (cage[h].z() - drag.low[2]);
+            sum[3] += w;
+        }
+        for (std::size_t k = 0; k < 4; ++k) moved[4 * static_cast<std::size_t>(i) + k] = static_cast<float>(sum[k]);
+    }
+    add_members(result, a, "constrained", drag.live->has_constraints(), "handles", drag.handles, "edit", JsonValue(drag.edit, a),
+                "weights", keep(bytes, bytes_of(moved), a));
+}
+
+/// The surface while the constraints hold, handles at {"places": [[x, y, z], ...]}, in their order: positions relative to the box.
+void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes) {
+    if (!deformation_ || !deformation_->live || deformation_->place != session_.place())
+        fail_request("nothing has been grabbed", "choose control points and drag them");
+    Deformation& drag = *deformation_;
+    const Stopwatch watch;
+    std::vector<Point> places;
+    for (const JsonValue& one : list_in(request, "places")) {
+        if (!one.IsArray() || one.Size() != 3 || !one[0].IsNumber() || !one[1].IsNumber() || !one[2].IsNumber())
+            fail_request("a place is no list of three numbers", "load the page again");
+        places.emplace_back(one[0].GetDouble(), one[1].GetDouble(), one[2].GetDouble());
+    }
+    const std::vector<Point>& cage = drag.live->follow(places);
+    const std::vector<Point> shape = deformed(drag.coordinates, drag.rest->cage->mesh, cage);
+    const auto packed = [&](const std::vector<Point>& points) {
+        std::vector<float> made;
+        made.reserve(3 * points.size());
+        for (const Point& p : points) {
+            made.push_back(static_cast<float>(p.x() - drag.low[0]));
+            made.push_back(static_cast<float>(p.y() - drag.low[1]));
+            made.push_back(static_cast<float>(p.z() - drag.low[2]));
+        }
+        return made;
+    };
+    auto& a = result.GetAllocator();
+    add_members(result, a, "positions", keep(bytes, bytes_of(packed(shape)), a), "cage", keep(bytes, bytes_of(packed(cage)), a),
+                "seconds", watch.seconds());
+}
+
+}  // namespace ostraka

@@ -1,0 +1,121 @@
+// Contents: shown, opened from an index, named by the address.
+import * as THREE from "three";
+import { readEntry, type Blobs, type Content, type PageObject, type Shown } from "./data";
+import { DrawnObject, flatMaterial, readShape, type Shape } from "./geometry";
+import { setScene, view } from "./picture";
+import * as state from "./state";
+import { View } from "./view";
+
+/** What the address says after '#': entry of a collection, object, annotation, map, camera. */
+export async function readAddress() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  const whole = (key: string, count: number, otherwise: number) => {
+    const value = Number(given.get(key) ?? NaN);
+    return Number.isInteger(value) && value >= 0 && value < count ? value : otherwise;
+  };
+  if (state.index) {
+    const entry = whole("entry", state.index.data.collection!.length, -1);
+    if (entry !== state.entry.value) await (entry < 0 ? closeEntry() : openEntry(entry));
+  }
+  state.object.value = whole("object", state.page.objects.length, 0);
+  const about = state.page.objects[state.object.value];
+  state.chosen.value = whole("annotation", about?.annotations.length ?? 0, -1);
+  state.map.value = whole("map", about?.maps.length ?? 0, -1);
+  const camera = given.get("camera");
+  if (camera && view) view.where = camera;
+}
+
+export function address(): string {
+  const parts = new URLSearchParams();
+  if (state.entry.value >= 0) parts.set("entry", String(state.entry.value));
+  parts.set("object", String(state.object.value));
+  if (state.chosen.value >= 0) parts.set("annotation", String(state.chosen.value));
+  if (state.map.value >= 0) parts.set("map", String(state.map.value));
+  if (view) parts.set("camera", view.where);
+  return "#" + parts.toString();
+}
+
+/** Shapes that were sent once, by their keys. */
+const known = new Map<string, Shape>();
+export const knownShapes = () => [...known.keys()];
+
+/** Packed in the page, or exact from a server. */
+async function shapeOf(of: Shown, blobs: Blobs): Promise<Shape> {
+  if (of.geometry !== undefined) return readShape(blobs.get(of.geometry));
+  const { key, positions, triangles } = of.shape!;
+  if (positions !== undefined && triangles !== undefined) {
+    const [p, t] = [blobs.get(positions), blobs.get(triangles)];
+    known.set(key, {
+      positions: new Float32Array(p.buffer, p.byteOffset, p.byteLength / 4),
+      triangles: new Uint32Array(t.buffer, t.byteOffset, t.byteLength / 4),
+    });
+  }
+  return known.get(key)!;
+}
+/** Forgets the shapes that nothing shows any more. */
+function forget(objects: PageObject[]) {
+  const used = new Set(objects.flatMap((one) => [one.shape?.key, one.cage?.shape?.key]));
+  for (const key of known.keys()) if (!used.has(key)) known.delete(key);
+}
+
+async function cageOf(one: DrawnObject, content: Content): Promise<THREE.Object3D | undefined> {
+  const { cage } = one.about;
+  if (!cage) return undefined;
+  const shape = await shapeOf(cage, content.blobs);
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(shape.positions.slice(), 3)); // control points can be dragged
+  geometry.setIndex(new THREE.BufferAttribute(shape.triangles, 1));
+  const lines = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 0), flatMaterial([58, 110, 165]));
+  const points = new THREE.Points(geometry, flatMaterial([29, 79, 145], 6));
+  const group = new THREE.Group().add(lines, points);
+  group.position.fromArray(cage.origin);
+  return group;
+}
+
+/** Shows a content: that of the page, or of an object of a collection. */
+export async function showContent(content: Content, keepsCamera = false) {
+  const objects = await Promise.all(
+    content.data.objects.map(async (about, i) => new DrawnObject(i, about, await shapeOf(about, content.blobs), content.blobs)),
+  );
+  for (const one of objects) {
+    one.cage = await cageOf(one, content);
+    if (one.cage) one.group.add(one.cage);
+  }
+  let made = view;
+  try {
+    if (!made && objects.length > 0) made = new View(matchMedia("(prefers-reduced-motion: reduce)").matches);
+  } catch {
+    made = undefined; // no WebGL: the tables are there all the same
+  }
+  made?.setObjects(objects, keepsCamera);
+  setScene(made, objects);
+  forget(content.data.objects);
+  state.setContent(content);
+  document.title = content.data.title;
+}
+
+export async function openEntry(entry: number) {
+  const one = state.index!.data.collection![entry];
+  state.message.value = state.word("loading", one.name);
+  try {
+    const content = await readEntry(one.file);
+    place = window.scrollY;
+    state.entry.value = entry;
+    state.message.value = "";
+    await showContent(content);
+    history.replaceState(null, "", address());
+    window.scrollTo(0, 0);
+  } catch {
+    state.message.value = state.word("missing", decodeURIComponent(one.file));
+  }
+}
+
+/** Where in the index the reader was. */
+let place = 0;
+
+export async function closeEntry() {
+  state.entry.value = -1;
+  await showContent(state.index!);
+  history.replaceState(null, "", location.pathname + location.search);
+  requestAnimationFrame(() => window.scrollTo(0, place));
+}

@@ -1,0 +1,167 @@
+// One registry of what can be done by a word: for the palette, keys, the voice, and the menu at the wrist.
+import { signal } from "@preact/signals";
+import { view } from "../picture";
+import * as page from "../state";
+import * as deform from "./deform";
+import { change, has, part, redo, run, undo } from "./model";
+import * as selection from "./selection";
+import { choose, finish, tool, type Tool } from "./tools";
+import { text, type Key } from "./words";
+
+export interface Command {
+  id: string;
+  /** What it is called in the page's language; the same words are understood when they are said. */
+  words: Key;
+  key?: string;
+  /** A number may follow the words: "level 2". */
+  takesNumber?: boolean;
+  action: (number?: number) => void;
+}
+
+/** The annotation that is looked at, or chosen. */
+export const gazed = signal(-1);
+const annotation = () => page.page?.objects[page.object.value]?.annotations[gazed.value >= 0 ? gazed.value : page.chosen.value];
+/** The control point that is looked at. */
+export const gazedPoint = signal(-1);
+
+/** How deep an annotation lies within others. */
+export function depthOf(i: number): number {
+  const { annotations } = page.page.objects[page.object.value];
+  let depth = 0;
+  for (let k = annotations[i].parent; k >= 0; k = annotations[k].parent) ++depth;
+  return depth;
+}
+
+/** Only the annotations of a level of containment are shown; 0 is the whole. */
+export function showLevel(level: number) {
+  const { annotations } = page.page.objects[page.object.value];
+  const all = annotations.map((_, i) => i);
+  page.show(page.object.value, all, true);
+  page.show(page.object.value, all.filter((i) => depthOf(i) !== level), false);
+  levelShown.value = level;
+}
+export const levelShown = signal(-1);
+
+function selectGazed(discards: boolean) {
+  if (gazedPoint.value >= 0) {
+    const next = new Set(deform.handles.value);
+    if (discards) next.delete(gazedPoint.value);
+    else next.add(gazedPoint.value);
+    deform.set(next);
+    return;
+  }
+  const one = annotation();
+  if (one) void deform.ofAnnotation(one.id, discards);
+}
+
+const useTool = (which: Tool) => () => choose(which);
+
+export const commands: Command[] = [
+  { id: "undo", words: "undo", key: "Ctrl+Z", action: () => void undo() },
+  { id: "redo", words: "redo", key: "Ctrl+Y", action: () => void redo() },
+  { id: "select", words: "sayselect", action: () => selectGazed(false) },
+  { id: "discard", words: "saydiscard", action: () => selectGazed(true) },
+  { id: "hide-cage", words: "hideCage", action: () => (page.cage.value = false) },
+  { id: "show-cage", words: "showCage", action: () => (page.cage.value = true) },
+  { id: "hide-points", words: "hidePoints", action: () => ((deform.showsPoints.value = false), deform.mark()) },
+  { id: "show-points", words: "showPoints", action: () => ((deform.showsPoints.value = true), deform.mark()) },
+  { id: "level", words: "level", takesNumber: true, action: (n) => showLevel(n ?? 0) },
+  { id: "influence", words: "influence", action: () => void deform.showInfluence() },
+  { id: "clear", words: "clearSelection", key: "Escape", action: () => (selection.clear(), deform.set([])) },
+  { id: "accept", words: "accept", action: () => void change("accept", "accept") },
+  { id: "withdraw", words: "withdraw", action: () => void change("withdraw", "withdraw") },
+  { id: "finish", words: "finishPicks", key: "Enter", action: () => void finish() },
+  { id: "whole", words: "whole", key: "0", action: () => view?.home() },
+  ...(["look", "rectangle", "lasso", "closed", "brush", "path", "points", "ruler", "tape", "bounding", "handles", "move", "rotate", "scale", "stretch"] as Tool[]).map(
+    (which): Command => ({ id: `tool-${which}`, words: which as Key, action: useTool(which) }),
+  ),
+  { id: "make-cage", words: "makeCage", action: () => void makeCage() },
+  { id: "link-cage", words: "linkCage", action: () => void linkCage() },
+  { id: "extract", words: "extract", action: () => void extract() },
+];
+
+export const makeCage = (vertices = 100) => run({ operation: "cage make", title: text("makeCage"), with: { mesh: part("mesh"), vertices } });
+export const linkCage = () => run({ operation: "cage weights", title: text("linkCage"), with: { mesh: part("mesh"), cage: part("cage") } });
+export const extract = () =>
+  run({
+    operation: "relation extract",
+    title: text("extract"),
+    with: { mesh: part("mesh"), annotations: part("annotations"), ...(has("graph") ? { graph: part("graph") } : {}) },
+  });
+
+const numbers: Record<string, number> = {
+  zero: 0, one: 1, two: 2, three: 3, four: 4, five: 5, null: 0, eins: 1, zwei: 2, drei: 3, vier: 4, "fünf": 5, uno: 1, due: 2, tre: 3, quattro: 4, cinque: 5,
+};
+
+/** Does what was said or typed; false where no command is called so. */
+export function say(said: string): boolean {
+  const words = said.trim().toLocaleLowerCase().replace(/[.!?]$/, "");
+  for (const one of commands) {
+    const called = text(one.words).toLocaleLowerCase();
+    if (words === called) {
+      one.action();
+      return true;
+    }
+    if (one.takesNumber && words.startsWith(called + " ")) {
+      const rest = words.slice(called.length + 1);
+      const n = rest in numbers ? numbers[rest] : Number(rest);
+      if (!Number.isInteger(n) || n < 0) return false;
+      one.action(n);
+      return true;
+    }
+  }
+  return false;
+}
+
+export const palette = signal(false);
+
+export function attachKeys() {
+  window.addEventListener("keydown", (event) => {
+    const typing = event.target instanceof HTMLElement && event.target.matches("input, textarea, select");
+    const key = event.key.toLowerCase();
+    if ((event.ctrlKey || event.metaKey) && key === "k") {
+      event.preventDefault();
+      palette.value = !palette.value;
+    } else if (typing) {
+      return;
+    } else if ((event.ctrlKey || event.metaKey) && key === "z") {
+      event.preventDefault();
+      void (event.shiftKey ? redo() : undo());
+    } else if ((event.ctrlKey || event.metaKey) && key === "y") {
+      event.preventDefault();
+      void redo();
+    }
+  });
+}
+
+// ---- voice, where the browser has it ----
+
+export const listening = signal(false);
+export const heard = signal("");
+type Recogniser = { lang: string; continuous: boolean; onresult: (event: any) => void; onend: () => void; onerror: (event: any) => void; start(): void; stop(): void };
+let recogniser: Recogniser | undefined;
+export const canListen = () => "webkitSpeechRecognition" in window || "SpeechRecognition" in window;
+
+export function listen(on: boolean) {
+  if (!on) {
+    recogniser?.stop();
+    listening.value = false;
+    return;
+  }
+  const Maker = (window as any).SpeechRecognition ?? (window as any).webkitSpeechRecognition;
+  if (!Maker) return;
+  recogniser = new Maker() as Recogniser;
+  recogniser.lang = { en: "en-US", de: "de-DE", it: "it-IT" }[page.language.value];
+  recogniser.continuous = true;
+  recogniser.onresult = (event) => {
+    const said = event.results[event.results.length - 1][0].transcript as string;
+    heard.value = said;
+    say(said);
+  };
+  recogniser.onerror = (event) => (heard.value = String(event.error));
+  recogniser.onend = () => (listening.value = false);
+  recogniser.start();
+  listening.value = true;
+}
+
+export { tool };

@@ -1,0 +1,349 @@
+// Control points of the cage: chosen, dragged, and let go. While they follow one affine map the picture follows by itself; where
+// constraints are to hold meanwhile the command sends the shape.
+import { signal } from "@preact/signals";
+import * as THREE from "three";
+import { flatMaterial, shared, type DrawnObject } from "../geometry";
+import { drawn, view } from "../picture";
+import * as page from "../state";
+import { numbersIn } from "./link";
+import { attempt, has, link, onShown, part, run } from "./model";
+import { text } from "./words";
+
+export type Motion = "move" | "rotate" | "scale" | "stretch";
+export const handles = signal<ReadonlySet<number>>(new Set());
+export const keepsConstraints = signal(false);
+export const showsPoints = signal(true);
+export const latency = signal<number[]>([]);
+
+/** The shape that is dragged: the one that is shown. */
+const subject = (): DrawnObject | undefined => {
+  const one = drawn[page.object.value];
+  return one?.about.cage ? one : undefined;
+};
+
+const points = (of: DrawnObject): THREE.Points => (of.cage as THREE.Group).children[1] as THREE.Points;
+const lines = (of: DrawnObject): THREE.LineSegments => (of.cage as THREE.Group).children[0] as THREE.LineSegments;
+
+/** Where a control point is, relative to the box of the object. */
+export function control(of: DrawnObject, index: number): THREE.Vector3 {
+  const positions = points(of).geometry.getAttribute("position") as THREE.BufferAttribute;
+  return new THREE.Vector3().fromBufferAttribute(positions, index).add((of.cage as THREE.Group).position);
+}
+export const controls = (of: DrawnObject) => (points(of).geometry.getAttribute("position") as THREE.BufferAttribute).count;
+
+// ---- the chosen ones, marked ----
+
+let chosenMark: THREE.Group | undefined;
+
+export function mark() {
+  chosenMark?.removeFromParent();
+  chosenMark = undefined;
+  const of = subject();
+  if (of?.cage) points(of).visible = showsPoints.value;
+  if (of && handles.value.size > 0 && showsPoints.value) {
+    const list = [...handles.value].filter((i) => i < controls(of)).map((i) => control(of, i));
+    const seen = list.filter((p) => view!.sees(of, p));
+    const behind = list.filter((p) => !view!.sees(of, p));
+    chosenMark = new THREE.Group();
+    for (const [some, colour] of [[seen, [214, 40, 40]], [behind, [235, 190, 0]]] as [THREE.Vector3[], [number, number, number]][])
+      if (some.length > 0) chosenMark.add(new THREE.Points(new THREE.BufferGeometry().setFromPoints(some), flatMaterial(colour, 12, true)));
+    of.group.add(chosenMark);
+  }
+  view?.draw();
+}
+
+export function set(next: Iterable<number>) {
+  handles.value = new Set(next);
+  mark();
+}
+
+/** Those in a rectangle, or the one nearest to a click. */
+export function pick(from: { x: number; y: number }, to: { x: number; y: number }, discards: boolean, visibleOnly: boolean) {
+  const of = subject();
+  if (!of || !view) return;
+  const found: number[] = [];
+  const click = Math.hypot(to.x - from.x, to.y - from.y) < 4;
+  let nearest = 14;
+  for (let i = 0; i < controls(of); ++i) {
+    const point = control(of, i);
+    const at = view.place(of, point);
+    if (!at) continue;
+    if (click) {
+      const off = Math.hypot(at.x - from.x, at.y - from.y);
+      if (off < nearest && (!visibleOnly || view.sees(of, point))) [nearest, found[0]] = [off, i];
+    } else if (
+      at.x >= Math.min(from.x, to.x) && at.x <= Math.max(from.x, to.x) &&
+      at.y >= Math.min(from.y, to.y) && at.y <= Math.max(from.y, to.y) &&
+      (!visibleOnly || view.sees(of, point))
+    )
+      found.push(i);
+  }
+  const next = new Set(handles.value);
+  for (const i of found) {
+    if (discards) next.delete(i);
+    else next.add(i);
+  }
+  set(next);
+}
+
+/** Those that an annotation means (thesis, section 5.2.3). */
+export const ofAnnotation = (id: number, discards = false) =>
+  attempt(text("handles"), async () => {
+    const { result } = await link.ask("handles", { annotation: id, threshold: "auto-mesh" });
+    const next = new Set(handles.value);
+    for (const i of result.handles as number[]) {
+      if (discards) next.delete(i);
+      else next.add(i);
+    }
+    set(next);
+  });
+
+/** How much the chosen ones move each place, as colour. */
+export const showInfluence = () =>
+  attempt(text("influence"), async () => {
+    const of = subject();
+    if (!of || handles.value.size === 0) return;
+    const answer = await link.ask("influence", { handles: [...handles.value] });
+    of.paintValues(numbersIn(answer, answer.result.values));
+    view?.draw();
+  });
+
+// ---- dragging ----
+
+interface Drag {
+  of: DrawnObject;
+  motion: Motion;
+  list: number[];
+  /** Where they were. */
+  rest: THREE.Vector3[];
+  centre: THREE.Vector3;
+  from: { x: number; y: number };
+  linear: THREE.Matrix3;
+  shift: THREE.Vector3;
+  edit: { steps: object[] };
+  constrained: boolean;
+  /** Messages under way, and what is to be sent next. */
+  asked: number;
+  next: THREE.Vector3[] | undefined;
+  ready: boolean;
+  step: object | undefined;
+}
+let now: Drag | undefined;
+/** A drag that begins: it ends as soon as the command has answered. */
+let ended: { x: number; y: number } | undefined;
+
+export async function grab(motion: Motion, from: { x: number; y: number }): Promise<boolean> {
+  const of = subject();
+  ended = undefined;
+  if (!of || handles.value.size === 0) return false;
+  if (!has("coordinates")) {
+    await attempt(text("deform"), () => link.ask("grab", { handles: [...handles.value] }));
+    return false;
+  }
+  return begin(of, motion, from);
+}
+
+async function begin(of: DrawnObject, motion: Motion, from: { x: number; y: number }): Promise<boolean> {
+  return attempt(text("deform"), async () => {
+    const answer = await link.ask("grab", { handles: [...handles.value], constraints: keepsConstraints.value });
+    const list = answer.result.handles as number[];
+    const rest = list.map((i) => control(of, i));
+    const centre = rest.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(rest.length);
+    of.follows(numbersIn(answer, answer.result.weights));
+    now = {
+      of, motion, list, rest, centre, from, linear: new THREE.Matrix3(), shift: new THREE.Vector3(),
+      edit: answer.result.edit, constrained: answer.result.constrained, asked: 0, next: undefined, ready: true, step: undefined,
+    };
+    if (ended) await release(ended);
+  });
+}
+
+/** In the object's own coordinates: a pixel's length, and the picture's directions. */
+function frameOf(of: DrawnObject) {
+  const inverse = of.group.matrixWorld.clone().invert();
+  const width = view!.canvas.clientWidth / Math.max(1, page.panes.value.length);
+  const unit = (view!.camera.right - view!.camera.left) / view!.camera.zoom / width / of.group.scale.x;
+  const own = (x: number, y: number, z: number) => new THREE.Vector3(x, y, z).transformDirection(view!.camera.matrixWorld).transformDirection(inverse);
+  return { unit, right: own(1, 0, 0), up: own(0, 1, 0), toward: own(0, 0, 1) };
+}
+
+const plain = (v: THREE.Vector3) => v.toArray().map((x) => Number(x.toPrecision(9)));
+
+/** What the way of the pointer means: the step of an edit, and the map x -> A x + t relative to the box. */
+function motionTo(drag: Drag, to: { x: number; y: number }): object {
+  const { unit, right, up, toward } = frameOf(drag.of);
+  const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
+  const along = right.clone().multiplyScalar(dx).addScaledVector(up, -dy);
+  const centre = plain(drag.centre.clone().add(new THREE.Vector3(...drag.of.about.origin)));
+  if (drag.motion === "move") return { translate: plain(along.multiplyScalar(unit)) };
+  const length = Math.hypot(dx, dy);
+  if (drag.motion === "rotate") {
+    // About the axis across the way of the pointer and the view (thesis, appendix A.1).
+    const axis = length > 0 ? toward.clone().cross(along).normalize() : up;
+    return { rotate: { axis: plain(axis), angle: Number((0.5 * length).toFixed(3)), centre } };
+  }
+  const factor = Number(Math.exp(-dy / 150).toPrecision(6));
+  if (drag.motion === "scale") return { scale: { factor, centre } };
+  const direction = length > 0 ? along.normalize() : up;
+  return { stretch: { direction: plain(direction), factor: Number((1 + length / 150).toPrecision(6)), from: "middle" } };
+}
+
+/** The same map as numbers. */
+export function affine(step: any, centre: THREE.Vector3): { linear: THREE.Matrix3; shift: THREE.Vector3 } {
+  const linear = new THREE.Matrix3();
+  if (step.translate) return { linear, shift: new THREE.Vector3(...(step.translate as [number, number, number])) };
+  if (step.rotate) {
+    const turn = new THREE.Matrix4().makeRotationAxis(new THREE.Vector3(...(step.rotate.axis as [number, number, number])).normalize(), (step.rotate.angle * Math.PI) / 180);
+    linear.setFromMatrix4(turn);
+  } else if (step.scale) {
+    linear.multiplyScalar(step.scale.factor);
+  } else {
+    const d = new THREE.Vector3(...(step.stretch.direction as [number, number, number])).normalize();
+    const more = step.stretch.factor - 1;
+    linear.set(1 + more * d.x * d.x, more * d.x * d.y, more * d.x * d.z, more * d.y * d.x, 1 + more * d.y * d.y, more * d.y * d.z, more * d.z * d.x, more * d.z * d.y, 1 + more * d.z * d.z);
+  }
+  return { linear, shift: centre.clone().sub(centre.clone().applyMatrix3(linear)) };
+}
+
+export function drag(to: { x: number; y: number }) {
+  if (!now) return;
+  now.step = motionTo(now, to);
+  apply(now, now.step);
+}
+
+function apply(one: Drag, step: any) {
+  const { linear, shift } = affine(step, one.centre);
+  one.linear = linear;
+  one.shift = shift;
+  const moved = one.rest.map((p) => p.clone().applyMatrix3(linear).add(shift));
+  if (one.constrained) {
+    one.next = moved;
+    pump(one);
+    return;
+  }
+  const bend = linear.clone();
+  for (const i of [0, 4, 8]) bend.elements[i] -= 1;
+  shared.bend.value.copy(bend);
+  shared.shift.value.copy(shift);
+  moveControls(one.of, one.list, moved);
+  view?.draw();
+}
+
+function moveControls(of: DrawnObject, list: number[], places: THREE.Vector3[]) {
+  const attribute = points(of).geometry.getAttribute("position") as THREE.BufferAttribute;
+  const offset = (of.cage as THREE.Group).position;
+  list.forEach((i, k) => attribute.setXYZ(i, places[k].x - offset.x, places[k].y - offset.y, places[k].z - offset.z));
+  attribute.needsUpdate = true;
+  const shape = points(of).geometry;
+  lines(of).geometry.dispose();
+  lines(of).geometry = new THREE.EdgesGeometry(shape, 0);
+  mark();
+}
+
+/** At most two frames are under way; the latest places win. */
+function pump(one: Drag) {
+  if (!one.next || one.asked >= 2) return;
+  const places = one.next;
+  one.next = undefined;
+  ++one.asked;
+  const began = performance.now();
+  const origin = new THREE.Vector3(...one.of.about.origin);
+  link
+    .ask("drag", { places: places.map((p) => p.clone().add(origin).toArray()) })
+    .then((answer) => {
+      --one.asked;
+      if (now !== one) return;
+      one.of.moveVertices(numbersIn(answer, answer.result.positions));
+      const cage = numbersIn(answer, answer.result.cage);
+      moveControls(one.of, Array.from({ length: cage.length / 3 }, (_, i) => i), Array.from({ length: cage.length / 3 }, (_, i) => new THREE.Vector3().fromArray(cage, 3 * i)));
+      view?.draw();
+      requestAnimationFrame(() => (latency.value = [...latency.value.slice(-199), performance.now() - began]));
+      pump(one);
+    })
+    .catch(() => {
+      --one.asked;
+    });
+}
+
+/** The command computes what the drag comes to, exactly; the session has it. */
+export async function release(to: { x: number; y: number }): Promise<boolean> {
+  const one = now;
+  if (!one) {
+    ended = to;
+    return false;
+  }
+  if (to.x === one.from.x && to.y === one.from.y) {
+    letGo();
+    return false;
+  }
+  return finishWith(one, motionTo(one, to));
+}
+
+async function finishWith(one: Drag, step: object): Promise<boolean> {
+  now = undefined;
+  ended = undefined;
+  const constrained = keepsConstraints.value && has("graph");
+  const given: Record<string, unknown> = {
+    mesh: part("mesh"),
+    cage: part("cage"),
+    weights: part("coordinates"),
+    edit: { document: { ...one.edit, steps: [...one.edit.steps, { select: { cageVertices: one.list }, ...step }] } },
+    conflicts: constrained ? 8 : 0,
+  };
+  const keep = ["cage-out"];
+  if (has("annotations")) {
+    given.annotations = part("annotations");
+    keep.push("annotations-out");
+  }
+  if (constrained) Object.assign(given, { graph: part("graph"), space: "cage" });
+  const done = await run({ operation: "deform", title: text("deformedBy", text(one.motion), one.list.length), with: given, keep, as: "deformed" });
+  still(one.of);
+  return done;
+}
+
+/** The same without a pointer: for keys, hands and voice. */
+export async function perform(motion: Motion, step: object): Promise<boolean> {
+  const of = subject();
+  if (!of || handles.value.size === 0) return false;
+  if (!(await begin(of, motion, { x: 0, y: 0 })) || !now) return false;
+  return finishWith(now, step);
+}
+
+/** For hands: the map is given, frame by frame, until it is let go as a step. */
+export async function hold(motion: Motion): Promise<boolean> {
+  const of = subject();
+  return of !== undefined && handles.value.size > 0 && begin(of, motion, { x: 0, y: 0 });
+}
+export function follow(step: object) {
+  if (!now) return;
+  now.step = step;
+  apply(now, step);
+}
+export const held = () => now;
+export const letGoWith = (step: object) => (now ? finishWith(now, step) : Promise.resolve(false));
+
+function still(of: DrawnObject) {
+  shared.bend.value.set(0, 0, 0, 0, 0, 0, 0, 0, 0);
+  shared.shift.value.set(0, 0, 0);
+  of.follows(undefined);
+  view?.draw();
+}
+
+export function letGo() {
+  const one = now;
+  now = undefined;
+  ended = undefined;
+  if (!one) return;
+  moveControls(one.of, one.list, one.rest);
+  still(one.of);
+}
+
+onShown.push(() => {
+  now = undefined;
+  shared.bend.value.set(0, 0, 0, 0, 0, 0, 0, 0, 0);
+  shared.shift.value.set(0, 0, 0);
+  const of = subject();
+  if (!of) handles.value = new Set();
+  else handles.value = new Set([...handles.value].filter((i) => i < controls(of)));
+  mark();
+});

@@ -1,0 +1,88 @@
+// Messages to the command and back: requests are answered by their number, events come by themselves.
+export interface Problem {
+  problem: string;
+  where: string;
+  remedy: string;
+}
+
+export class RequestError extends Error {
+  constructor(readonly about: Problem) {
+    super(about.problem);
+  }
+}
+
+export interface Answer {
+  result: any;
+  /** What `result` refers to by [first byte, number of bytes]. */
+  bytes: Uint8Array;
+}
+
+interface Waiting {
+  done: (answer: Answer) => void;
+  failed: (error: Error) => void;
+}
+
+const nothing = new Uint8Array(0);
+
+export class Link {
+  private socket: WebSocket | undefined;
+  private number = 0;
+  private readonly waiting = new Map<number, Waiting>();
+  onEvent: (event: any) => void = () => {};
+  onState: (open: boolean) => void = () => {};
+
+  /** Opens the way, and opens it again where it breaks off. */
+  connect() {
+    const address = new URL("messages", location.href);
+    address.protocol = "ws:";
+    address.search = "";
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.onopen = () => this.onState(true);
+    socket.onmessage = (message) => this.take(message.data);
+    socket.onclose = () => {
+      for (const one of this.waiting.values()) one.failed(new RequestError({ problem: "the connection is lost", where: "", remedy: "" }));
+      this.waiting.clear();
+      this.onState(false);
+      setTimeout(() => this.connect(), 1000);
+    };
+  }
+
+  private take(data: string | ArrayBuffer) {
+    let bytes = nothing;
+    let text: string;
+    if (typeof data === "string") text = data;
+    else {
+      const size = new DataView(data).getUint32(0, true);
+      text = new TextDecoder().decode(new Uint8Array(data, 4, size));
+      bytes = new Uint8Array(data, 4 + size);
+    }
+    const message = JSON.parse(text);
+    if (message.event) return this.onEvent(message);
+    const one = this.waiting.get(message.id);
+    this.waiting.delete(message.id);
+    if (message.ok) one?.done({ result: message.result, bytes });
+    else one?.failed(new RequestError(message.error));
+  }
+
+  ask(what: string, more: object = {}): Promise<Answer> {
+    return new Promise((done, failed) => {
+      if (this.socket?.readyState !== WebSocket.OPEN)
+        return failed(new RequestError({ problem: "there is no connection", where: "", remedy: "" }));
+      const id = ++this.number;
+      this.waiting.set(id, { done, failed });
+      this.socket.send(JSON.stringify({ ...more, do: what, id }));
+    });
+  }
+
+  /** What is under way ends. */
+  cancel() {
+    this.socket?.send('{"do":"cancel"}');
+  }
+}
+
+export const numbersIn = (answer: Answer, place: [number, number]) =>
+  new Float32Array(answer.bytes.buffer, answer.bytes.byteOffset + place[0], place[1] / 4);
+export const indicesIn = (answer: Answer, place: [number, number]) =>
+  new Uint32Array(answer.bytes.buffer, answer.bytes.byteOffset + place[0], place[1] / 4);

@@ -1,0 +1,55 @@
+import { effect } from "@preact/signals";
+import { render } from "preact";
+import { shared } from "../geometry";
+import { followLook } from "../look";
+import { drawn, view } from "../picture";
+import * as page from "../state";
+import "../style.css";
+import { App } from "./app";
+import * as commands from "./commands";
+import * as deform from "./deform";
+import * as model from "./model";
+import * as selection from "./selection";
+import * as tools from "./tools";
+import { text } from "./words";
+import "./workbench.css";
+import * as xr from "./xr";
+
+// What the address held is a secret; the browser remembers it for a reload.
+history.replaceState(null, "", location.pathname);
+page.setContent({ data: { version: 1, title: "Ostraka", notes: [], provenance: "", objects: [], tables: [], drawings: [], blobs: [] }, blobs: undefined as never });
+
+model.link.onState = (open) => {
+  model.connected.value = open;
+  if (open)
+    void model.attempt(text("loading"), async () => {
+      const { result } = await model.link.ask("hello");
+      model.operations.value = result.operations;
+      await model.refresh();
+    });
+};
+model.link.onEvent = (event) => {
+  if (event.event === "progress") model.progress.value = { phase: event.phase, share: event.share };
+  // Another page of the same session did something.
+  if (event.event === "changed") void model.attempt(text("loading"), model.refresh);
+};
+model.link.connect();
+commands.attachKeys();
+render(<App />, document.getElementById("app")!);
+
+let follows = false;
+model.onShown.push(() => {
+  if (!follows && view) {
+    follows = true;
+    followLook();
+  }
+  performance.mark("scene shown");
+});
+effect(() => {
+  document.documentElement.lang = page.language.value;
+});
+
+// For tests of this page, which ask where things are.
+Object.defineProperty(window, "ostraka", {
+  value: { page, model, selection, tools, deform, commands, xr, shared, get view() { return view; }, get objects() { return drawn; } },
+});

@@ -1,0 +1,175 @@
+// What the workbench knows: the session as the command tells it, and what is going on.
+import { computed, signal } from "@preact/signals";
+import { knownShapes, showContent } from "../content";
+import { Blobs, type PageData } from "../data";
+import * as page from "../state";
+import { Link, RequestError } from "./link";
+import { text, type Key } from "./words";
+
+export interface OperationInput {
+  name: string;
+  kind: string;
+  required: boolean;
+  repeated: boolean;
+  help: string;
+}
+export interface OperationOption {
+  name: string;
+  type: string;
+  help: string;
+  required: boolean;
+  default?: unknown;
+  unit?: string;
+  choices?: string[];
+  words?: string[];
+  minimum?: number;
+  maximum?: number;
+}
+export interface Declaration {
+  name: string;
+  help: string;
+  inputs: OperationInput[];
+  outputs: OperationInput[];
+  options: OperationOption[];
+}
+export interface SessionObject {
+  name: string;
+  parts: Record<string, string>;
+}
+export interface SessionFile {
+  name: string;
+  kind: string;
+  file: string;
+}
+export interface Step {
+  name: string;
+  title: string;
+  operation: string;
+  holds: boolean;
+}
+
+export const link = new Link();
+export const operations = signal<Declaration[]>([]);
+export const openable = signal<string[]>([]);
+export const objects = signal<SessionObject[]>([]);
+export const files = signal<SessionFile[]>([]);
+export const active = signal(0);
+export const history = signal<Step[]>([]);
+export const place = signal(0);
+/** For each object of the page: which of the session's objects it is, and whether under deformation. */
+export const shown = signal<{ object: number; deformed: boolean }[]>([]);
+export const connected = signal(false);
+export const busy = signal("");
+export const progress = signal<{ phase: string; share: number } | undefined>(undefined);
+export const problem = signal<{ problem: string; remedy: string } | undefined>(undefined);
+export const outcome = signal<{ title: string; text: string; holds: boolean; notes: string[] } | undefined>(undefined);
+
+export const object = computed<SessionObject | undefined>(() => objects.value[active.value]);
+export const has = (part: string) => object.value?.parts[part] !== undefined;
+
+/** Called when another content is on the page. */
+export const onShown: (() => void)[] = [];
+
+function takeSession(result: any) {
+  objects.value = result.state.objects;
+  files.value = result.state.files;
+  active.value = result.state.active;
+  history.value = result.history;
+  place.value = result.place;
+  if (result.openable) openable.value = result.openable;
+}
+
+const idOf = (o: number, annotation: number) => page.page?.objects[o]?.annotations[annotation]?.id;
+
+/** Asks for what the session shows now. Camera, choice, and what is hidden stay, as far as there is still such a thing. */
+export async function refresh() {
+  const answer = await link.ask("scene", { known: knownShapes() });
+  const data = JSON.parse(answer.result.content) as PageData;
+  const before = page.page && {
+    object: shown.value[page.object.value],
+    chosen: idOf(page.object.value, page.chosen.value),
+    hidden: [...page.hidden.value].map((key) => {
+      const [o, i] = key.split("/").map(Number);
+      return `${o}/${idOf(o, i)}`;
+    }),
+    sideBySide: page.sideBySide.value,
+    name: page.page.objects[page.object.value]?.name,
+    size: page.page.objects[page.object.value]?.size.join(),
+  };
+  takeSession(answer.result);
+  shown.value = answer.result.shown;
+  // The deformed state where there is one, else the object itself.
+  const wanted = shown.value.findIndex((one) => one.object === active.value && one.deformed);
+  const first = wanted >= 0 ? wanted : shown.value.findIndex((one) => one.object === active.value);
+  const next = data.objects[first];
+  const same = before?.object?.object === active.value && next !== undefined;
+  await showContent({ data, blobs: new Blobs(answer.bytes, data.blobs) }, same);
+  if (next) {
+    page.object.value = first;
+    if (same && before) {
+      page.chosen.value = next.annotations.findIndex((one) => one.id === before.chosen);
+      const hidden = new Set<string>();
+      data.objects.forEach((one, o) => one.annotations.forEach((a, i) => before.hidden.includes(`${o}/${a.id}`) && hidden.add(`${o}/${i}`)));
+      page.hidden.value = hidden;
+      page.sideBySide.value = before.sideBySide;
+    }
+  }
+  page.ready.value = true;
+  for (const one of onShown) one();
+}
+
+/** Does something, and says what went wrong. True if nothing did. */
+export async function attempt(what: string, work: () => Promise<unknown>): Promise<boolean> {
+  problem.value = undefined;
+  busy.value = what;
+  try {
+    await work();
+    return true;
+  } catch (error) {
+    problem.value = error instanceof RequestError ? { problem: error.about.problem, remedy: error.about.remedy } : { problem: String(error), remedy: "" };
+    return false;
+  } finally {
+    busy.value = "";
+    progress.value = undefined;
+  }
+}
+
+export interface Run {
+  operation: string;
+  title: string;
+  with: Record<string, unknown>;
+  keep?: string[];
+  as?: "deformed";
+}
+
+/** Runs an operation of the table on the session. */
+export function run(request: Run): Promise<boolean> {
+  return attempt(request.title, async () => {
+    const { result } = await link.ask("run", request);
+    outcome.value = { title: request.title, text: result.text, holds: result.holds, notes: result.notes };
+    await refresh();
+  });
+}
+
+/** A change of the session without an operation. */
+export const change = (title: Key, what: string, more: object = {}) =>
+  attempt(text(title), async () => {
+    await link.ask(what, more);
+    outcome.value = undefined;
+    await refresh();
+  });
+
+export const goTo = (step: number) => change("undo", "go", { place: step });
+export const undo = () => (place.value > 0 ? goTo(place.value - 1) : Promise.resolve(false));
+export const redo = () => (place.value < history.value.length ? goTo(place.value + 1) : Promise.resolve(false));
+
+export const part = (which: string) => ({ part: which });
+
+export async function download(file: string) {
+  const answer = await link.ask("file", { file });
+  const anchor = document.createElement("a");
+  anchor.href = URL.createObjectURL(new Blob([answer.bytes as BlobPart]));
+  anchor.download = answer.result.name;
+  anchor.click();
+  URL.revokeObjectURL(anchor.href);
+}

@@ -1,0 +1,433 @@
+// What stands beside the picture: annotating, relationships, the cage and deformation, results, the history.
+import { useState } from "preact/hooks";
+import { Constraints } from "../constraints";
+import { Details } from "../details";
+import { Graph } from "../graph";
+import { Legend } from "../legend";
+import { Slices } from "../slices";
+import * as page from "../state";
+import { Tables } from "../tables";
+import { extract, linkCage, makeCage } from "./commands";
+import * as deform from "./deform";
+import { helpOf, Operations } from "./forms";
+import { change, download, files, goTo, has, history, object, objects, operations, outcome, part, place, run } from "./model";
+import * as selection from "./selection";
+import { text, type Key } from "./words";
+
+const chosenAnnotation = () => page.page.objects[page.object.value]?.annotations[page.chosen.value];
+
+function Button(props: { name: Key; title?: string; disabled?: boolean; onClick: () => void }) {
+  return (
+    <button type="button" title={props.title} disabled={props.disabled} onClick={props.onClick}>
+      {text(props.name)}
+    </button>
+  );
+}
+
+/** "annotation select" of the selection. */
+export function annotate(action: "make" | "replace" | "add to" | "remove from", tag: string, colour: string, id?: number) {
+  const given: Record<string, unknown> = { mesh: part("mesh"), expression: JSON.stringify(selection.expression.value), action };
+  if (has("annotations")) given.annotations = part("annotations");
+  const keep = ["output"];
+  // A recipe that was begun with the first annotation makes all of them again.
+  if (!has("annotations") || has("recipe")) {
+    keep.push("recipe");
+    if (has("recipe")) given.record = part("recipe");
+  }
+  if (action === "make") {
+    given.tag = tag;
+    given.type = selection.typeOf(selection.expression.value!);
+    const rgb = /^#(..)(..)(..)$/.exec(colour);
+    if (rgb) given.colour = rgb.slice(1).map((x) => parseInt(x, 16));
+  }
+  if (id !== undefined) given.id = id;
+  return run({ operation: "annotation select", title: `${text("annotate")}: ${tag}`, with: given, keep });
+}
+
+/** An annotation edit of the chosen one. */
+function edit(title: string, more: Record<string, unknown>) {
+  const one = chosenAnnotation();
+  if (!one) return;
+  void run({ operation: "annotation edit", title: `${title}: ${one.tag}`, with: { mesh: part("mesh"), annotations: part("annotations"), annotation: String(one.id), ...more } });
+}
+
+export function Annotating() {
+  const [tag, setTag] = useState("");
+  const [colour, setColour] = useState("#d62828");
+  const [name, setName] = useState("");
+  const [value, setValue] = useState("");
+  const one = chosenAnnotation();
+  const chosen = selection.selected.value;
+  const words = [...new Set(page.page.objects.flatMap((o) => o.annotations.map((a) => a.tag)))];
+  return (
+    <>
+      <section aria-labelledby="selection-title">
+        <h2 id="selection-title">{text("selection")}</h2>
+        <p class="quiet" role="status">
+          {chosen ? text("selected", chosen.count, text(chosen.type as Key)) : text("nothingSelected")}
+        </p>
+        <div class="buttons">
+          <label>
+            <input type="checkbox" checked={selection.visible.value} onChange={(event) => (selection.visible.value = event.currentTarget.checked)} /> {text("visibleOnly")}
+          </label>
+          <label>
+            <input type="checkbox" checked={selection.erases.value} onChange={(event) => (selection.erases.value = event.currentTarget.checked)} /> {text("erase")}
+          </label>
+          <Button name="invert" disabled={!chosen} onClick={() => void selection.setSelection({ invert: selection.expression.value! })} />
+          <Button name="grow" disabled={!chosen} onClick={() => void selection.setSelection({ grow: { of: selection.expression.value!, rings: 1 } })} />
+          <Button name="shrink" disabled={!chosen} onClick={() => void selection.setSelection({ shrink: { of: selection.expression.value!, rings: 1 } })} />
+          <Button name="selectAll" onClick={() => void selection.setSelection({ all: true })} />
+          <Button name="clearSelection" disabled={!chosen} onClick={selection.clear} />
+        </div>
+        <form
+          class="annotate"
+          onSubmit={async (event) => {
+            event.preventDefault();
+            if (await annotate("make", tag, colour)) {
+              selection.clear();
+              setTag("");
+            }
+          }}
+        >
+          <label>
+            {text("tag")} <input value={tag} required list="known-tags" onInput={(event) => setTag(event.currentTarget.value)} />
+          </label>
+          <datalist id="known-tags">
+            {words.map((word) => (
+              <option key={word} value={word} />
+            ))}
+          </datalist>
+          <label>
+            {text("colour")} <input type="color" value={colour} onInput={(event) => setColour(event.currentTarget.value)} />
+          </label>
+          <button type="submit" disabled={!chosen} title={helpOf("annotation select")}>
+            {text("annotate")}
+          </button>
+        </form>
+        {one && (
+          <div class="buttons">
+            <Button name="replaceSelection" disabled={!chosen} onClick={() => void annotate("replace", one.tag, "", one.id)} />
+            <Button name="addToIt" disabled={!chosen} onClick={() => void annotate("add to", one.tag, "", one.id)} />
+            <Button name="removeFromIt" disabled={!chosen} onClick={() => void annotate("remove from", one.tag, "", one.id)} />
+            <Button name="selectIt" onClick={() => void selection.setSelection({ annotation: one.id })} />
+          </div>
+        )}
+      </section>
+      <Legend />
+      <Details />
+      {one && (
+        <section aria-labelledby="edit-title">
+          <h2 id="edit-title">{text("editAnnotation")}</h2>
+          <form
+            class="annotate"
+            onSubmit={(event) => {
+              event.preventDefault();
+              edit(text("attribute"), { attribute: [`${name}=${value}`] });
+            }}
+          >
+            <label>
+              {text("name")} <input value={name} required onInput={(event) => setName(event.currentTarget.value)} />
+            </label>
+            <label>
+              {text("value")} <input value={value} required onInput={(event) => setValue(event.currentTarget.value)} />
+            </label>
+            <button type="submit">{text("attribute")}</button>
+          </form>
+          <div class="buttons">
+            {[...one.attributes.map((a) => a.name), ...one.measures.map((m) => m.name)].map((which) => (
+              <button key={which} type="button" onClick={() => edit(text("removeAttribute"), { "remove-attribute": [which] })}>
+                {text("removeAttribute")}: {which}
+              </button>
+            ))}
+            <Button name="removeAnnotation" onClick={() => edit(text("removeAnnotation"), { remove: true })} />
+          </div>
+        </section>
+      )}
+      <More title="transfer" operation="annotation transfer" />
+      <More title="edit" operation="annotation edit" />
+      <More title="describe" operation="measure describe" />
+    </>
+  );
+}
+
+function More({ title, operation }: { title: Key; operation: string }) {
+  const [open, setOpen] = useState(false);
+  return (
+    <details onToggle={(event) => setOpen(event.currentTarget.open)}>
+      <summary>
+        {text(title)} <span class="quiet">({operation})</span>
+      </summary>
+      {open && <Operations only={operation} />}
+    </details>
+  );
+}
+
+export function Relations() {
+  const about = page.page.objects[page.object.value];
+  const [type, setType] = useState("adjacency");
+  const [members, setMembers] = useState<string[]>([]);
+  const [constrains, setConstrains] = useState(true);
+  const [weight, setWeight] = useState("1");
+  const [parameters, setParameters] = useState("");
+  const types = operations.value.find((one) => one.name === "relation add")?.options.find((one) => one.name === "type")?.words ?? [];
+  if (!about) return null;
+  return (
+    <>
+      <div class="buttons">
+        <Button name="extract" title={helpOf("relation extract")} disabled={!has("annotations")} onClick={() => void extract()} />
+        <Button
+          name="check"
+          title={helpOf("relation check")}
+          disabled={!has("graph")}
+          onClick={() => void run({ operation: "relation check", title: text("check"), with: { mesh: part("mesh"), annotations: part("annotations"), graph: part("graph") } })}
+        />
+      </div>
+      <Graph />
+      <section aria-labelledby="relation-list">
+        <h2 id="relation-list">{text("relationList")}</h2>
+        {about.relations.length === 0 && <p class="quiet">{text("noRelations")}</p>}
+        <ul class="relations">
+          {about.relations.map((one, i) => (
+            <li key={i} class={one.members.includes(page.chosen.value) ? "chosen" : ""}>
+              <button type="button" class="link" onClick={() => page.choose(one.members[0])}>
+                {one.type}: {one.members.map((m) => about.annotations[m]?.tag).join(", ")}
+              </button>
+              {one.constraint && <strong> {text("constraint")}, {one.weight}</strong>}
+              {one.holds !== undefined && <span class={one.holds ? "verdict holds" : "verdict broken"}> {text(one.holds ? "holds" : "broken")}</span>}{" "}
+              <button
+                type="button"
+                aria-label={`${text("remove")}: ${one.type} ${i}`}
+                onClick={() =>
+                  void run({
+                    operation: "relation remove",
+                    title: `${text("remove")}: ${one.type}`,
+                    with: { mesh: part("mesh"), annotations: part("annotations"), graph: part("graph"), id: [one.id] },
+                  })
+                }
+              >
+                ×
+              </button>
+            </li>
+          ))}
+        </ul>
+      </section>
+      <section aria-labelledby="relation-add">
+        <h2 id="relation-add">{text("addRelation")}</h2>
+        <form
+          class="operation"
+          onSubmit={(event) => {
+            event.preventDefault();
+            const given: Record<string, unknown> = { mesh: part("mesh"), annotations: part("annotations"), type, annotation: members, constraint: constrains };
+            if (has("graph")) given.graph = part("graph");
+            if (constrains) given.weight = Number(weight);
+            if (parameters.trim()) given.parameters = parameters;
+            void run({ operation: "relation add", title: `${text("addRelation")}: ${type}`, with: given, keep: ["output"] });
+          }}
+        >
+          <label class="field">
+            {text("type")}{" "}
+            <select value={type} onChange={(event) => setType(event.currentTarget.value)}>
+              {types.map((one) => (
+                <option key={one} value={one}>
+                  {one}
+                </option>
+              ))}
+            </select>
+          </label>
+          <label class="field">
+            {text("members")}{" "}
+            <select multiple size={6} required onChange={(event) => setMembers([...event.currentTarget.selectedOptions].map((one) => one.value))}>
+              {about.annotations.map((one) => (
+                <option key={one.id} value={String(one.id)} selected={members.includes(String(one.id))}>
+                  {one.tag || `#${one.id}`}
+                </option>
+              ))}
+            </select>
+          </label>
+          <label class="field">
+            <input type="checkbox" checked={constrains} onChange={(event) => setConstrains(event.currentTarget.checked)} /> {text("constraint")}
+          </label>
+          {constrains && (
+            <label class="field">
+              {text("weight")} <input type="number" min="0" step="any" value={weight} onInput={(event) => setWeight(event.currentTarget.value)} />
+            </label>
+          )}
+          <label class="field">
+            {text("parameters")} <input value={parameters} placeholder='{"min": 0.9, "max": 1.1}' onInput={(event) => setParameters(event.currentTarget.value)} />
+          </label>
+          <button type="submit" title={helpOf("relation add")}>
+            {text("addRelation")}
+          </button>
+        </form>
+      </section>
+    </>
+  );
+}
+
+export function Deforming() {
+  const [vertices, setVertices] = useState("100");
+  const about = page.page.objects[page.object.value];
+  const one = chosenAnnotation();
+  const deformed = has("deformed");
+  return (
+    <>
+      <section aria-labelledby="cage-title">
+        <h2 id="cage-title">{text("cage")}</h2>
+        <p class="quiet">
+          {about?.cage ? text("cageOf", about.cage.vertices) : text("noCage")} {has("coordinates") ? text("linked") : about?.cage ? text("notLinked") : ""}
+        </p>
+        <div class="buttons">
+          <label>
+            {text("controlPoints")} <input type="number" min="4" max="100000" value={vertices} onInput={(event) => setVertices(event.currentTarget.value)} />
+          </label>
+          <Button name="makeCage" title={helpOf("cage make")} onClick={() => void makeCage(Number(vertices))} />
+          <Button name="linkCage" title={helpOf("cage weights")} disabled={!has("cage")} onClick={() => void linkCage()} />
+        </div>
+      </section>
+      <section aria-labelledby="handles-title">
+        <h2 id="handles-title">{text("handles")}</h2>
+        <p class="quiet" role="status">
+          {text("handlesChosen", deform.handles.value.size)}
+        </p>
+        <div class="buttons">
+          <Button name="ofAnnotation" disabled={!one || !has("coordinates")} onClick={() => one && void deform.ofAnnotation(one.id)} />
+          <Button name="discardAnnotation" disabled={!one || !has("coordinates")} onClick={() => one && void deform.ofAnnotation(one.id, true)} />
+          <Button name="clearSelection" disabled={deform.handles.value.size === 0} onClick={() => deform.set([])} />
+          <Button name="influence" disabled={deform.handles.value.size === 0} onClick={() => void deform.showInfluence()} />
+          <label>
+            <input
+              type="checkbox"
+              checked={deform.keepsConstraints.value}
+              disabled={!has("graph")}
+              onChange={(event) => (deform.keepsConstraints.value = event.currentTarget.checked)}
+            />{" "}
+            {text("keepConstraints")}
+          </label>
+          <label>
+            <input
+              type="checkbox"
+              checked={deform.showsPoints.value}
+              onChange={(event) => {
+                deform.showsPoints.value = event.currentTarget.checked;
+                deform.mark();
+              }}
+            />{" "}
+            {text("showPoints")}
+          </label>
+        </div>
+        <p class="quiet">{text("dragHelp")}</p>
+        <div class="buttons">
+          <Button name="accept" disabled={!deformed} onClick={() => void change("accept", "accept")} />
+          <Button name="withdraw" disabled={!deformed} onClick={() => void change("withdraw", "withdraw")} />
+        </div>
+        {deformed && <BeforeAfter />}
+      </section>
+      <Constraints />
+      <More title="deform" operation="deform" />
+      <More title="check" operation="cage check" />
+    </>
+  );
+}
+
+function BeforeAfter() {
+  return (
+    <label class="slider">
+      {text("beforeAfter")}{" "}
+      <input type="range" min={0} max={1} step={0.01} value={page.blend.value} onInput={(event) => (page.blend.value = +event.currentTarget.value)} />
+    </label>
+  );
+}
+
+export function Fragments() {
+  return (
+    <>
+      <p class="quiet">{text("fragmentsHelp")}</p>
+      <More title="fit" operation="fit" />
+      <More title="assemble" operation="assemble" />
+      <More title="pair" operation="pair" />
+    </>
+  );
+}
+
+export function Slicing() {
+  return (
+    <>
+      <Slices />
+      <More title="slice" operation="slice" />
+      <More title="axis" operation="axis" />
+      <More title="map" operation="measure map" />
+    </>
+  );
+}
+
+export function Everything() {
+  return <Operations />;
+}
+
+export function History() {
+  return (
+    <ol class="history">
+      <li class={place.value === 0 ? "now" : ""}>
+        <button type="button" class="plain" aria-current={place.value === 0 ? "step" : undefined} onClick={() => void goTo(0)}>
+          {text("beginning")}
+        </button>
+      </li>
+      {history.value.map((one, i) => (
+        <li key={one.name} class={i + 1 === place.value ? "now" : i + 1 > place.value ? "undone" : ""}>
+          <button type="button" class="plain" aria-current={i + 1 === place.value ? "step" : undefined} onClick={() => void goTo(i + 1)}>
+            {one.title}
+            {!one.holds && " ✗"}
+            <span class="quiet"> {one.operation}</span>
+          </button>
+        </li>
+      ))}
+    </ol>
+  );
+}
+
+export function Results() {
+  const last = outcome.value;
+  return (
+    <>
+      {last && (
+        <section aria-labelledby="result-title">
+          <h2 id="result-title">
+            {last.title} {!last.holds && <span class="verdict broken">{text("answerNo")}</span>}
+          </h2>
+          {last.text && <pre tabIndex={0}>{last.text}</pre>}
+          {last.notes.map((note, i) => (
+            <p key={i} class="quiet">
+              {note}
+            </p>
+          ))}
+        </section>
+      )}
+      <section aria-labelledby="files-title">
+        <h2 id="files-title">{text("files")}</h2>
+        <ul class="files">
+          {objects.value.map((one) =>
+            Object.entries(one.parts).map(([which, file]) => (
+              <li key={one.name + which}>
+                <button type="button" class="link" onClick={() => void download(file)}>
+                  {one.name}: {which}
+                </button>
+              </li>
+            )),
+          )}
+          {files.value.map((one) => (
+            <li key={one.file}>
+              {one.kind === "folder" ? (
+                one.name
+              ) : (
+                <button type="button" class="link" onClick={() => void download(one.file)}>
+                  {one.name}
+                </button>
+              )}
+            </li>
+          ))}
+        </ul>
+      </section>
+      {object.value && <Tables blobs={page.blobs} />}
+    </>
+  );
+}

@@ -1,0 +1,118 @@
+// The selection: what was drawn on pictures, as an expression of recipes; the command says what it comes to.
+import { signal } from "@preact/signals";
+import * as THREE from "three";
+import { flatMaterial, type DrawnObject } from "../geometry";
+import { drawn, view } from "../picture";
+import * as page from "../state";
+import { indicesIn } from "./link";
+import { attempt, link, onShown, shown } from "./model";
+import { text } from "./words";
+
+export type Expression = Record<string, unknown>;
+export const expression = signal<Expression | undefined>(undefined);
+export const selected = signal<{ type: string; count: number } | undefined>(undefined);
+export const erases = signal(false);
+export const visible = signal(true);
+
+/** What kind of thing an expression selects. */
+export function typeOf(of: Expression): "region" | "line" | "point" {
+  if (of.path) return "line";
+  if (of.vertices || of.nearest) return "point";
+  if (of.annotation !== undefined)
+    return page.page.objects[page.object.value]?.annotations.find((one) => one.id === of.annotation)?.type ?? "region";
+  const list = (of.union ?? of.difference ?? of.intersection) as Expression[] | undefined;
+  return list ? typeOf(list[list[0].all ? 1 : 0]) : "region";
+}
+
+let mark: THREE.Object3D | undefined;
+let faces: Uint32Array | undefined;
+
+/** The object that is selected on: the one at rest. */
+export function target(): DrawnObject | undefined {
+  const one = drawn[page.object.value];
+  const about = shown.value[page.object.value];
+  return one && about && !about.deformed ? one : undefined;
+}
+
+const red: [number, number, number] = [214, 40, 40];
+
+function show(of: DrawnObject, made: THREE.Object3D | undefined) {
+  if (mark) mark.removeFromParent();
+  mark = made;
+  if (made) of.group.add(made);
+  view?.draw();
+}
+
+function facesMark(of: DrawnObject, list: Uint32Array): THREE.Object3D {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(of.shape.positions, 3));
+  const index = new Uint32Array(3 * list.length);
+  list.forEach((f, i) => index.set(of.shape.triangles.subarray(3 * f, 3 * f + 3), 3 * i));
+  geometry.setIndex(new THREE.BufferAttribute(index, 1));
+  const material = flatMaterial(red);
+  material.polygonOffset = true;
+  material.polygonOffsetFactor = -1;
+  material.polygonOffsetUnits = -2;
+  material.wireframe = list.length < 4000;
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+function linesMark(of: DrawnObject, lines: number[][]): THREE.Object3D {
+  const group = new THREE.Group();
+  for (const one of lines) {
+    const geometry = new THREE.BufferGeometry().setFromPoints(one.map((v) => of.vertex(v)));
+    group.add(new THREE.Line(geometry, flatMaterial(red, 0, true)));
+  }
+  return group;
+}
+
+function pointsMark(of: DrawnObject, points: number[]): THREE.Object3D {
+  return new THREE.Points(new THREE.BufferGeometry().setFromPoints(points.map((v) => of.vertex(v))), flatMaterial(red, 10, true));
+}
+
+/** Adds to the selection what was drawn, or takes it away. */
+export async function add(drawnNow: Expression): Promise<boolean> {
+  const before = expression.value;
+  let next: Expression;
+  if (!before) next = erases.value ? { difference: [{ all: true }, drawnNow] } : drawnNow;
+  else next = erases.value ? { difference: [before, drawnNow] } : { union: [before, drawnNow] };
+  return setSelection(next);
+}
+
+/** The selection is what this says; the command finds it on the object's own mesh. */
+export function setSelection(next: Expression | undefined): Promise<boolean> {
+  const of = target();
+  if (!next || !of) {
+    clear();
+    return Promise.resolve(true);
+  }
+  return attempt(text("select"), async () => {
+    const answer = await link.ask("select", { expression: next, type: typeOf(next) });
+    const { type, count } = answer.result;
+    expression.value = next;
+    selected.value = { type, count };
+    faces = type === "region" ? indicesIn(answer, answer.result.faces) : undefined;
+    show(of, faces ? facesMark(of, faces) : type === "line" ? linesMark(of, answer.result.lines) : pointsMark(of, answer.result.points));
+  });
+}
+
+export const selectedFaces = () => faces;
+
+export function clear() {
+  expression.value = undefined;
+  selected.value = undefined;
+  faces = undefined;
+  if (mark) mark.removeFromParent();
+  mark = undefined;
+  view?.draw();
+}
+
+// Another content: what is selected is drawn on it, if it is still there.
+onShown.push(() => {
+  mark = undefined;
+  const again = expression.value;
+  if (!again) return;
+  clear();
+});

@@ -1,0 +1,254 @@
+// Tools: what the pointer does on the picture, and what is drawn over it meanwhile.
+import { signal } from "@preact/signals";
+import CameraControls from "camera-controls";
+import { useEffect, useRef } from "preact/hooks";
+import * as THREE from "three";
+import type { DrawnObject } from "../geometry";
+import { drawn, view } from "../picture";
+import * as page from "../state";
+import { paneOf, recipeCamera, type RecipeCamera } from "./camera";
+import * as deform from "./deform";
+import { active, has, onShown, part, run } from "./model";
+import * as selection from "./selection";
+import { text, type Key } from "./words";
+
+export type Tool = "look" | "rectangle" | "lasso" | "path" | "closed" | "brush" | "points" | "ruler" | "tape" | "bounding" | "handles" | "move" | "rotate" | "scale" | "stretch";
+export const tool = signal<Tool>("look");
+export const radius = signal(0);
+
+export const groups: [Key, Tool[]][] = [
+  ["look", ["look"]],
+  ["select", ["rectangle", "lasso", "closed", "brush", "path", "points"]],
+  ["measure", ["ruler", "tape", "bounding"]],
+  ["deform", ["handles", "move", "rotate", "scale", "stretch"]],
+];
+
+interface Pick {
+  vertex: number;
+  point: THREE.Vector3;
+  camera: RecipeCamera;
+  pixel: [number, number];
+}
+interface Place {
+  x: number;
+  y: number;
+}
+
+/** Where the pointer went down, and the way since; picks on the surface so far. */
+const trail = signal<Place[]>([]);
+const picks = signal<Pick[]>([]);
+const over = signal<DrawnObject | undefined>(undefined);
+
+const drags: Tool[] = ["rectangle", "lasso", "brush", "move", "rotate", "scale", "stretch", "handles", "bounding"];
+const deforms = (t: Tool) => ["handles", "move", "rotate", "scale", "stretch"].includes(t);
+
+export function choose(next: Tool) {
+  tool.value = next;
+  trail.value = [];
+  picks.value = [];
+  page.clicks.value = next === "look";
+  if (view) view.controls.mouseButtons.left = drags.includes(next) ? CameraControls.ACTION.NONE : CameraControls.ACTION.ROTATE;
+  if (view) view.controls.touches.one = drags.includes(next) ? CameraControls.ACTION.NONE : CameraControls.ACTION.TOUCH_ROTATE;
+  if (view) view.controls.mouseButtons.right = drags.includes(next) ? CameraControls.ACTION.ROTATE : CameraControls.ACTION.TRUCK;
+}
+
+function pickAt(place: Place): Pick | undefined {
+  const hit = view?.pick(place.x, place.y);
+  const of = hit && drawn[hit.object];
+  if (!hit || !of) return undefined;
+  over.value = of;
+  return { vertex: hit.vertex, point: hit.point.clone(), camera: recipeCamera(of), pixel: paneOf(of, place.x, place.y) };
+}
+
+const asPick = (one: Pick) => ({ camera: one.camera, pixel: one.pixel });
+
+/** Picks become a selection, or a measure. */
+export async function finish() {
+  const list = picks.value;
+  const t = tool.value;
+  picks.value = [];
+  if (t === "path" && list.length >= 2) await selection.add({ path: { points: list.map(asPick) } });
+  else if (t === "points" && list.length >= 1) await selection.add({ vertices: list.map(asPick) });
+  else if (t === "closed" && list.length >= 4) await selection.add({ lasso: { points: list.slice(0, -1).map(asPick), seed: asPick(list[list.length - 1]) } });
+  else if ((t === "ruler" || t === "tape") && list.length >= 2) await take(t, list.map((one) => one.vertex));
+}
+
+/** Takes a measure, of the chosen annotation or of the object. */
+export function take(which: "ruler" | "tape" | "bounding", vertices: number[], direction?: string): Promise<boolean> {
+  const chosen = page.page.objects[page.object.value]?.annotations[page.chosen.value];
+  const given: Record<string, unknown> = { mesh: part("mesh"), tool: which, name: measureName.value || which };
+  if (has("annotations")) given.annotations = part("annotations");
+  if (vertices.length > 0) given.points = vertices;
+  if (direction) given.direction = direction;
+  if (chosen) given.annotation = String(chosen.id);
+  return run({ operation: "measure take", title: text("measured", text(which)), with: given, keep: ["output"] });
+}
+export const measureName = signal("");
+
+function rectangleOf(of: DrawnObject, a: Place, b: Place) {
+  return { rectangle: { camera: recipeCamera(of), from: paneOf(of, a.x, a.y), to: paneOf(of, b.x, b.y), visible: selection.visible.value } };
+}
+
+/** A line of few corners that stays within a pixel and a half of the way. */
+function simplified(way: Place[]): Place[] {
+  const kept = new Array<boolean>(way.length).fill(false);
+  const stack: [number, number][] = [[0, way.length - 1]];
+  kept[0] = kept[way.length - 1] = true;
+  while (stack.length > 0) {
+    const [a, b] = stack.pop()!;
+    let worst = 1.5;
+    let at = -1;
+    const [dx, dy] = [way[b].x - way[a].x, way[b].y - way[a].y];
+    const length = Math.hypot(dx, dy) || 1;
+    for (let i = a + 1; i < b; ++i) {
+      const off = Math.abs((way[i].x - way[a].x) * dy - (way[i].y - way[a].y) * dx) / length;
+      if (off > worst) [worst, at] = [off, i];
+    }
+    if (at < 0) continue;
+    kept[at] = true;
+    stack.push([a, at], [at, b]);
+  }
+  return way.filter((_, i) => kept[i]);
+}
+
+async function drawnBy(t: Tool, way: Place[]) {
+  const of = selection.target();
+  const [a, b] = [way[0], way[way.length - 1]];
+  const far = Math.hypot(b.x - a.x, b.y - a.y);
+  if (!of) return;
+  if (t === "rectangle" && far > 2) await selection.add(rectangleOf(of, a, b));
+  if (t === "lasso" && way.length > 3) {
+    const points = simplified(way).map((one) => paneOf(of, one.x, one.y));
+    if (points.length >= 3) await selection.add({ polygon: { camera: recipeCamera(of), points, visible: selection.visible.value } });
+  }
+  if (t === "brush") {
+    const camera = recipeCamera(of);
+    const points = way
+      .filter((_, i) => i === 0 || i === way.length - 1 || i % 3 === 0)
+      .filter((one) => view?.pick(one.x, one.y))
+      .map((one) => ({ camera, pixel: paneOf(of, one.x, one.y) }));
+    if (points.length > 0) await selection.add({ brush: { points, radius: radius.value || brushRadius(of), stroke: points.length > 1 } });
+  }
+  if (t === "bounding" && far > 2) {
+    const inverse = of.group.matrixWorld.clone().invert();
+    const right = new THREE.Vector3(1, 0, 0).transformDirection(view!.camera.matrixWorld);
+    const up = new THREE.Vector3(0, 1, 0).transformDirection(view!.camera.matrixWorld);
+    const along = right.multiplyScalar(b.x - a.x).addScaledVector(up, a.y - b.y).transformDirection(inverse);
+    await take("bounding", [], along.toArray().map((x) => Number(x.toFixed(6))).join(","));
+  }
+}
+
+export const brushRadius = (of: DrawnObject) => Number((0.02 * Math.hypot(...of.about.size)).toPrecision(3));
+
+/** Pointer and keys of the picture go to the tool; true where it takes them. */
+export function attach(canvas: HTMLCanvasElement): () => void {
+  let down: Place | undefined;
+  let moved = false;
+  const at = (event: PointerEvent): Place => {
+    const box = canvas.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  };
+  const onDown = (event: PointerEvent) => {
+    if (event.button !== 0 || tool.value === "look") return;
+    down = at(event);
+    moved = false;
+    if (drags.includes(tool.value)) {
+      trail.value = [down];
+      canvas.setPointerCapture(event.pointerId);
+      if (deforms(tool.value) && tool.value !== "handles") void deform.grab(tool.value as deform.Motion, down);
+    }
+  };
+  const onMove = (event: PointerEvent) => {
+    if (!down) return;
+    const place = at(event);
+    moved = moved || Math.hypot(place.x - down.x, place.y - down.y) > 3;
+    if (trail.value.length === 0) return;
+    const last = trail.value[trail.value.length - 1];
+    if (Math.hypot(place.x - last.x, place.y - last.y) < 2) return;
+    trail.value = [...trail.value, place];
+    if (deforms(tool.value) && tool.value !== "handles") deform.drag(place);
+  };
+  const onUp = (event: PointerEvent) => {
+    if (!down) return;
+    const [start, end, t] = [down, at(event), tool.value];
+    const way = trail.value;
+    down = undefined;
+    trail.value = [];
+    if (t === "handles") {
+      deform.pick(start, end, selection.erases.value, selection.visible.value);
+    } else if (deforms(t)) {
+      void deform.release(end);
+    } else if (drags.includes(t)) {
+      void drawnBy(t, way.length > 1 ? [...way, end] : [start]);
+    } else if (!moved) {
+      const one = pickAt(start);
+      if (!one) return;
+      picks.value = [...picks.value, one];
+      if (t === "ruler" && picks.value.length === 2) void finish();
+    }
+  };
+  const onKey = (event: KeyboardEvent) => {
+    if (event.key === "Enter" && picks.value.length > 0) {
+      event.preventDefault();
+      void finish();
+    } else if (event.key === "Escape") {
+      if (picks.value.length > 0) picks.value = [];
+      else selection.clear();
+      deform.letGo();
+    }
+  };
+  const onDouble = () => {
+    // The second click of the two is a pick of its own.
+    if (["path", "tape", "points"].includes(tool.value)) void finish();
+  };
+  canvas.addEventListener("pointerdown", onDown);
+  canvas.addEventListener("pointermove", onMove);
+  canvas.addEventListener("pointerup", onUp);
+  canvas.addEventListener("keydown", onKey);
+  canvas.addEventListener("dblclick", onDouble);
+  choose(tool.value);
+  return () => {
+    canvas.removeEventListener("pointerdown", onDown);
+    canvas.removeEventListener("pointermove", onMove);
+    canvas.removeEventListener("pointerup", onUp);
+    canvas.removeEventListener("keydown", onKey);
+    canvas.removeEventListener("dblclick", onDouble);
+  };
+}
+
+onShown.push(() => {
+  picks.value = [];
+  void active.value;
+});
+
+/** What is being drawn. */
+export function Drawing() {
+  const svg = useRef<SVGSVGElement>(null);
+  useEffect(() => {
+    if (!view) return;
+    return attach(view.canvas);
+  }, [view]);
+  void page.moves.value;
+  const way = trail.value;
+  const t = tool.value;
+  const [a, b] = [way[0], way[way.length - 1]];
+  const of = over.value;
+  const points = of ? picks.value.map((one) => view!.place(of, one.point)).filter((one) => one !== undefined) : [];
+  return (
+    <svg ref={svg} class="drawing-now" aria-hidden="true">
+      {(t === "rectangle" || t === "handles") && way.length > 1 && (
+        <rect x={Math.min(a.x, b.x)} y={Math.min(a.y, b.y)} width={Math.abs(a.x - b.x)} height={Math.abs(a.y - b.y)} />
+      )}
+      {(t === "lasso" || t === "brush") && way.length > 1 && (
+        <path class={t} d={`M${way.map((one) => `${one.x} ${one.y}`).join("L")}${t === "lasso" ? "Z" : ""}`} />
+      )}
+      {t === "bounding" && way.length > 1 && <path d={`M${a.x} ${a.y}L${b.x} ${b.y}`} />}
+      {points.length > 1 && <path class="picks" d={`M${points.map((one) => `${one.x} ${one.y}`).join("L")}`} />}
+      {points.map((one, i) => (
+        <circle key={i} cx={one.x} cy={one.y} r={4} />
+      ))}
+    </svg>
+  );
+}
+
+export const picked = picks;
