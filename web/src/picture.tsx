@@ -242,6 +242,9 @@ export function Picture() {
       return { x: event.clientX - box.left, y: event.clientY - box.top };
     };
     let waiting = false;
+    // The canvas outlives what is shown around it.
+    const listens = new AbortController();
+    const { signal } = listens;
     canvas.addEventListener("pointermove", (event) => {
       if (event.buttons !== 0 || waiting) return;
       waiting = true;
@@ -250,17 +253,18 @@ export function Picture() {
         waiting = false;
         hover(place.x, place.y);
       });
-    });
-    canvas.addEventListener("pointerleave", () => (state.hovered.value = undefined));
-    canvas.addEventListener("pointerdown", (event) => (down = at(event)));
+    }, { signal });
+    canvas.addEventListener("pointerleave", () => (state.hovered.value = undefined), { signal });
+    canvas.addEventListener("pointerdown", (event) => (down = at(event)), { signal });
     canvas.addEventListener("click", (event) => {
       const place = at(event);
       if (Math.hypot(place.x - down.x, place.y - down.y) > 4) return;
       click(place.x, place.y);
-    });
-    canvas.addEventListener("keydown", onKey);
+    }, { signal });
+    canvas.addEventListener("keydown", onKey, { signal });
     return () => {
       stops.forEach((stop) => stop());
+      listens.abort();
       sized.disconnect();
     };
   }, []);

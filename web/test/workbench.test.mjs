@@ -73,13 +73,21 @@ async function open(address, options = {}, script) {
 /** Nothing is under way, and the picture is drawn. */
 const settled = (page) =>
   page.waitForFunction(() => globalThis.ostraka?.model.connected.value && globalThis.ostraka.model.operations.value.length > 0 && globalThis.ostraka.model.busy.value === "", undefined, { timeout: patience });
-async function steps(page, n) {
-  try {
-    await page.waitForFunction((n) => globalThis.ostraka.model.place.value === n && globalThis.ostraka.model.busy.value === "", n, { timeout: patience });
-  } catch (error) {
-    const now = await page.evaluate(() => ({ place: ostraka.model.place.value, problem: ostraka.model.problem.value, busy: ostraka.model.busy.value }));
-    throw new Error(`waited for step ${n}: ${JSON.stringify(now)}`);
+/** Waits for what is asked of the page; what it says is wrong ends the wait. */
+async function until(page, what, condition, argument) {
+  const wrong = () => page.evaluate(() => globalThis.ostraka?.model.problem.value?.problem);
+  const end = Date.now() + patience;
+  for (;;) {
+    if (await page.evaluate(`(${condition})(${JSON.stringify(argument)}) && ostraka.model.busy.value === ""`)) return;
+    const problem = await wrong();
+    if (problem) throw new Error(`${what}: ${problem}`);
+    if (Date.now() > end) throw new Error(`${what}: nothing happened; at step ${await page.evaluate(() => ostraka.model.place.value)}, ${await page.evaluate(() => ostraka.model.busy.value)}`);
+    await page.waitForTimeout(50);
   }
+}
+const selected = (page) => until(page, "selecting", "() => ostraka.selection.selected.value !== undefined");
+async function steps(page, n) {
+  return until(page, `step ${n}`, "(n) => ostraka.model.place.value === n", n);
 }
 const look = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 async function drag(page, from, to, between = 4) {
@@ -124,13 +132,13 @@ try {
     const size = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
     const [w, h] = size;
     await drag(page, [0.35 * w, 0.05 * h], [0.65 * w, 0.35 * h]);
-    await page.waitForFunction(() => ostraka.selection.selected.value !== undefined && ostraka.model.busy.value === "", undefined, { timeout: patience });
+    await selected(page);
     await page.locator(".annotate input").first().fill("lid");
     await page.locator(".annotate button[type=submit]").first().click();
     await steps(page, 2);
     await useTool(page, "brush");
     await drag(page, [0.45 * w, 0.6 * h], [0.55 * w, 0.6 * h], 8);
-    await page.waitForFunction(() => ostraka.selection.selected.value !== undefined && ostraka.model.busy.value === "", undefined, { timeout: patience });
+    await selected(page);
     await page.locator(".annotate input").first().fill("belly");
     await page.locator(".annotate button[type=submit]").first().click();
     await steps(page, 3);

@@ -221,12 +221,12 @@ function ViewBar() {
   );
 }
 
-/** All annotations under the place that was clicked, where there are several: which one is meant. */
-function Chooser() {
-  const at = page.hovered.value;
-  const about = at && page.page.objects[at.object];
-  gazed.value = at?.annotations[0] ?? -1;
-  void about;
+/** What the pointer is on is what "select" means. */
+function Pointed() {
+  const first = page.hovered.value?.annotations[0] ?? -1;
+  useEffect(() => {
+    gazed.value = first;
+  }, [first]);
   return null;
 }
 
@@ -340,17 +340,17 @@ function Tour() {
 
 export function App() {
   const Panel = panels[tab.value];
-  void page.turn.value;
+  const turn = page.turn.value; // what is made from another content is made anew
   return (
     <>
       <Header />
       <main class="workbench">
         <Tools />
         <div class="left">
-          <ViewBar />
+          <ViewBar key={turn} />
           <div class="canvas">
-            {view && <Picture />}
-            {view && <Drawing />}
+            {view && <Picture key={turn} />}
+            {view && <Drawing key={-turn} />}
           </div>
           <Layers />
           {heard.value && <p class="quiet">{text("heard", heard.value)}</p>}
@@ -364,12 +364,12 @@ export function App() {
             ))}
           </div>
           <div id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
-            {page.page.objects.length > 0 || tab.value === "history" || tab.value === "everything" ? <Panel key={tab.value} /> : <p class="quiet">{text("nothingOpen")}</p>}
+            {page.page.objects.length > 0 || tab.value === "history" || tab.value === "everything" ? <Panel key={`${tab.value} ${turn}`} /> : <p class="quiet">{text("nothingOpen")}</p>}
           </div>
         </aside>
       </main>
-      <Footer />
-      <Chooser />
+      <Footer key={turn} />
+      <Pointed key={turn} />
       <Palette />
       <Tour />
     </>
