@@ -43,9 +43,13 @@ int run_workbench(const std::vector<std::string>& words) {
     int port = 0, threads = 0;
     bool no_browser = false;
     command.add_option("PLACE", place, "folder with meshes and templates, or one of them (else the current folder)");
-    command.add_option("--session", session, "folder of the session: goes on with the one that is there, or begins it (else beside PLACE)");
-    command.add_option("--port", port, "port of this machine, 0 for any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
-    command.add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")->check(CLI::Range(0, 1024));
+    command.add_option("--session", session,
+                       "folder of the session: goes on with the one that is there, or begins it (else beside PLACE)");
+    command.add_option("--port", port, "port of this machine, 0 for any that is free")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    command.add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")
+        ->check(CLI::Range(0, 1024));
     command.add_flag("--no-browser", no_browser, "say the address only");
     try {
         std::vector<std::string> reversed(words.rbegin(), words.rend());

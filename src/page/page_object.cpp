@@ -203,8 +203,8 @@ JsonValue relations_json(const PageObject& object, const AnnotationSet& set, con
             for (const int id : one.annotations)
                 for (std::size_t i = 0; i < set.annotations.size(); ++i)
                     if (set.annotations[i].id == id) members.push_back(i);
-            JsonValue entry = json_object(allocator, "id", one.id, "type", one.type, "members", members, "directed", one.directed, "constraint",
-                                          one.is_constraint, "weight", one.weight, "text", "");
+            JsonValue entry = json_object(allocator, "id", one.id, "type", one.type, "members", members, "directed", one.directed,
+                                          "constraint", one.is_constraint, "weight", one.weight, "text", "");
             if (layout.lanes[r]) add_members(entry, allocator, "lane", *layout.lanes[r]);
             if (r < object.checks.size() && object.checks[r].verdict != Verdict::unknown) {
                 add_members(entry, allocator, "holds", object.checks[r].verdict == Verdict::holds);
@@ -293,8 +293,8 @@ std::size_t Page::add(const PageObject& object) {
         json_object(allocator, "name", printable(object.name, 200), "unit", unit, "vertices",
                     object.whole ? object.whole->vertices : soup.points.size(), "faces",
                     object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size, "up",
-                    set.up ? *set.up : object.up, "annotations", std::move(annotations), "maps", std::move(maps), "tree", std::move(tree), "relations",
-                    relations_json(object, set, layout, allocator));
+                    set.up ? *set.up : object.up, "annotations", std::move(annotations), "maps", std::move(maps), "tree",
+                    std::move(tree), "relations", relations_json(object, set, layout, allocator));
     // Packed, or exact for a viewer beside the command.
     const auto add_shape = [&](JsonValue& to, const TriangleSoup& of, const Box& around, const std::string& part) {
         if (!object.exact) {

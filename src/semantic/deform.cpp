@@ -70,6 +70,7 @@ struct CageSystem {
     /// Rows for the cage's own points below those of the mesh, so that handles are constrained like any point.
     std::unique_ptr<CageWeights> extended;
     std::unique_ptr<CageSpaceSolver> solver;
+    std::size_t first_displacement = 0, displacements = 0;  ///< places of the Laplacian displacements of the cage
 };
 
 class Deformer {
@@ -250,7 +251,8 @@ private:
         return false;
     }
 
-    /// The low-level constraints, from the outcome so far: parts that others refer to are as it has them. False if there are none.
+    /// The low-level constraints, from the outcome so far: parts that others refer to are as it has them. False if there are
+    /// none.
     bool lower(const std::vector<bool>& active, Outcome& outcome) {
         lowered_.clear();
         support_.clear();
@@ -368,12 +370,14 @@ private:
         // What the cage tends to between constraints; else its points fly off for little.
         Points shape = rest;
         shape.rightCols(c) = options_.details == DeformOptions::Details::rest ? rest_cage : edited_cage;
+        system.first_displacement = list.size();
         if (options_.laplacian > 0)
             for (const Vertex v : space_.cage->vertices()) {
                 if (space_.cage->is_isolated(v)) continue;
                 list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(*space_.cage, v, static_cast<int>(n)),
                                                share * options_.laplacian, {}, shape));
             }
+        system.displacements = list.size() - system.first_displacement;
         system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);
         // What must hold counts a thousandfold: a cage may not be able to do it.
         for (std::size_t i = 0; i < owner_.size(); ++i)
@@ -495,10 +499,7 @@ private:
 
 struct LiveDeformation::State {
     State(const HandleSpace& given, const RelationGraph& relations, const DeformOptions& how, const RelationOptions& exactness)
-        : space(given),
-          options(how),
-          tolerances(exactness),
-          deformer(space, graph, options, tolerances, "the drag", "graph") {
+        : space(given), options(how), tolerances(exactness), deformer(space, graph, options, tolerances, "the drag", "graph") {
         graph.relationships = relations.relationships;
     }
     HandleSpace space;
@@ -509,7 +510,9 @@ struct LiveDeformation::State {
     std::vector<Index> handles;
     std::vector<int> held;  ///< vertices of the cage that steps moved, in the order of the constraint that holds them
     std::vector<Point> cage;
-    Points points;  ///< the same
+    Points points;        ///< the same
+    Points asked;         ///< of the mesh (any) and the cage, as the handles alone leave it
+    Points displacement;  ///< of one vertex
     CageSystem system;
 };
 
@@ -528,6 +531,8 @@ LiveDeformation::LiveDeformation(const HandleSpace& space, const RelationGraph& 
     state_->system = state_->deformer.begin(edit, state_->handles, state_->cage);
     state_->points = columns_of(with_points(*space.cage, state_->cage));
     if (state_->system.solver) {
+        state_->asked.setZero(3, space.coordinates->vertex.rows() + state_->points.cols());
+        state_->asked.rightCols(state_->points.cols()) = state_->points;
         const auto offset = static_cast<int>(space.coordinates->vertex.rows());
         for (const int id : state_->system.solver->constraint(0).ids()) state_->held.push_back(id - offset);
         state_->system.solver->initialize();
@@ -542,21 +547,32 @@ bool LiveDeformation::has_constraints() const { return state_->system.solver != 
 const std::vector<Point>& LiveDeformation::follow(const std::vector<Point>& places) {
     State& state = *state_;
     if (places.size() != state.handles.size())
-        throw Error(ErrorKind::usage, "the drag", "has " + counted(places.size(), "place") + " for " +
-                                                      counted(state.handles.size(), "handle"),
+        throw Error(ErrorKind::usage, "the drag",
+                    "has " + counted(places.size(), "place") + " for " + counted(state.handles.size(), "handle"),
                     "give one for each");
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Point& p = places[i];
         if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(p.z()))
             throw Error(ErrorKind::usage, "the drag", "place " + std::to_string(i) + " is not finite", "give finite numbers");
-        state.cage[state.handles[i]] = p;
     }
-    for (const Index handle : state.handles) state.points.col(handle) = eigen(state.cage[handle]);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        state.cage[state.handles[i]] = places[i];
+        state.points.col(state.handles[i]) = eigen(places[i]);
+    }
     if (!state.system.solver) return state.cage;
     Points targets(3, static_cast<Eigen::Index>(state.held.size()));
     for (std::size_t i = 0; i < state.held.size(); ++i)
         targets.col(static_cast<Eigen::Index>(i)) = state.points.col(state.held[i]);
     state.system.solver->set_target(0, targets);
+    if (state.options.details == DeformOptions::Details::edited) {
+        const Eigen::Index offset = state.asked.cols() - state.points.cols();
+        for (std::size_t i = 0; i < places.size(); ++i) state.asked.col(offset + state.handles[i]) = eigen(places[i]);
+        for (std::size_t k = 0; k < state.system.displacements; ++k) {
+            const std::size_t place = state.system.first_displacement + k;
+            state.system.solver->constraint(place).rows_of(state.asked, state.displacement);
+            state.system.solver->set_target(place, state.displacement);
+        }
+    }
     constexpr SolveOptions few{4, 1e-5, 0, 2};
     state.system.solver->solve(state.points, few);
     state.cage = list_of(state.points);

@@ -124,7 +124,8 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
 /// A page that talks.
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
-    Peer(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state) : stream_(std::move(socket)), state_(std::move(state)) {
+    Peer(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
+        : stream_(std::move(socket)), state_(std::move(state)) {
         ++state_->connections;
     }
     ~Peer() { --state_->connections; }
@@ -206,7 +207,8 @@ namespace {
 /// One request for the page, or for the way of messages.
 class Visit : public std::enable_shared_from_this<Visit> {
 public:
-    Visit(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state) : stream_(std::move(socket)), state_(std::move(state)) {
+    Visit(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
+        : stream_(std::move(socket)), state_(std::move(state)) {
         ++state_->connections;
         parser_.header_limit(static_cast<std::uint32_t>(state_->limits.header));
         parser_.body_limit(0);
@@ -225,6 +227,7 @@ public:
 private:
     void took(error_code error) {
         if (error == http::error::header_limit) return answer(http::status::request_header_fields_too_large, "too long a head\n");
+        if (error == http::error::body_limit) return answer(http::status::method_not_allowed, "only GET\n");
         if (error == http::error::end_of_stream || error == beast::error::timeout) return;
         if (error) return answer(http::status::bad_request, "not understood\n");
         const auto& head = parser_.get();
@@ -237,7 +240,8 @@ private:
         const std::size_t mark = target.find('?');
         const std::string_view path = target.substr(0, mark),
                                query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
-        if (path.find("..") != std::string_view::npos || path.find('%') != std::string_view::npos || path.find('\\') != std::string_view::npos)
+        if (path.find("..") != std::string_view::npos || path.find('%') != std::string_view::npos ||
+            path.find('\\') != std::string_view::npos)
             return answer(http::status::bad_request, "not understood\n");
         if (path != "/" && path != "/messages") return answer(http::status::not_found, "there is nothing here\n");
         const bool knows = same_secret(value_in(query, "token", '&'), state_->token) ||
@@ -261,11 +265,13 @@ private:
         response_.set("Referrer-Policy", "no-referrer");
         response_.set("Cross-Origin-Opener-Policy", "same-origin");
         response_.set("Cross-Origin-Resource-Policy", "same-origin");
-        response_.set("Content-Security-Policy",
-                      "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:; "
-                      "connect-src 'self' data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+        response_.set(
+            "Content-Security-Policy",
+            "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:; "
+            "connect-src 'self' data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
         if (is_page)
-            response_.set(http::field::set_cookie, state_->cookie() + "=" + state_->token + "; HttpOnly; SameSite=Strict; Path=/");
+            response_.set(http::field::set_cookie,
+                          state_->cookie() + "=" + state_->token + "; HttpOnly; SameSite=Strict; Path=/");
         response_.keep_alive(false);
         response_.body() = std::move(text);
         response_.prepare_payload();

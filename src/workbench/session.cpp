@@ -19,14 +19,22 @@ constexpr const char* file_name = "session.json";
 /// The part of an object that an output of this kind becomes; empty: none.
 std::string part_of(Kind kind) {
     switch (kind) {
-        case Kind::mesh: return "mesh";
-        case Kind::annotations: return "annotations";
-        case Kind::graph: return "graph";
-        case Kind::cage: return "cage";
-        case Kind::coordinates: return "coordinates";
-        case Kind::recipe: return "recipe";
-        case Kind::edit: return "edit";
-        default: return {};
+        case Kind::mesh:
+            return "mesh";
+        case Kind::annotations:
+            return "annotations";
+        case Kind::graph:
+            return "graph";
+        case Kind::cage:
+            return "cage";
+        case Kind::coordinates:
+            return "coordinates";
+        case Kind::recipe:
+            return "recipe";
+        case Kind::edit:
+            return "edit";
+        default:
+            return {};
     }
 }
 
@@ -75,8 +83,8 @@ std::string stem_of(const std::string& file) {
 }  // namespace
 
 const std::vector<std::string>& session_parts() {
-    static const std::vector<std::string> parts{"mesh", "annotations", "graph",         "cage",                "coordinates",
-                                                "recipe", "edit",      "deformed", "deformed cage", "deformed annotations"};
+    static const std::vector<std::string> parts{"mesh",   "annotations", "graph",    "cage",          "coordinates",
+                                                "recipe", "edit",        "deformed", "deformed cage", "deformed annotations"};
     return parts;
 }
 
@@ -86,11 +94,13 @@ std::string SessionObject::part(const std::string& which) const {
 }
 
 JsonValue to_json(const SessionState& state, JsonAllocator& allocator) {
-    return json_object(allocator, "objects", json_list(state.objects, allocator, [&](const SessionObject& object) {
-                           JsonValue parts(rapidjson::kObjectType);
-                           for (const auto& [part, file] : object.parts) add_members(parts, allocator, part, file);
-                           return json_object(allocator, "name", object.name, "parts", std::move(parts));
-                       }),
+    return json_object(allocator, "objects",
+                       json_list(state.objects, allocator,
+                                 [&](const SessionObject& object) {
+                                     JsonValue parts(rapidjson::kObjectType);
+                                     for (const auto& [part, file] : object.parts) add_members(parts, allocator, part, file);
+                                     return json_object(allocator, "name", object.name, "parts", std::move(parts));
+                                 }),
                        "active", state.active, "files", json_list(state.files, allocator, [&](const SessionFile& file) {
                            return json_object(allocator, "name", file.name, "kind", file.kind, "file", file.file);
                        }));
@@ -118,8 +128,8 @@ void Session::read() {
     const Json document = read_json(file);
     validate(document, "session", file.string());
     for (const JsonValue& one : list_in(document, "steps")) {
-        SessionStep step{text_in(one, "name"), text_in(one, "title"), text_in(one, "operation"), {}, {}, {}, !flag_in(one, "no"),
-                         state_from(one["state"])};
+        SessionStep step{text_in(one, "name"), text_in(one, "title"),   text_in(one, "operation"), {}, {}, {},
+                         !flag_in(one, "no"),  state_from(one["state"])};
         if (const JsonValue* with = find_member(one, "with")) step.with = copy_of(*with);
         if (const JsonValue* keep = find_member(one, "keep")) step.keep = copy_of(*keep);
         if (const JsonValue* made = find_member(one, "sha256"))
@@ -320,7 +330,8 @@ void Session::change(const JsonValue& request) {
         if (what == "accept") {
             parts["mesh"] = parts["deformed"];
             for (const char* part : {"cage", "annotations"})
-                if (const auto made = parts.find(std::string("deformed ") + part); made != parts.end()) parts[part] = made->second;
+                if (const auto made = parts.find(std::string("deformed ") + part); made != parts.end())
+                    parts[part] = made->second;
             parts.erase("coordinates");  // they are of the shape at rest
             parts.erase("recipe");
         }
@@ -336,9 +347,9 @@ void Session::change(const JsonValue& request) {
 struct Session::Settings {
     Json with{rapidjson::kObjectType}, keep{rapidjson::kObjectType};
     Json options{rapidjson::kObjectType};
-    std::map<std::string, std::string> outputs;               ///< slot, name of its file
-    std::vector<std::pair<Path, std::string>> documents;      ///< that the request brings along
-    std::size_t object = no_index;                            ///< that most inputs are of
+    std::map<std::string, std::string> outputs;           ///< slot, name of its file
+    std::vector<std::pair<Path, std::string>> documents;  ///< that the request brings along
+    std::size_t object = no_index;                        ///< that most inputs are of
 };
 
 /// What a study says for a file: the output of the step that made it, or its name.
@@ -347,7 +358,8 @@ std::string Session::reference(const std::string& file) const {
         const SessionStep& step = steps_[i];
         if (step.operation.empty() || !file.starts_with("steps/" + step.name + "/")) continue;
         for (const auto& member : step.keep.GetObject())
-            if (file == "steps/" + step.name + "/" + text_of(member.value)) return "${" + step.name + "." + text_of(member.name) + "}";
+            if (file == "steps/" + step.name + "/" + text_of(member.value))
+                return "${" + step.name + "." + text_of(member.name) + "}";
     }
     return file;
 }
@@ -400,14 +412,29 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
         if (!asked && !updates && !slot->needed && !begins) continue;
         std::string name;
         switch (slot->kind) {
-            case Kind::mesh: name = stem + ".ply"; break;
-            case Kind::annotations: name = stem + ".ant.json"; break;
-            case Kind::graph: name = stem + ".graph.json"; break;
-            case Kind::cage: name = stem + ".cage.ply"; break;
-            case Kind::coordinates: name = stem + ".npy"; break;
-            case Kind::recipe: name = stem + ".recipe.json"; break;
-            case Kind::template_package: name = stem + ".template.json"; break;
-            default: name = stem + "-" + slot->name + call.usual_ending(slot->name);
+            case Kind::mesh:
+                name = stem + ".ply";
+                break;
+            case Kind::annotations:
+                name = stem + ".ant.json";
+                break;
+            case Kind::graph:
+                name = stem + ".graph.json";
+                break;
+            case Kind::cage:
+                name = stem + ".cage.ply";
+                break;
+            case Kind::coordinates:
+                name = stem + ".npy";
+                break;
+            case Kind::recipe:
+                name = stem + ".recipe.json";
+                break;
+            case Kind::template_package:
+                name = stem + ".template.json";
+                break;
+            default:
+                name = stem + "-" + slot->name + call.usual_ending(slot->name);
         }
         if (updates) name = Path(slot->updated->file()).filename().string();
         if (!taken.emplace(name, slot->name).second) {
@@ -425,7 +452,8 @@ Report Session::run(const JsonValue& request, Context& context) {
     const OperationEntry& entry = find_operation(text_in(request, "operation"));
     for (const char* refused : {"run", "replay", "conformance run", "conformance self", "operations"})
         if (std::string_view(entry.name) == refused)
-            fail_request("'" + std::string(entry.name) + "' is not run here", "run it as a command: ostraka " + std::string(entry.name));
+            fail_request("'" + std::string(entry.name) + "' is not run here",
+                         "run it as a command: ostraka " + std::string(entry.name));
     Call call(entry);
     SessionStep step{next_name(), text_in(request, "title"), entry.name, {}, {}, {}, true, state()};
     if (step.title.empty()) step.title = entry.name;
@@ -523,7 +551,8 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
 }
 
 Path Session::save(const std::string& name, Context& context) const {
-    if (!is_plain_name(name)) fail_request("'" + printable(name, 60) + "' is no name for a folder", "use letters, digits, - and _");
+    if (!is_plain_name(name))
+        fail_request("'" + printable(name, 60) + "' is no name for a folder", "use letters, digits, - and _");
     const SessionObject* object = state().object();
     if (object == nullptr) fail_request("no object is open", "open a mesh or a template");
     if (object->part("annotations").empty()) fail_request(object->name + " has no annotations", "annotate it first");

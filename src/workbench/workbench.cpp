@@ -72,9 +72,11 @@ void Workbench::cancel() {
 
 const std::map<std::string, Workbench::Answer>& Workbench::answers() {
     static const std::map<std::string, Answer> all{
-        {"hello", &Workbench::hello},         {"scene", &Workbench::scene}, {"select", &Workbench::select},
-        {"run", &Workbench::run},             {"grab", &Workbench::grab},   {"drag", &Workbench::drag},
-        {"influence", &Workbench::influence}, {"file", &Workbench::file},   {"handles", &Workbench::handles},
+        {"hello", &Workbench::hello},         {"scene", &Workbench::scene},
+        {"select", &Workbench::select},       {"run", &Workbench::run},
+        {"grab", &Workbench::grab},           {"drag", &Workbench::drag},
+        {"influence", &Workbench::influence}, {"file", &Workbench::file},
+        {"handles", &Workbench::handles},
     };
     return all;
 }
@@ -99,7 +101,8 @@ Workbench::Reply Workbench::answer(std::string_view text) {
     try {
         const Json request = parse_json(text, "the message");
         if (!request.IsObject()) fail_request("a message that is no object", "load the page again");
-        if (const JsonValue* number = find_member(request, "id"); number != nullptr && number->IsNumber()) id = number->GetDouble();
+        if (const JsonValue* number = find_member(request, "id"); number != nullptr && number->IsNumber())
+            id = number->GetDouble();
         const JsonValue* word = find_member(request, "do");
         const std::string what = word != nullptr && word->IsString() ? text_of(*word) : std::string();
         const WatchScope watched(&context_->watch);
@@ -139,7 +142,8 @@ void Workbench::add_session(Json& result) const {
     auto& a = result.GetAllocator();
     add_members(result, a, "place", session_.place(), "state", to_json(session_.state(), a), "history",
                 json_list(session_.steps(), a, [&](const SessionStep& step) {
-                    return json_object(a, "name", step.name, "title", step.title, "operation", step.operation, "holds", step.holds);
+                    return json_object(a, "name", step.name, "title", step.title, "operation", step.operation, "holds",
+                                       step.holds);
                 }));
 }
 
@@ -262,8 +266,8 @@ void Workbench::run(const JsonValue& request, Json& result, std::string& /*bytes
     const Stopwatch watch;
     const Report report = session_.run(request, *context_);
     auto& a = result.GetAllocator();
-    add_members(result, a, "holds", report.holds(), "text", report.to_text(ReportFormat::table), "notes", report.noted(), "result",
-                JsonValue(report.result(), a), "seconds", watch.seconds());
+    add_members(result, a, "holds", report.holds(), "text", report.to_text(ReportFormat::table), "notes", report.noted(),
+                "result", JsonValue(report.result(), a), "seconds", watch.seconds());
 }
 
 void Workbench::file(const JsonValue& request, Json& result, std::string& bytes) {
@@ -311,9 +315,11 @@ void Workbench::handles(const JsonValue& request, Json& result, std::string& /*b
     const Annotation* one = id != nullptr && id->IsInt() ? drag.set->find(id->GetInt()) : nullptr;
     if (one == nullptr) fail_request("there is no such annotation", "choose one of the list");
     const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, *one);
-    const double least = threshold != nullptr && threshold->IsNumber() ? threshold->GetDouble()
-                         : influence_threshold(drag.coordinates.vertex,
-                                               threshold != nullptr && threshold->IsString() ? text_of(*threshold) : "auto-mesh", rows);
+    const double least =
+        threshold != nullptr && threshold->IsNumber()
+            ? threshold->GetDouble()
+            : influence_threshold(drag.coordinates.vertex,
+                                  threshold != nullptr && threshold->IsString() ? text_of(*threshold) : "auto-mesh", rows);
     add_members(result, result.GetAllocator(), "handles", influential(drag.coordinates, rows, least), "threshold", least);
 }
 
@@ -323,7 +329,8 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
     const WeightMatrix& weights = drag.coordinates.vertex;
     std::vector<float> sums(static_cast<std::size_t>(weights.rows()), 0);
     for (const JsonValue& one : list_in(request, "handles")) {
-        if (!one.IsUint() || one.GetUint() >= weights.cols()) fail_request("a handle is no vertex of the cage", "load the page again");
+        if (!one.IsUint() || one.GetUint() >= weights.cols())
+            fail_request("a handle is no vertex of the cage", "load the page again");
         for (Eigen::Index i = 0; i < weights.rows(); ++i)
             sums[static_cast<std::size_t>(i)] += static_cast<float>(weights(i, one.GetUint()));
     }
@@ -331,8 +338,8 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
     add_members(result, a, "values", keep(bytes, bytes_of(sums), a));
 }
 
-/// Begins a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. While all handles follow one affine map x -> A x + t, a vertex
-/// v goes to v + (A - I) m + w t, with m and w of its four numbers.
+/// Begins a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. While all handles follow one affine map x -> A x + t, a
+/// vertex v goes to v + (A - I) m + w t, with m and w of its four numbers.
 void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes) {
     Deformation& drag = deformation();
     const Index count = static_cast<Index>(drag.rest->cage->mesh.number_of_vertices());
@@ -369,7 +376,8 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
                 "weights", keep(bytes, bytes_of(moved), a));
 }
 
-/// The surface while the constraints hold, handles at {"places": [[x, y, z], ...]}, in their order: positions relative to the box.
+/// The surface while the constraints hold, handles at {"places": [[x, y, z], ...]}, in their order: positions relative to the
+/// box.
 void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes) {
     if (!deformation_ || !deformation_->live || deformation_->place != session_.place())
         fail_request("nothing has been grabbed", "choose control points and drag them");

@@ -9,10 +9,10 @@ namespace ostraka {
 
 struct ServerLimits {
     std::size_t connections = 32;
-    std::size_t header = 8192;            ///< bytes
-    std::size_t message = 4'000'000;      ///< bytes of a message from the page
-    std::size_t waiting = 64;             ///< requests of one page that are not answered yet
-    double seconds = 10;                  ///< for a request's head, and for closing
+    std::size_t header = 8192;        ///< bytes
+    std::size_t message = 4'000'000;  ///< bytes of a message from the page
+    std::size_t waiting = 64;         ///< requests of one page that are not answered yet
+    double seconds = 10;              ///< for a request's head, and for closing
 };
 
 /// Listens on the loopback address. Pages are served that say the token; their messages go to the workbench one after the other,

@@ -1,5 +1,5 @@
-// What a person did in the workbench, step by step: each step is an operation of the table or a choice, and all of it is kept in a
-// folder, can be undone as far back as it goes, and is a study file that the command repeats (doc/workbench.md).
+// What a person did in the workbench, step by step: each step is an operation of the table or a choice, and all of it is kept in
+// a folder, can be undone as far back as it goes, and is a study file that the command repeats (doc/workbench.md).
 #pragma once
 
 #include "ostraka/operations/table.h"
@@ -62,10 +62,10 @@ public:
     void open(const std::string& name);
 
     /// {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as": "deformed"}: runs an operation. A value of an
-    /// input is {"part": PART, "object": INDEX} (INDEX: else the active one), {"file": FILE of the state}, {"document": JSON} or a
-    /// list of these. Outputs that the operation needs, and those of "keep", become parts of the object they are of, new objects,
-    /// or files. "as": "deformed": a mesh that is made is the object's under deformation, not a new one. The report is handed
-    /// over. Where it fails nothing has changed.
+    /// input is {"part": PART, "object": INDEX} (INDEX: else the active one), {"file": FILE of the state}, {"document": JSON} or
+    /// a list of these. Outputs that the operation needs, and those of "keep", become parts of the object they are of, new
+    /// objects, or files. "as": "deformed": a mesh that is made is the object's under deformation, not a new one. The report is
+    /// handed over. Where it fails nothing has changed.
     Report run(const JsonValue& request, Context& context);
 
     /// {"do": "activate" or "close", "object": INDEX}; {"do": "accept" or "withdraw"} a deformation.
@@ -74,9 +74,9 @@ public:
     /// Undoes or repeats steps until so many count. Throws Error (usage) where there are fewer.
     void go_to(std::size_t place);
 
-    /// Copies the active object into the folder NAME of the root, as a template that is checked as a whole. Returns the template's
-    /// file. Throws Error (usage) for a name that is no plain one, (input) where there are no annotations or something else is
-    /// there.
+    /// Copies the active object into the folder NAME of the root, as a template that is checked as a whole. Returns the
+    /// template's file. Throws Error (usage) for a name that is no plain one, (input) where there are no annotations or something
+    /// else is there.
     Path save(const std::string& name, Context& context) const;
 
     /// The file that the state names. Throws Error (usage) where it names none such.
@@ -89,7 +89,8 @@ private:
     struct Settings;
     [[nodiscard]] std::string relative(const Path& file) const;
     [[nodiscard]] std::string reference(const std::string& file) const;
-    [[nodiscard]] Path resolved(const JsonValue& value, const std::string& slot, const std::string& step, Settings& settings) const;
+    [[nodiscard]] Path resolved(const JsonValue& value, const std::string& slot, const std::string& step,
+                                Settings& settings) const;
     void name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const;
     void take_outputs(const Call& call, const JsonValue& request, const Settings& settings, SessionStep& step) const;
     [[nodiscard]] std::string next_name() const;

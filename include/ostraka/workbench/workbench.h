@@ -16,9 +16,9 @@ public:
     ~Workbench();
 
     struct Reply {
-        std::string json;       ///< {"id", "ok": true, "result"} or {"id", "ok": false, "error": {"problem", "where", "remedy"}}
-        std::string bytes;      ///< what the JSON's blobs refer to; empty: none
-        bool changed = false;   ///< the session is at another step than before
+        std::string json;      ///< {"id", "ok": true, "result"} or {"id", "ok": false, "error": {"problem", "where", "remedy"}}
+        std::string bytes;     ///< what the JSON's blobs refer to; empty: none
+        bool changed = false;  ///< the session is at another step than before
     };
     /// Answers {"id": NUMBER, "do": WORD, ...}. Whatever the text holds, it is answered and nothing is thrown.
     Reply answer(std::string_view request);
