@@ -9,6 +9,7 @@
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace ostraka {
@@ -30,7 +31,9 @@ public:
           face_labels_(std::move(start.face_labels)),
           set_(std::move(start.annotations)),
           folder_(std::move(start.folder)),
-          evaluator_(mesh, face_labels_, set_, where_) {}
+          evaluator_(mesh, face_labels_, set_, where_) {
+        for (const Annotation& one : set_.annotations) before_.insert(one.id);
+    }
 
     AnnotationSet follow(const JsonValue& recipe) {
         if (const JsonValue* name = find_member(recipe, "class")) set_.object_class = name->GetString();
@@ -42,8 +45,7 @@ public:
         for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) step(steps[i], frame, "/annotations/" + to_string(i));
         if (!set_.object_class.empty()) ensure_root(set_, mesh_);
         check_annotations(set_, mesh_, where_);
-        const RefreshResult measured = refresh_measures(mesh_, set_);
-        if (!measured.notes.empty()) fail_input(where_, "a measure cannot be taken: " + measured.notes.front(), "mend its pins");
+        measure();
         return std::move(set_);
     }
 
@@ -52,7 +54,19 @@ private:
         fail_input(where_, "at " + at + ": " + what, remedy);
     }
 
+    /// Of what steps made or changed; others keep what they say.
+    void measure() {
+        std::map<int, std::vector<Attribute>> others;
+        for (Annotation& one : set_.annotations)
+            if (before_.contains(one.id) && !touched_.contains(one.id)) others[one.id].swap(one.attributes);
+        const RefreshResult measured = refresh_measures(mesh_, set_);
+        if (!measured.notes.empty()) fail_input(where_, "a measure cannot be taken: " + measured.notes.front(), "mend its pins");
+        for (Annotation& one : set_.annotations)
+            if (const auto kept = others.find(one.id); kept != others.end()) one.attributes.swap(kept->second);
+    }
+
     void step(const JsonValue& step, PlaceFrame around, const std::string& at) {
+        touched_.insert(step["id"].GetInt());
         const PlaceFrame frame = ExpressionEvaluator::frame_of(step, around);
         const std::string action = text_in(step, "action");
         if (action.empty() || action == "make") make(step, frame, at);
@@ -252,6 +266,7 @@ private:
     std::vector<std::int32_t> face_labels_;
     AnnotationSet set_;
     Path folder_;
+    std::set<int> before_, touched_;  ///< ids of annotations that were there, and of those that steps name
     ExpressionEvaluator evaluator_;
 };
 

@@ -27,6 +27,7 @@ void Scene::add(const ShownShape& shape) {
     object.graph = shape.graph;
     if (shape.graph != nullptr && shape.set != nullptr) object.checks = check_relations(*shape.mesh, *shape.set, *shape.graph);
     object.cage = shape.cage;
+    object.maps = shape.maps;
     object.exact = {shape.key, !known_.contains(shape.key)};
     const AnnotationSet none;
     std::optional<PageSlices> slices;

@@ -16,6 +16,7 @@ struct ShownShape {
     const Mesh* cage = nullptr;
     /// Files of the session that say something of it: maps, slices, the report of its deformation.
     std::vector<Path> files;
+    std::vector<PageMap> maps;  ///< that the mesh's own file holds
 };
 
 /// The files of the active object's last steps that can be shown with it.

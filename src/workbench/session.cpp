@@ -364,7 +364,21 @@ std::string Session::reference(const std::string& file) const {
     return file;
 }
 
-Path Session::resolved(const JsonValue& value, const std::string& slot, const std::string& step, Settings& settings) const {
+/// A mesh whose annotations are read beside it: both under the names that they have to have.
+Path Session::with_beside(const SessionObject& object, const std::string& step, Settings& settings) const {
+    const Path mesh = (folder_ / object.part("mesh")).lexically_normal();
+    const Path annotations = (folder_ / object.part("annotations")).lexically_normal();
+    if (annotations.parent_path() == mesh.parent_path() && annotations.filename() == mesh.stem().string() + ".ant.json")
+        return mesh;
+    const Path folder = folder_ / "documents" / step;
+    const Path copy = folder / mesh.filename();
+    settings.documents.emplace_back(copy, read_file(mesh));
+    settings.documents.emplace_back(folder / (mesh.stem().string() + ".ant.json"), read_file(annotations));
+    return copy;
+}
+
+Path Session::resolved(const JsonValue& value, const Slot& input, const std::string& step, Settings& settings) const {
+    const std::string& slot = input.name;
     if (!value.IsObject()) fail_request("input '" + printable(slot, 40) + "' is not given as a part, a file or a document");
     if (const JsonValue* document = find_member(value, "document")) {
         if (!document->IsObject()) fail_request("the document of '" + printable(slot, 40) + "' is no object");
@@ -385,14 +399,22 @@ Path Session::resolved(const JsonValue& value, const std::string& slot, const st
                      : part == "graph"       ? "add a relationship first"
                                              : "choose another input");
     if (settings.object == no_index || slot == "target") settings.object = index;
+    if (input.reads_beside && part == "mesh" && !now.objects[index].part("annotations").empty())
+        return with_beside(now.objects[index], step, settings);
     return (folder_ / file).lexically_normal();
 }
 
 void Session::name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const {
-    std::vector<std::string> wanted;
-    for (const JsonValue& one : list_in(request, "keep"))
-        if (one.IsString()) wanted.push_back(text_of(one));
-    for (const std::string& name : wanted)
+    std::map<std::string, std::string> wanted;  // with the names of their files, where they are given
+    for (const JsonValue& one : list_in(request, "keep")) {
+        if (one.IsString()) wanted[text_of(one)];
+        if (!one.IsObject()) continue;
+        const std::string file = text_in(one, "file");
+        if (!is_plain_name(file))
+            fail_request("'" + printable(file, 60) + "' is no name for a file", "use letters, digits, . - and _");
+        wanted[text_in(one, "output")] = file;
+    }
+    for (const auto& [name, file] : wanted)
         if (call.slot(name).role != Role::output) fail_request("'" + printable(name, 40) + "' is no output");
     const SessionState& now = state();
     std::string stem = settings.object < now.objects.size() ? stem_of(now.objects[settings.object].part("mesh")) : std::string();
@@ -406,7 +428,8 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
     std::map<std::string, std::string> taken;  // name of a file, its slot
     for (Slot* slot : call.parameters().slots()) {
         if (slot->role != Role::output) continue;
-        const bool asked = std::find(wanted.begin(), wanted.end(), slot->name) != wanted.end();
+        const auto own = wanted.find(slot->name);
+        const bool asked = own != wanted.end();
         const bool updates = slot->updated != nullptr && !slot->updated->sources.empty();
         const bool begins = slot->updated != nullptr && slot->updated->needed;
         if (!asked && !updates && !slot->needed && !begins) continue;
@@ -436,6 +459,7 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
             default:
                 name = stem + "-" + slot->name + call.usual_ending(slot->name);
         }
+        if (asked && !own->second.empty()) name = own->second;
         if (updates) name = Path(slot->updated->file()).filename().string();
         if (!taken.emplace(name, slot->name).second) {
             const std::string ending = Path(name).extension().string();
@@ -475,7 +499,7 @@ Report Session::run(const JsonValue& request, Context& context) {
             }
             if (slot->role == Role::output) fail_request("'" + printable(name, 40) + "' is an output", "name it in 'keep'");
             const auto take = [&](const JsonValue& value) {
-                const Path file = resolved(value, name, step.name, settings);
+                const Path file = resolved(value, *slot, step.name, settings);
                 if (!slot->repeated && !slot->sources.empty()) fail_request("'" + printable(name, 40) + "' is given twice");
                 call.set_file(name, file);
                 return reference(relative(file));
@@ -537,7 +561,9 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
         if (slot->kind == Kind::mesh && slot->needed && !deforms) continue;
         if (part.empty() || target >= now.objects.size() || (slot->kind == Kind::mesh && !slot->needed)) {
             std::erase_if(now.files, [&](const SessionFile& one) { return one.name == name; });
-            now.files.push_back({name, to_string(slot->kind), made(name)});
+            const bool folder = is_folder(folder_ / made(name));
+            now.files.push_back({name, slot->kind == Kind::folder && !folder ? "file" : to_string(slot->kind), made(name)});
+            if (folder) take_folder(made(name), now);
             continue;
         }
         now.objects[target].parts[part] = made(name);
@@ -548,6 +574,20 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
     if (!deforms || target >= now.objects.size()) return;
     for (const auto& [file, text] : settings.documents)
         if (file.filename().string().ends_with("-edit.json")) now.objects[target].parts["edit"] = relative(file);
+}
+
+/// Meshes that a folder was filled with are objects, with their annotations.
+void Session::take_folder(const std::string& folder, SessionState& state) const {
+    constexpr std::size_t maximum = 24;
+    std::size_t count = 0;
+    for (const std::string& name : files_in(folder_ / folder)) {
+        if (extension(name) != ".ply" || ++count > maximum) continue;
+        SessionObject object{free_name(state, stem_of(name)), {{"mesh", folder + "/" + name}}};
+        const std::string annotations = folder + "/" + stem_of(name) + ".ant.json";
+        if (file_exists(folder_ / annotations)) object.parts["annotations"] = annotations;
+        state.objects.push_back(std::move(object));
+        state.active = state.objects.size() - 1;
+    }
 }
 
 Path Session::save(const std::string& name, Context& context) const {

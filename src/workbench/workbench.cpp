@@ -6,6 +6,7 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/words.h"
+#include "ostraka/operations/page_results.h"
 #include "ostraka/select/recipe.h"
 
 #include <cmath>
@@ -205,6 +206,8 @@ void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes
             one.set = shape->set ? &*shape->set : nullptr;
             one.graph = shape->graph ? &*shape->graph : nullptr;
             one.cage = shape->cage ? &shape->cage->mesh : nullptr;
+            if (i == state.active && !deformed && extension(file) == ".ply")
+                one.maps = ply_maps(session_.path_of(file), *shape->mesh);
             if (i == state.active) one.files = workbench::files_for(session_, deformed);
             scene.add(one);
             shown.PushBack(json_object(a, "object", i, "deformed", deformed), a);
@@ -242,6 +245,7 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
         start.annotations.up = shape->set->up;
         int id = 0;
         for (const Annotation& one : shape->set->annotations) id = std::max(id, one.id + 1);
+        for (Annotation& one : start.annotations.annotations) one.attributes.clear();  // none is looked at
         recipe["annotations"][0]["id"].SetInt(id);
     }
     const int own = recipe["annotations"][0]["id"].GetInt();

@@ -115,6 +115,25 @@ TEST(Edit, EveryActionOnEveryType) {
     EXPECT_EQ(again.find(3)->points, std::vector<Index>{24});
 }
 
+TEST(Edit, WhatIsSaidOfOtherAnnotationsStays) {
+    // A descriptor that an operation of collections wrote cannot be computed here: other parts are selected all the same.
+    const Mesh mesh = grid(4);
+    RecipeStart start = start_with(tile_steps, mesh);
+    Attribute height;
+    height.id = 9;
+    height.name = "height";
+    height.type = AttributeType::descriptor;
+    height.descriptor.values = {7};
+    height.descriptor.stale = true;
+    start.annotations.annotations[0].attributes.push_back(height);
+    const AnnotationSet set =
+        follow(R"({"id": 4, "tag": "spot", "type": "point", "select": {"vertices": [0]}})", mesh, "", std::move(start));
+    ASSERT_EQ(set.annotations.size(), 4U);
+    ASSERT_EQ(set.find(1)->attributes.size(), 3U);
+    EXPECT_EQ(set.find(1)->attributes[2].descriptor.values, std::vector<double>{7});
+    EXPECT_TRUE(set.find(1)->attributes[2].descriptor.stale);
+}
+
 TEST(Edit, AddingAndRemovingUndoEachOther) {
     OSTRAKA_SCAN(mesh, "mannequin-devil.off");
     const std::string left = R"({"frame": "box", "box": {"min": [0, 0, 0], "max": [0.4, 1, 1]}})",

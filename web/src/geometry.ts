@@ -452,6 +452,20 @@ export class DrawnObject {
     this.bvhMade?.refit();
   }
 
+  private cloud: THREE.Points | undefined;
+  /** Drawn as a surface, by its edges, or by its vertices. */
+  style(kind: "surface" | "edges" | "points") {
+    surface.wireframe = kind === "edges";
+    this.mesh.visible = kind !== "points";
+    if (kind === "points" && !this.cloud) {
+      const places = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(this.current, 3));
+      this.cloud = new THREE.Points(places, flatMaterial([90, 80, 70], 2));
+      this.cloud.frustumCulled = false;
+      this.group.add(this.cloud);
+    }
+    if (this.cloud) this.cloud.visible = kind === "points";
+  }
+
   /** Colours by a number of each vertex, from 0 (as clay is) to 1 (red). */
   paintValues(values: Float32Array) {
     const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;

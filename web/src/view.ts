@@ -47,6 +47,8 @@ export class View {
   private last = performance.now();
   private readonly plane = new THREE.Plane();
   private panes: DrawnObject[] = [];
+  /** Drawn with the object of each pane. */
+  private layers: DrawnObject[] = [];
   private frames: { centre: THREE.Vector3; scale: number; turn: THREE.Quaternion }[] = [];
   /** The first view has been fitted to the canvas. */
   private placed = false;
@@ -88,15 +90,35 @@ export class View {
     this.frames = [];
     this.placed = keepsCamera && this.placed;
     this.frame();
+    this.layers = [];
     for (const one of objects) {
-      const { centre, scale, turn } = this.frames[one.index];
-      one.group.quaternion.copy(turn);
-      one.group.scale.setScalar(scale);
-      one.group.position.copy(centre).applyQuaternion(turn).multiplyScalar(-scale);
-      one.group.updateMatrixWorld(true);
+      this.stand(one);
       this.scene.add(one.group);
     }
     if (!this.placed) this.home(false);
+  }
+
+  /** Where an object stands by itself. */
+  private stand(one: DrawnObject) {
+    const { centre, scale, turn } = this.frames[one.index];
+    one.group.quaternion.copy(turn);
+    one.group.scale.setScalar(scale);
+    one.group.position.copy(centre).applyQuaternion(turn).multiplyScalar(-scale);
+    one.group.updateMatrixWorld(true);
+  }
+
+  /** Other objects are drawn with this one, where their coordinates put them beside it. */
+  showWith(of: DrawnObject, layers: DrawnObject[]) {
+    for (const one of this.layers) this.stand(one);
+    this.layers = layers;
+    for (const one of layers) {
+      const apart = new THREE.Vector3(...one.about.origin).sub(new THREE.Vector3(...of.about.origin));
+      one.group.quaternion.copy(of.group.quaternion);
+      one.group.scale.copy(of.group.scale);
+      one.group.position.copy(of.group.position).add(apart.applyQuaternion(of.group.quaternion).multiply(of.group.scale));
+      one.group.updateMatrixWorld(true);
+    }
+    this.draw();
   }
 
   /** Takes its objects back from where they were shown meanwhile. */
@@ -226,7 +248,7 @@ export class View {
     if (this.clip < 1) shared.clip.value.set(normal.x, normal.y, normal.z, this.clip);
     else shared.clip.value.set(0, 0, 0, 1);
     this.panes.forEach((pane, i) => {
-      for (const one of this.objects) one.group.visible = one === pane;
+      for (const one of this.objects) one.group.visible = one === pane || this.layers.includes(one);
       renderer.setViewport(i * width, 0, width, height);
       renderer.setScissor(i * width, 0, width, height);
       renderer.render(this.scene, this.camera);

@@ -9,21 +9,22 @@ import { join, relative } from "node:path";
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 
-const [command, project, pictures] = process.argv.slice(2);
+const [command, project, pictures, only] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "ostraka-workbench-"));
 const at = (name) => join(folder, name);
 const ostraka = (...words) => execFileSync(command, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
 const require = createRequire(import.meta.url);
-const patience = 60000;
+const patience = Number(process.env.PATIENCE ?? 60000);
 
 const browser = await chromium.launch({
   executablePath: process.env.OSTRAKA_CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
+  args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run", ...(process.env.PAGE ? ["--disable-features=LocalNetworkAccessChecks"] : [])],
 });
 
 const failures = [];
 let count = 0;
 async function test(name, work) {
+  if (only && !name.includes(only)) return;
   ++count;
   const began = Date.now();
   try {
@@ -35,9 +36,12 @@ async function test(name, work) {
   }
 }
 
+const servers = new Set();
 /** The command as a person starts it: its address once it is there. */
 function serve(...words) {
   const child = spawn(command, ["workbench", ...words, "--no-browser"], { stdio: ["ignore", "pipe", "pipe"] });
+  servers.add(child);
+  child.on("exit", () => servers.delete(child));
   let said = "";
   child.stderr.on("data", (data) => (said += data));
   const address = new Promise((done, failed) => {
@@ -65,8 +69,13 @@ async function open(address, options = {}, script) {
   });
   page.on("pageerror", (error) => told.push(String(error)));
   if (script) await page.addInitScript(script);
+  // A page that was built since the command was.
+  if (process.env.PAGE)
+    await page.route((url) => url.pathname === "/", async (route) => route.fulfill({ response: await route.fetch(), body: readFileSync(process.env.PAGE, "utf8") }));
   await page.goto(address);
-  await settled(page);
+  await settled(page).catch((error) => {
+    throw new Error(`${error.message}\n${told.join("\n")}`);
+  });
   return { page, told, context, close: () => context.close() };
 }
 
@@ -224,7 +233,190 @@ try {
     ostraka("annotation", "apply", at("pot.ply"), join(session, recipe), at("again.ant.json"));
     assert.equal(sha(at("again.ant.json")), sha(join(session, JSON.parse(readFileSync(join(session, "session.json"))).steps[2].state.objects[0].parts.annotations)));
   });
+  await test("fragments: opened, fitted by a template, completed, one taken out", async () => {
+    mkdirSync(at("find"));
+    const find = (name) => join(at("find"), name);
+    ostraka("mesh", "make", "statuette", find("whole.ply"), "--vertices", "4000");
+    ostraka("annotation", "apply", find("whole.ply"), join(project, "data/statuette.recipe.json"), find("whole.ant.json"));
+    ostraka("template", "pack", find("whole.template.json"), "--mesh", find("whole.ply"), "--annotations", find("whole.ant.json"));
+    for (const [name, part] of [["upper", "head"], ["lower", "body"]])
+      ostraka("mesh", "break", find("whole.ply"), find(`${name}.ply`), "--annotations", find("whole.ant.json"), "--annotations-out", find(`${name}.ant.json`), "--share", "0.35", "--at", part);
+    const server = serve(at("find"));
+    const { page, told, close } = await open(await server.address);
+    let n = 0;
+    for (const name of ["whole.template.json", "upper.ply", "lower.ply"]) {
+      await page.locator("header select").first().selectOption(name);
+      await steps(page, ++n);
+    }
+    // A landmark that is picked by hand on a fragment goes with it.
+    await useTool(page, "points");
+    const [w, h] = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
+    const box = await page.locator(".canvas canvas").boundingBox();
+    await page.mouse.click(box.x + 0.5 * w, box.y + 0.5 * h);
+    await page.locator(".canvas canvas").press("Enter");
+    await selected(page);
+    await page.locator(".annotate input").first().fill("seen here");
+    await page.locator(".annotate button[type=submit]").first().click();
+    await steps(page, ++n);
+    // The whole is in the list as a template's file: it is packed once more, as the session has it.
+    await page.locator(".layer input").first().check();
+    await steps(page, ++n);
+    await page.evaluate(() => ostraka.model.run({ operation: "template pack", title: "pack", with: { mesh: { part: "mesh", object: 0 }, annotations: { part: "annotations", object: 0 }, copy: true } }));
+    await steps(page, ++n);
+    await tab(page, "fragments");
+    await page.locator("#panel details").first().locator("summary").click();
+    await page.locator("#input-fragments").selectOption([{ label: "upper: mesh" }, { label: "lower: mesh" }]);
+    await page.locator("#input-template").selectOption({ index: 1 });
+    await page.getByRole("button", { name: "Run fit" }).click();
+    await steps(page, ++n);
+    const done = await page.evaluate(() => ({ objects: ostraka.model.objects.value.map((one) => one.name), text: ostraka.model.outcome.value.text, maps: ostraka.page.page.objects[ostraka.page.object.value].maps.map((one) => one.name) }));
+    assert.ok(done.objects.includes("completed"), JSON.stringify(done.objects));
+    assert.ok(done.maps.length > 0, "what is observed and what is hypothesis is a map");
+    await page.evaluate(() => (ostraka.page.map.value = 0));
+    await tab(page, "results");
+    await picture(page, "workbench-fragments.png");
+    // One fragment is taken out: the step is undone, and the other fitted alone; what was done before stays.
+    await page.getByRole("button", { name: "Undo" }).click();
+    await steps(page, n - 1);
+    assert.ok(!(await page.evaluate(() => ostraka.model.objects.value.map((one) => one.name))).includes("completed"));
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+    ostraka("run", join(at("find"), "session", "session.study.json"), "--output", at("find-again"));
+    const [mine, theirs] = [tree(join(at("find"), "session", "steps")), tree(join(at("find-again"), "steps"))];
+    for (const name of theirs.keys()) if (!/(report|record).json$/.test(name)) assert.equal(theirs.get(name), mine.get(name), name);
+  });
+
+  await test("virtual reality: gaze, pinch, two hands, voice's words", async () => {
+    ostraka("annotation", "apply", at("pot.ply"), join(project, "data/teapot.recipe.json"), at("vr.ant.json"));
+    copyFileSync(at("pot.ply"), at("vr.ply"));
+    ostraka("annotation", "apply", at("vr.ply"), join(project, "data/teapot.recipe.json"), at("vr.ant.json"));
+    ostraka("cage", "make", at("vr.ply"), at("vr.cage.ply"), "--vertices", "80");
+    ostraka("cage", "weights", at("vr.ply"), at("vr.cage.ply"), at("vr.npy"));
+    const server = serve(at("vr.ply"));
+    const headset = readFileSync(require.resolve("iwer/build/iwer.min.js"), "utf8") + ";globalThis.headset = new IWER.XRDevice(IWER.metaQuest3); headset.installRuntime({ forceInstall: true });";
+    const { page, told, close } = await open(await server.address, {}, headset);
+    await steps(page, 1);
+    await page.getByRole("button", { name: "Enter VR" }).click();
+    const frames = (n) => page.evaluate((n) => new Promise((done) => {
+      const end = ostraka.xr.frames.value + n;
+      const wait = () => (ostraka.xr.frames.value >= end ? done() : requestAnimationFrame(wait));
+      wait();
+    }), n);
+    await until(page, "entering", "() => ostraka.xr.isInside() && ostraka.xr.frames.value > 3");
+    // The head turns to a control point that is not behind others.
+    const gaze = await page.evaluate(() => {
+      const of = ostraka.objects[0];
+      headset.position.set(0, 1.6, 0);
+      const from = { x: 0, y: 1.6, z: 0 };
+      let best;
+      for (let i = 0; i < ostraka.deform.controls(of); ++i) {
+        const p = of.group.localToWorld(ostraka.deform.control(of, i));
+        if (!best || p.z > best.p.z) best = { i, p: { x: p.x, y: p.y, z: p.z } };
+      }
+      const d = [best.p.x - from.x, best.p.y - from.y, best.p.z - from.z];
+      const n = Math.hypot(...d);
+      // From straight ahead to there.
+      const [x, y, z] = d.map((v) => v / n);
+      const q = [y, -x, 0, 1 - z];
+      const l = Math.hypot(...q);
+      headset.quaternion.set(q[0] / l, q[1] / l, q[2] / l, q[3] / l);
+      return best;
+    });
+    await frames(4);
+    assert.equal(await page.evaluate(() => ostraka.commands.gazedPoint.value), gaze.i);
+    assert.ok(await page.evaluate(() => ostraka.commands.say("select")));
+    assert.deepEqual(await page.evaluate(() => [...ostraka.deform.handles.value]), [gaze.i]);
+    assert.ok(await page.evaluate(() => ostraka.commands.say("Discard.")));
+    assert.equal(await page.evaluate(() => ostraka.deform.handles.value.size), 0);
+    // A hand takes it and moves it.
+    const before = await page.evaluate(async (i) => {
+      const answer = await ostraka.model.link.ask("influence", { handles: [i] });
+      const weights = [...new Float32Array(answer.bytes.buffer, answer.bytes.byteOffset + answer.result.values[0], answer.result.values[1] / 4)];
+      const about = ostraka.page.page.objects[0];
+      return { weights, rest: [...ostraka.objects[0].shape.positions], origin: about.origin, diagonal: Math.hypot(...about.size), scale: ostraka.objects[0].group.matrixWorld.elements };
+    }, gaze.i);
+    await page.evaluate(({ x, y, z }) => headset.controllers.right.position.set(x, y, z), gaze.p);
+    await frames(4);
+    await page.evaluate(() => headset.controllers.right.updateButtonValue("trigger", 1));
+    await until(page, "grabbing", "() => ostraka.deform.held() !== undefined");
+    for (let k = 1; k <= 4; ++k) {
+      await page.evaluate(({ p, k }) => headset.controllers.right.position.set(p.x + 0.03 * k, p.y + 0.02 * k, p.z), { p: gaze.p, k });
+      await frames(2);
+    }
+    await page.evaluate(() => headset.controllers.right.updateButtonValue("trigger", 0));
+    await steps(page, 2);
+    const after = await page.evaluate(() => {
+      const i = ostraka.model.shown.value.findIndex((one) => one.deformed);
+      return { positions: [...ostraka.objects[i].shape.positions], origin: ostraka.page.page.objects[i].origin };
+    });
+    // Of the room 12 cm to the right and 8 up, in the object's own lengths.
+    const m = before.scale;
+    const column = (k) => [m[4 * k], m[4 * k + 1], m[4 * k + 2]];
+    const square = column(0).reduce((sum, x) => sum + x * x, 0);
+    const way = [0, 1, 2].map((k) => (column(k)[0] * 0.12 + column(k)[1] * 0.08) / square);
+    let worst = 0;
+    let most = 0;
+    before.weights.forEach((w, v) => {
+      const off = [0, 1, 2].map((k) => after.positions[3 * v + k] + after.origin[k] - before.rest[3 * v + k] - before.origin[k] - w * way[k]);
+      worst = Math.max(worst, Math.hypot(...off));
+      most = Math.max(most, w);
+    });
+    console.log(`# moved vertices are off by ${(worst / before.diagonal).toExponential(2)} of the diagonal at most`);
+    assert.ok(worst < 1e-3 * before.diagonal && most > 0.05, `${worst} of ${before.diagonal}, ${most}`);
+    // An annotation's control points, scaled by two hands.
+    await page.evaluate(() => {
+      ostraka.deform.set([]);
+      const i = ostraka.page.page.objects[ostraka.page.object.value].annotations.findIndex((one) => one.tag === "handle");
+      ostraka.page.choose(i);
+      return ostraka.deform.ofAnnotation(ostraka.page.page.objects[ostraka.page.object.value].annotations[i].id);
+    });
+    assert.ok((await page.evaluate(() => ostraka.deform.handles.value.size)) > 1);
+    if (pictures) await picture(page, "workbench-vr.png");
+    await page.evaluate(() => {
+      headset.controllers.left.position.set(-0.6, 1.0, 0.2);
+      headset.controllers.right.position.set(0.6, 1.0, 0.2);
+    });
+    await frames(3);
+    await page.evaluate(() => headset.controllers.left.updateButtonValue("trigger", 1));
+    await frames(2);
+    await page.evaluate(() => headset.controllers.right.updateButtonValue("trigger", 1));
+    await until(page, "holding", "() => ostraka.deform.held()?.motion === 'scale'");
+    await page.evaluate(() => headset.controllers.right.position.set(0.84, 1.0, 0.2));
+    await frames(3);
+    await page.evaluate(() => headset.controllers.left.updateButtonValue("trigger", 0));
+    await steps(page, 3);
+    await page.evaluate(() => headset.controllers.right.updateButtonValue("trigger", 0));
+    await frames(2);
+    const scaled = await page.evaluate(async () => {
+      const answer = await ostraka.model.link.ask("file", { file: ostraka.model.object.value.parts.edit });
+      return JSON.parse(new TextDecoder().decode(answer.bytes)).steps.at(-1);
+    });
+    assert.ok(Math.abs(scaled.scale.factor - 1.2) < 0.01, JSON.stringify(scaled));
+    // Said words.
+    assert.ok(await page.evaluate(() => ostraka.commands.say("undo")));
+    await steps(page, 2);
+    assert.ok(await page.evaluate(() => ostraka.commands.say("level two")));
+    const shownNow = await page.evaluate(() => {
+      const about = ostraka.page.page.objects[ostraka.page.object.value];
+      return about.annotations.map((one, i) => [i, ostraka.page.isShown(ostraka.page.object.value, i)]).filter(([, is]) => is).map(([i]) => ostraka.commands.depthOf(i));
+    });
+    assert.ok(shownNow.length > 0 && shownNow.every((depth) => depth === 2), JSON.stringify(shownNow));
+    for (const said of ["hide cage", "hide CPs", "show cage", "show CPs"]) assert.ok(await page.evaluate((said) => ostraka.commands.say(said), said), said);
+    assert.ok(!(await page.evaluate(() => ostraka.commands.say("make coffee"))));
+    await page.evaluate(() => ostraka.page.setLanguage("de"));
+    assert.ok(await page.evaluate(() => ostraka.commands.say("Ebene eins")));
+    await page.evaluate(() => ostraka.page.setLanguage("it"));
+    assert.ok(await page.evaluate(() => ostraka.commands.say("nascondi gabbia")));
+    await page.evaluate(() => ostraka.page.setLanguage("en"));
+    await page.evaluate(() => ostraka.commands.say("leave VR"));
+    await until(page, "leaving", "() => !ostraka.xr.isInside()");
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
 } finally {
+  for (const child of servers) child.kill("SIGKILL");
   await browser.close();
   if (!process.env.KEEP) rmSync(folder, { recursive: true, force: true });
   else console.log(folder);

@@ -89,10 +89,11 @@ private:
     struct Settings;
     [[nodiscard]] std::string relative(const Path& file) const;
     [[nodiscard]] std::string reference(const std::string& file) const;
-    [[nodiscard]] Path resolved(const JsonValue& value, const std::string& slot, const std::string& step,
-                                Settings& settings) const;
+    [[nodiscard]] Path resolved(const JsonValue& value, const Slot& input, const std::string& step, Settings& settings) const;
+    [[nodiscard]] Path with_beside(const SessionObject& object, const std::string& step, Settings& settings) const;
     void name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const;
     void take_outputs(const Call& call, const JsonValue& request, const Settings& settings, SessionStep& step) const;
+    void take_folder(const std::string& folder, SessionState& state) const;
     [[nodiscard]] std::string next_name() const;
     void add(SessionStep step);
     void write() const;

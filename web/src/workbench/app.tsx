@@ -1,4 +1,4 @@
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Language } from "../data";
 import { Picture, drawn, view } from "../picture";
@@ -143,6 +143,21 @@ function Layers() {
           <label>
             <input type="radio" name="active" checked={i === active.value} onChange={() => void model.change("activate", "activate", { object: i })} /> {one.name}
           </label>
+          {i !== active.value && (
+            <label>
+              <input
+                type="checkbox"
+                checked={model.layers.value.has(one.name)}
+                onChange={(event) => {
+                  const next = new Set(model.layers.value);
+                  if (event.currentTarget.checked) next.add(one.name);
+                  else next.delete(one.name);
+                  model.layers.value = next;
+                }}
+              />{" "}
+              {text("showWith")}
+            </label>
+          )}
           <button type="button" aria-label={`${text("close")}: ${one.name}`} onClick={() => void model.change("close", "close", { object: i })}>
             ×
           </button>
@@ -165,6 +180,24 @@ const views: [page.Word, number, number][] = [
   ["top", 0, 89.9],
   ["bottom", 0, -89.9],
 ];
+
+/** The layers beside the object that is worked on, and how things are drawn. */
+effect(() => {
+  const names = model.layers.value;
+  const style = model.drawnAs.value;
+  const of = drawn[page.object.value];
+  void page.turn.value;
+  if (!view || !of) return;
+  const list = drawn.filter((one, i) => {
+    const about = model.shown.value[i];
+    if (!about || one === of || about.object === model.active.value) return false;
+    const last = !model.shown.value.some((other, k) => k > i && other.object === about.object); // the deformed one, if there is one
+    return last && names.has(model.objects.value[about.object]?.name);
+  });
+  for (const one of list) one.paint(() => true);
+  for (const one of drawn) one.style(style);
+  view.showWith(of, list);
+});
 
 function ViewBar() {
   const about = page.page.objects[page.object.value];
@@ -191,6 +224,14 @@ function ViewBar() {
               {one}
             </option>
           ))}
+        </select>
+      </label>
+      <label>
+        {text("drawnAs")}{" "}
+        <select value={model.drawnAs.value} onChange={(event) => (model.drawnAs.value = event.currentTarget.value as "surface")}>
+          <option value="surface">{text("surface")}</option>
+          <option value="edges">{text("wire")}</option>
+          <option value="points">{text("cloud")}</option>
         </select>
       </label>
       {about && about.maps.length > 0 && (

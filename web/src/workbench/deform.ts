@@ -6,7 +6,7 @@ import { flatMaterial, shared, type DrawnObject } from "../geometry";
 import { drawn, view } from "../picture";
 import * as page from "../state";
 import { numbersIn } from "./link";
-import { attempt, has, link, onShown, part, run } from "./model";
+import { attempt, has, link, object, onShown, part, run } from "./model";
 import { text } from "./words";
 
 export type Motion = "move" | "rotate" | "scale" | "stretch";
@@ -133,14 +133,32 @@ let now: Drag | undefined;
 let ended: { x: number; y: number } | undefined;
 
 export async function grab(motion: Motion, from: { x: number; y: number }): Promise<boolean> {
-  const of = subject();
+  const of = drawn[page.object.value];
   ended = undefined;
+  if (of && !of.about.cage) return grabWhole(of, motion, from);
   if (!of || handles.value.size === 0) return false;
   if (!has("coordinates")) {
     await attempt(text("deform"), () => link.ask("grab", { handles: [...handles.value] }));
     return false;
   }
   return begin(of, motion, from);
+}
+
+/** An object without a cage is moved as a whole, such as a fragment. */
+async function grabWhole(of: DrawnObject, motion: Motion, from: { x: number; y: number }): Promise<boolean> {
+  const { positions } = of.shape;
+  const weights = new Float32Array((4 * positions.length) / 3);
+  for (let v = 0; v < positions.length / 3; ++v) {
+    for (let k = 0; k < 3; ++k) weights[4 * v + k] = positions[3 * v + k];
+    weights[4 * v + 3] = 1;
+  }
+  of.follows(weights);
+  const centre = new THREE.Vector3(...of.about.size).multiplyScalar(0.5);
+  now = {
+    of, motion, list: [], rest: [], centre, from, linear: new THREE.Matrix3(), shift: new THREE.Vector3(),
+    edit: { steps: [] }, constrained: false, asked: 0, next: undefined, ready: true, step: undefined,
+  };
+  return true;
 }
 
 async function begin(of: DrawnObject, motion: Motion, from: { x: number; y: number }): Promise<boolean> {
@@ -225,7 +243,7 @@ function apply(one: Drag, step: any) {
   for (const i of [0, 4, 8]) bend.elements[i] -= 1;
   shared.bend.value.copy(bend);
   shared.shift.value.copy(shift);
-  moveControls(one.of, one.list, moved);
+  if (one.list.length > 0) moveControls(one.of, one.list, moved);
   view?.draw();
 }
 
@@ -282,6 +300,7 @@ export async function release(to: { x: number; y: number }): Promise<boolean> {
 async function finishWith(one: Drag, step: object): Promise<boolean> {
   now = undefined;
   ended = undefined;
+  if (one.list.length === 0) return finishWhole(one, step);
   const constrained = keepsConstraints.value && has("graph");
   const given: Record<string, unknown> = {
     mesh: part("mesh"),
@@ -297,6 +316,19 @@ async function finishWith(one: Drag, step: object): Promise<boolean> {
   }
   if (constrained) Object.assign(given, { graph: part("graph"), space: "cage" });
   const done = await run({ operation: "deform", title: text("deformedBy", text(one.motion), one.list.length), with: given, keep, as: "deformed" });
+  still(one.of);
+  return done;
+}
+
+async function finishWhole(one: Drag, step: object): Promise<boolean> {
+  const edit = object.value?.parts.edit;
+  const before = edit ? JSON.parse(new TextDecoder().decode((await link.ask("file", { file: edit })).bytes)).steps : [];
+  const given: Record<string, unknown> = {
+    mesh: part("mesh"),
+    edit: { document: { format: "ostraka-edit", version: 1, steps: [...before, { select: { all: true }, ...step }] } },
+  };
+  if (has("annotations")) given.annotations = part("annotations");
+  const done = await run({ operation: "deform", title: text("movedWhole", text(one.motion)), with: given, keep: has("annotations") ? ["annotations-out"] : [], as: "deformed" });
   still(one.of);
   return done;
 }
@@ -334,7 +366,7 @@ export function letGo() {
   now = undefined;
   ended = undefined;
   if (!one) return;
-  moveControls(one.of, one.list, one.rest);
+  if (one.list.length > 0) moveControls(one.of, one.list, one.rest);
   still(one.of);
 }
 

@@ -67,6 +67,10 @@ export const outcome = signal<{ title: string; text: string; holds: boolean; not
 export const object = computed<SessionObject | undefined>(() => objects.value[active.value]);
 export const has = (part: string) => object.value?.parts[part] !== undefined;
 
+/** Objects of the session that are drawn with the one that is worked on, and how all are drawn. */
+export const layers = signal<ReadonlySet<string>>(new Set());
+export const drawnAs = signal<"surface" | "edges" | "points">("surface");
+
 /** Called when another content is on the page. */
 export const onShown: (() => void)[] = [];
 
@@ -138,7 +142,7 @@ export interface Run {
   operation: string;
   title: string;
   with: Record<string, unknown>;
-  keep?: string[];
+  keep?: (string | { output: string; file: string })[];
   as?: "deformed";
 }
 

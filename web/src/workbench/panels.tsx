@@ -349,9 +349,28 @@ export function Fragments() {
   );
 }
 
+/** Slices across up, described, with the profile; the panel's slider goes through them. */
+function cut(count: number) {
+  const name = object.value!.name;
+  const given: Record<string, unknown> = { mesh: part("mesh"), count };
+  if (has("annotations")) given.annotations = part("annotations");
+  const keep = [
+    { output: "output", file: `${name}.slices.json` },
+    { output: "profile", file: `${name}.profile.svg` },
+  ];
+  return run({ operation: "slice", title: text("slice"), with: given, keep });
+}
+
 export function Slicing() {
+  const [count, setCount] = useState("40");
   return (
     <>
+      <div class="buttons">
+        <label>
+          {text("count")} <input type="number" min="1" max="1000" value={count} onInput={(event) => setCount(event.currentTarget.value)} />
+        </label>
+        <Button name="slice" title={helpOf("slice")} onClick={() => void cut(Number(count))} />
+      </div>
       <Slices />
       <More title="slice" operation="slice" />
       <More title="axis" operation="axis" />

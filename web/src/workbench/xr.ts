@@ -122,7 +122,9 @@ function look() {
   const of = subject();
   if (!of || !view) return;
   const head = view.renderer.xr.getCamera();
-  const from = new THREE.Vector3().setFromMatrixPosition(head.matrixWorld);
+  // Between the eyes: the camera of both stands behind them.
+  const from = new THREE.Vector3();
+  for (const eye of head.cameras) from.addScaledVector(new THREE.Vector3().setFromMatrixPosition(eye.matrixWorld), 1 / head.cameras.length);
   const along = new THREE.Vector3(0, 0, -1).transformDirection(head.matrixWorld);
   let best = Math.cos((3 * Math.PI) / 180);
   let point = -1;
@@ -195,7 +197,7 @@ function stepOf(): object | undefined {
 }
 let last: object | undefined;
 
-async function press(hand: Hand) {
+function press(hand: Hand) {
   hand.pressed = true;
   hand.start = placeOf(hand);
   hand.startTurn = hand.ray.getWorldQuaternion(new THREE.Quaternion());
@@ -212,20 +214,23 @@ async function press(hand: Hand) {
     // The second hand makes it a scaling, from where both hands are now.
     deform.letGo();
     for (const one of pressed) one.start = placeOf(one);
-    await deform.hold("scale");
+    holding = deform.hold("scale");
     return;
   }
   const point = touched(hand);
   if (point >= 0 && !deform.handles.value.has(point)) deform.set([...deform.handles.value, point]);
-  await deform.hold(tool.value === "rotate" ? "rotate" : "move");
+  holding = deform.hold(tool.value === "rotate" ? "rotate" : "move");
 }
+/** The drag that the command is asked to begin. */
+let holding: Promise<boolean> = Promise.resolve(false);
 
 async function letGo(hand: Hand) {
   if (!hand.pressed) return;
-  const step = stepOf();
+  const step = deform.held() ? stepOf() : undefined;
   const both = hands.every((one) => one.pressed);
   hand.pressed = false;
   if (both) for (const one of hands) one.pressed = false;
+  await holding;
   if (!deform.held()) return;
   if (step) await deform.letGoWith(step);
   else deform.letGo();
@@ -261,6 +266,7 @@ export async function enter(): Promise<void> {
   const { renderer } = view;
   const made: XRSession = await (navigator as any).xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor", "hand-tracking"] });
   session = made;
+  document.body.classList.add("in-vr"); // what is drawn over the picture is not where it belongs
   if (!room) makeRoom();
   renderer.xr.enabled = true;
   renderer.autoClear = true;
@@ -271,7 +277,7 @@ export async function enter(): Promise<void> {
     const mark = new THREE.Mesh(new THREE.SphereGeometry(0.012, 12, 8), flatMaterial([29, 79, 145]));
     ray.add(mark);
     const hand: Hand = { ray, mark, pressed: false, start: new THREE.Vector3(), startTurn: new THREE.Quaternion() };
-    ray.addEventListener("selectstart", () => void press(hand));
+    ray.addEventListener("selectstart", () => press(hand));
     ray.addEventListener("selectend", () => void letGo(hand));
     room!.add(ray);
     hands.push(hand);
@@ -286,6 +292,7 @@ export async function enter(): Promise<void> {
 
 function leave() {
   session = undefined;
+  document.body.classList.remove("in-vr");
   if (!view) return;
   const { renderer } = view;
   renderer.setAnimationLoop(null);
