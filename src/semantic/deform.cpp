@@ -510,9 +510,10 @@ struct LiveDeformation::State {
     std::vector<Index> handles;
     std::vector<int> held;  ///< vertices of the cage that steps moved, in the order of the constraint that holds them
     std::vector<Point> cage;
-    Points points;        ///< the same
-    Points asked;         ///< of the mesh (any) and the cage, as the handles alone leave it
-    Points displacement;  ///< of one vertex
+    Points points;                    ///< the same
+    Points asked;                     ///< of the mesh (any) and the cage, as the handles alone leave it
+    Points displacement;              ///< of one vertex
+    std::vector<std::size_t> beside;  ///< Laplacian displacements that the handles are part of
     CageSystem system;
 };
 
@@ -535,6 +536,12 @@ LiveDeformation::LiveDeformation(const HandleSpace& space, const RelationGraph& 
         state_->asked.rightCols(state_->points.cols()) = state_->points;
         const auto offset = static_cast<int>(space.coordinates->vertex.rows());
         for (const int id : state_->system.solver->constraint(0).ids()) state_->held.push_back(id - offset);
+        const std::set<Index> dragged(state_->handles.begin(), state_->handles.end());
+        for (std::size_t k = 0; k < state_->system.displacements; ++k) {
+            const auto& ids = state_->system.solver->constraint(state_->system.first_displacement + k).ids();
+            if (std::any_of(ids.begin(), ids.end(), [&](int id) { return dragged.contains(static_cast<Index>(id - offset)); }))
+                state_->beside.push_back(state_->system.first_displacement + k);
+        }
         state_->system.solver->initialize();
     }
 }
@@ -567,8 +574,7 @@ const std::vector<Point>& LiveDeformation::follow(const std::vector<Point>& plac
     if (state.options.details == DeformOptions::Details::edited) {
         const Eigen::Index offset = state.asked.cols() - state.points.cols();
         for (std::size_t i = 0; i < places.size(); ++i) state.asked.col(offset + state.handles[i]) = eigen(places[i]);
-        for (std::size_t k = 0; k < state.system.displacements; ++k) {
-            const std::size_t place = state.system.first_displacement + k;
+        for (const std::size_t place : state.beside) {
             state.system.solver->constraint(place).rows_of(state.asked, state.displacement);
             state.system.solver->set_target(place, state.displacement);
         }

@@ -316,6 +316,7 @@ void WorkbenchServer::State::work() {
         add_members(event, event.GetAllocator(), "event", "progress", "phase", phase, "share", share);
         asio::post(self->io, [self, text = to_compact_text(event)] { self->tell_all(text); });
     };
+    workbench.prepare();
     for (;;) {
         Request request;
         {

@@ -4,9 +4,11 @@
 #include "scene.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/words.h"
 #include "ostraka/operations/page_results.h"
+#include "ostraka/relation/topology.h"
 #include "ostraka/select/recipe.h"
 
 #include <cmath>
@@ -54,6 +56,7 @@ struct Workbench::Deformation {
     std::vector<Index> handles;
     std::array<double, 3> low{};  ///< of the box of the shape that is shown: positions are relative to it
     std::unique_ptr<LiveDeformation> live;
+    Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> weights;  ///< as they are drawn with
 };
 
 Workbench::Workbench(Path folder, Path root)
@@ -66,6 +69,15 @@ Workbench::Workbench(Path folder, Path root)
 
 Workbench::~Workbench() = default;
 
+void Workbench::prepare() {
+    try {
+        for (const SessionObject& object : session_.state().objects)
+            for (const char* part : {"mesh", "deformed"})
+                if (const std::string file = object.part(part); !file.empty()) static_cast<void>(mesh_of(file));
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): the page will ask for it
+    }
+}
+
 void Workbench::cancel() {
     const std::lock_guard lock(mutex_);
     context_->watch.cancel();
@@ -77,7 +89,7 @@ const std::map<std::string, Workbench::Answer>& Workbench::answers() {
         {"select", &Workbench::select},       {"run", &Workbench::run},
         {"grab", &Workbench::grab},           {"drag", &Workbench::drag},
         {"influence", &Workbench::influence}, {"file", &Workbench::file},
-        {"handles", &Workbench::handles},
+        {"handles", &Workbench::handles},     {"parts", &Workbench::parts},
     };
     return all;
 }
@@ -299,7 +311,7 @@ Workbench::Deformation& Workbench::deformation() {
     static const AnnotationSet none;
     if (deformation_ && deformation_->of == object->name && !deformation_->coordinates.kind.empty() &&
         deformation_->rest->mesh == fresh->rest->mesh && deformation_->rest->cage == fresh->rest->cage)
-        fresh->coordinates = std::move(deformation_->coordinates);
+        fresh->coordinates = std::move(deformation_->coordinates), fresh->weights = std::move(deformation_->weights);
     else fresh->coordinates = read_coordinates(session_.path_of(file), fresh->rest->mesh->mesh, fresh->rest->cage->mesh);
     fresh->set = fresh->rest->set ? &*fresh->rest->set : &none;
     fresh->edit = json_document("edit");
@@ -325,6 +337,24 @@ void Workbench::handles(const JsonValue& request, Json& result, std::string& /*b
             : influence_threshold(drag.coordinates.vertex,
                                   threshold != nullptr && threshold->IsString() ? text_of(*threshold) : "auto-mesh", rows);
     add_members(result, result.GetAllocator(), "handles", influential(drag.coordinates, rows, least), "threshold", least);
+}
+
+/// Of each control point the annotations (by their places) that mean it: regions that contain no other.
+void Workbench::parts(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
+    const Deformation& drag = deformation();
+    std::vector<std::vector<std::size_t>> of(static_cast<std::size_t>(drag.coordinates.vertex.cols()));
+    const auto& all = drag.set->annotations;
+    const ContainmentOrder order = topology(drag.rest->mesh->mesh, *drag.set).order;
+    std::vector<bool> contains(all.size(), false);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (order.parent[i] && all[i].type == AnnotationType::region) contains[*order.parent[i]] = true;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].type != AnnotationType::region || contains[i]) continue;
+        const std::vector<Index> rows = vertices_of(drag.rest->mesh->mesh, all[i]);
+        for (const Index h : influential(drag.coordinates, rows, influence_threshold(drag.coordinates.vertex, "auto-mesh", rows)))
+            of[h].push_back(i);
+    }
+    add_members(result, result.GetAllocator(), "parts", of);
 }
 
 /// Of each vertex how much the handles move it, from 0 to 1: {"handles": [INDEX, ...]}.
@@ -360,6 +390,7 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
         for (const Relationship& one : drag.rest->graph->relationships)
             if (one.is_constraint) graph.relationships.push_back(one);
     const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    if (drag.weights.size() == 0) drag.weights = drag.coordinates.vertex.cast<float>();
     drag.live = std::make_unique<LiveDeformation>(space, graph, drag.edit, drag.handles);
     const auto& cage = drag.live->cage();
     auto& a = result.GetAllocator();
@@ -394,20 +425,24 @@ void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes)
         places.emplace_back(one[0].GetDouble(), one[1].GetDouble(), one[2].GetDouble());
     }
     const std::vector<Point>& cage = drag.live->follow(places);
-    const std::vector<Point> shape = deformed(drag.coordinates, drag.rest->cage->mesh, cage);
-    const auto packed = [&](const std::vector<Point>& points) {
-        std::vector<float> made;
-        made.reserve(3 * points.size());
-        for (const Point& p : points) {
-            made.push_back(static_cast<float>(p.x() - drag.low[0]));
-            made.push_back(static_cast<float>(p.y() - drag.low[1]));
-            made.push_back(static_cast<float>(p.z() - drag.low[2]));
-        }
-        return made;
+    const double solving = watch.seconds();
+    // In single precision, as it is drawn: half the memory that is read for a picture.
+    Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> moved(static_cast<Eigen::Index>(cage.size()), 3);
+    for (std::size_t i = 0; i < cage.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+            moved(static_cast<Eigen::Index>(i), k) = static_cast<float>(cage[i][k] - drag.low[static_cast<std::size_t>(k)]);
+    Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> shape(drag.weights.rows(), 3);
+    parallel_blocks(static_cast<std::size_t>(drag.weights.rows()), 512, [&](std::size_t begin, std::size_t end) {
+        const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+        shape.middleRows(first, count).noalias() = drag.weights.middleRows(first, count) * moved;
+    });
+    const auto bytes_in = [](const auto& matrix) {
+        return std::string_view(reinterpret_cast<const char*>(matrix.data()),
+                                static_cast<std::size_t>(matrix.size()) * sizeof(float));
     };
     auto& a = result.GetAllocator();
-    add_members(result, a, "positions", keep(bytes, bytes_of(packed(shape)), a), "cage", keep(bytes, bytes_of(packed(cage)), a),
-                "seconds", watch.seconds());
+    add_members(result, a, "positions", keep(bytes, bytes_in(shape), a), "cage", keep(bytes, bytes_in(moved), a), "solving",
+                solving, "seconds", watch.seconds());
 }
 
 }  // namespace ostraka

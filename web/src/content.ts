@@ -1,7 +1,7 @@
 // Contents: shown, opened from an index, named by the address.
 import * as THREE from "three";
 import { readEntry, type Blobs, type Content, type PageObject, type Shown } from "./data";
-import { DrawnObject, flatMaterial, readShape, type Shape } from "./geometry";
+import { DrawnObject, dotMaterial, flatMaterial, readShape, type Shape } from "./geometry";
 import { setScene, view } from "./picture";
 import * as state from "./state";
 import { View } from "./view";
@@ -66,7 +66,10 @@ async function cageOf(one: DrawnObject, content: Content): Promise<THREE.Object3
   geometry.setAttribute("position", new THREE.BufferAttribute(shape.positions.slice(), 3)); // control points can be dragged
   geometry.setIndex(new THREE.BufferAttribute(shape.triangles, 1));
   const lines = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 0), flatMaterial([58, 110, 165]));
-  const points = new THREE.Points(geometry, flatMaterial([29, 79, 145], 6));
+  const colours = new Uint8Array(shape.positions.length);
+  for (let i = 0; i < colours.length; i += 3) colours.set([29, 79, 145], i);
+  geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3, true));
+  const points = new THREE.Points(geometry, dotMaterial(7));
   const group = new THREE.Group().add(lines, points);
   group.position.fromArray(cage.origin);
   return group;

@@ -222,6 +222,36 @@ export function flatMaterial(colour: [number, number, number], dot = 0, through 
   });
 }
 
+/** Dots with a colour each. */
+export function dotMaterial(size: number): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    uniforms: { clip: shared.clip, size: { value: size } },
+    vertexShader: `
+      precision highp float;
+      uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
+      uniform float size;
+      in vec3 position, color;
+      out vec3 place, tint;
+      void main() {
+        vec4 at = modelMatrix * vec4(position, 1.0);
+        place = at.xyz;
+        tint = color;
+        gl_Position = projectionMatrix * viewMatrix * at;
+        gl_PointSize = size;
+      }`,
+    fragmentShader: `
+      precision highp float;
+      ${clipping}
+      in vec3 tint;
+      out vec4 pixel;
+      void main() {
+        if (dot(vec4(place, 1.0), clip) < 0.0 || length(gl_PointCoord - 0.5) > 0.5) discard;
+        pixel = vec4(tint, 1.0);
+      }`,
+  });
+}
+
 const clay: [number, number, number] = [201, 184, 160];
 
 /** A plane's contours as bands, so that they are as wide as is seen well from every side. */

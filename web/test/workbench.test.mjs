@@ -239,8 +239,8 @@ try {
     ostraka("mesh", "make", "statuette", find("whole.ply"), "--vertices", "4000");
     ostraka("annotation", "apply", find("whole.ply"), join(project, "data/statuette.recipe.json"), find("whole.ant.json"));
     ostraka("template", "pack", find("whole.template.json"), "--mesh", find("whole.ply"), "--annotations", find("whole.ant.json"));
-    for (const [name, part] of [["upper", "head"], ["lower", "body"]])
-      ostraka("mesh", "break", find("whole.ply"), find(`${name}.ply`), "--annotations", find("whole.ant.json"), "--annotations-out", find(`${name}.ant.json`), "--share", "0.35", "--at", part);
+    for (const [name, part] of [["upper", "head"], ["lower", "base"]])
+      ostraka("mesh", "break", find("whole.ply"), find(`${name}.ply`), "--annotations", find("whole.ant.json"), "--annotations-out", find(`${name}.ant.json`), "--share", "0.25", "--at", part);
     const server = serve(at("find"));
     const { page, told, close } = await open(await server.address);
     let n = 0;
@@ -285,6 +285,56 @@ try {
     ostraka("run", join(at("find"), "session", "session.study.json"), "--output", at("find-again"));
     const [mine, theirs] = [tree(join(at("find"), "session", "steps")), tree(join(at("find-again"), "steps"))];
     for (const name of theirs.keys()) if (!/(report|record).json$/.test(name)) assert.equal(theirs.get(name), mine.get(name), name);
+  });
+
+  await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
+    const evil = "</script><img src=x onerror=alert(1)>";
+    copyFileSync(at("pot.ply"), at("evil.ply"));
+    ostraka("annotation", "select", at("evil.ply"), at("evil.ant.json"), "--all", "--tag", evil);
+    const server = serve(at("evil.ply"));
+    const { page, told, close } = await open(await server.address);
+    await steps(page, 1);
+    assert.equal(await page.locator("img").count(), 0);
+    assert.ok((await page.locator("aside .tree .tag").first().textContent()).includes("<img"));
+    for (const language of ["en", "de", "it"]) {
+      await page.evaluate((language) => ostraka.page.setLanguage(language), language);
+      await page.evaluate(readFileSync(require.resolve("axe-core/axe.min.js"), "utf8"));
+      for (const name of ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"]) {
+        await tab(page, name);
+        if (language !== "en" && name !== "annotating") continue;
+        const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+        const serious = found.violations.filter((one) => one.impact === "serious" || one.impact === "critical");
+        assert.deepEqual(serious.map((one) => `${name}: ${one.id}: ${one.nodes[0].html}`), []);
+      }
+    }
+    await page.evaluate(() => ostraka.page.setLanguage("en"));
+    await tab(page, "annotating");
+    // Every control is reached by Tab, and the focus is seen.
+    await page.evaluate(() => document.activeElement.blur());
+    const wanted = await page.evaluate(() => [...document.querySelectorAll("button:not(:disabled), select, input:not(:disabled), summary, [tabindex='0']")].filter((one) => one.offsetParent !== null && !(one.type === "radio" && !one.checked)).length);
+    const reached = new Set();
+    for (let i = 0; i < 2 * wanted && reached.size < wanted; ++i) {
+      await page.keyboard.press("Tab");
+      const at = await page.evaluate(() => {
+        const one = document.activeElement;
+        return one === document.body ? undefined : [...document.querySelectorAll("*")].indexOf(one);
+      });
+      if (at !== undefined) reached.add(at);
+    }
+    assert.ok(reached.size >= wanted, `${reached.size} of ${wanted} are reached`);
+    // The palette, by keys only.
+    await page.keyboard.press("Control+k");
+    await page.keyboard.type("brush");
+    await page.keyboard.press("Enter");
+    assert.equal(await page.evaluate(() => ostraka.tools.tool.value), "brush");
+    // What goes wrong is told, with what to do about it.
+    await page.evaluate(() => ostraka.commands.linkCage());
+    await page.waitForFunction(() => document.querySelector("[role=alert]")?.textContent.includes("make a cage first"));
+    await page.evaluate(() => ostraka.model.run({ operation: "mesh simplify", title: "x", with: { input: { part: "mesh" }, vertices: -1 } }));
+    await page.waitForFunction(() => document.querySelector("[role=alert]")?.textContent.includes("vertices"));
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
   });
 
   await test("virtual reality: gaze, pinch, two hands, voice's words", async () => {

@@ -28,6 +28,9 @@ public:
     /// The request that is being answered ends with an error as soon as its work can stop. From any thread.
     void cancel();
 
+    /// Reads the meshes of the session before they are asked for; what cannot be read is told when it is.
+    void prepare();
+
     [[nodiscard]] const Session& session() const { return session_; }
 
 private:
@@ -41,6 +44,7 @@ private:
     void select(const JsonValue& request, Json& result, std::string& bytes);
     void run(const JsonValue& request, Json& result, std::string& bytes);
     void handles(const JsonValue& request, Json& result, std::string& bytes);
+    void parts(const JsonValue& request, Json& result, std::string& bytes);
     void influence(const JsonValue& request, Json& result, std::string& bytes);
     void grab(const JsonValue& request, Json& result, std::string& bytes);
     void drag(const JsonValue& request, Json& result, std::string& bytes);

@@ -370,7 +370,23 @@ export function letGo() {
   still(one.of);
 }
 
+/** Control points in the colour of the part that means them; the mean where parts share one. */
+async function colour() {
+  const of = subject();
+  if (!of || !has("coordinates") || of.about.annotations.length === 0) return;
+  const { parts } = (await link.ask("parts")).result as { parts: number[][] };
+  const attribute = points(of).geometry.getAttribute("color") as THREE.BufferAttribute;
+  parts.forEach((list, i) => {
+    if (list.length === 0 || i >= attribute.count) return;
+    const mean = [0, 1, 2].map((k) => list.reduce((sum, a) => sum + (of.about.annotations[a]?.colour[k] ?? 128), 0) / list.length);
+    (attribute.array as Uint8Array).set(mean, 3 * i);
+  });
+  attribute.needsUpdate = true;
+  view?.draw();
+}
+
 onShown.push(() => {
+  colour().catch(() => {}); // without colours they can be dragged all the same
   now = undefined;
   shared.bend.value.set(0, 0, 0, 0, 0, 0, 0, 0, 0);
   shared.shift.value.set(0, 0, 0);

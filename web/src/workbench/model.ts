@@ -87,7 +87,9 @@ const idOf = (o: number, annotation: number) => page.page?.objects[o]?.annotatio
 
 /** Asks for what the session shows now. Camera, choice, and what is hidden stay, as far as there is still such a thing. */
 export async function refresh() {
+  performance.mark("scene asked");
   const answer = await link.ask("scene", { known: knownShapes() });
+  performance.mark("scene there");
   const data = JSON.parse(answer.result.content) as PageData;
   const before = page.page && {
     object: shown.value[page.object.value],
