@@ -163,6 +163,7 @@ const OperationEntry* named_operation(const std::vector<std::string>& arguments)
     if (best == nullptr && agreeing < given.size()) {
         std::string before;
         for (std::size_t i = 0; i < agreeing; ++i) before += " " + given[i];
+        if (agreeing == 0) next.emplace_back("workbench");
         const std::string near = nearest_name(given[agreeing], next);
         fail_usage(
             "'" + printable(given[agreeing], 60) + "' is no command" + (agreeing == 0 ? "" : " of 'ostraka" + before + "'"),
@@ -411,7 +412,6 @@ int run_command_line(int argc, char** argv) {
         for (const std::string& word : completions({argv + 2, argv + argc})) std::cout << printable(word) << '\n';
         return done;
     }
-    if (argc > 1 && std::string_view(argv[1]) == "workbench") return run_workbench({argv + 2, argv + argc});
     CLI::App tool("Semantics-aware modelling of 3D shapes", "ostraka");
     tool.set_version_flag("--version", version());
     tool.require_subcommand(1);
@@ -421,6 +421,7 @@ int run_command_line(int argc, char** argv) {
     std::unique_ptr<Call> call;
     CLI::App* running = nullptr;
     std::vector<std::string> given = with_help_as_flag({argv + 1, argv + argc});
+    if (!given.empty() && given.front() == "workbench") return run_workbench({given.begin() + 1, given.end()});
     const OperationEntry* wanted = named_operation(given);
     std::map<std::string, CLI::App*> known_groups;
     const auto group_of = [&](CLI::App& parent, const std::string& path, const std::string& word) {

@@ -56,6 +56,7 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
     if (words.empty()) return {};
     std::vector<std::string> list;
     const std::string& begun = words.back();
+    if (words.size() == 1 && std::string("workbench").starts_with(begun)) list.emplace_back("workbench");
     const OperationEntry* named = nullptr;
     std::size_t length = 0;
     for (const OperationEntry& entry : operations()) {

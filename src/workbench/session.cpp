@@ -6,7 +6,13 @@
 #include "ostraka/core/words.h"
 #include "ostraka/template_package/template.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <utility>
 
 namespace ostraka {
 
@@ -113,6 +119,7 @@ Session::Session(Path folder, Path root)
       root_(std::filesystem::weakly_canonical(std::filesystem::absolute(root))) {
     if (is_folder(folder_)) {
         if (file_exists(folder_ / file_name)) {
+            lock();
             read();
             return;
         }
@@ -120,7 +127,21 @@ Session::Session(Path folder, Path root)
             fail_input(folder_.string(), "is not empty and holds no session", "name another folder for the session (--session)");
     }
     make_folder(folder_);
+    lock();
     write();
+}
+
+Session::~Session() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+/// The folder itself is locked: nothing is left where a process is killed.
+void Session::lock() {
+    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(std::exchange(lock_, -1));
+    fail_input(folder_.string(), "another workbench is at work on this session",
+               "use the one that is open, or name another folder (--session)");
 }
 
 void Session::read() {
@@ -271,7 +292,7 @@ std::vector<std::string> Session::openable() const {
     return found;
 }
 
-void Session::open(const std::string& name) {
+void Session::open(const std::string& name, const std::function<void(const SessionObject&)>& look) {
     const std::vector<std::string> known = openable();
     if (std::find(known.begin(), known.end(), name) == known.end())
         fail_input(printable(name, 100), "is no mesh or template of " + root_.string(), "open one that is in the list");
@@ -298,6 +319,7 @@ void Session::open(const std::string& name) {
     for (const auto& [part, ref] : object.parts)
         if (!file_exists((folder_ / ref).lexically_normal()))
             fail_input(name, "names '" + ref + "', which is not there", "run: ostraka template check " + name);
+    if (look) look(object);
     SessionStep step{next_name(), "open " + name, {}, {}, {}, {}, true, state()};
     object.name = free_name(step.state, object.name);
     step.state.objects.push_back(std::move(object));

@@ -10,8 +10,10 @@
 #include "ostraka/operations/page_results.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/select/recipe.h"
+#include "ostraka/vocabulary/skos.h"
 
 #include <cmath>
+#include <set>
 
 namespace ostraka {
 
@@ -123,7 +125,8 @@ Workbench::Reply Workbench::answer(std::string_view text) {
             (this->*known->second)(request, result, reply.bytes);
         } else if (what == "open") {
             const JsonValue* name = find_member(request, "name");
-            session_.open(name != nullptr && name->IsString() ? text_of(*name) : std::string());
+            session_.open(name != nullptr && name->IsString() ? text_of(*name) : std::string(),
+                          [this](const SessionObject& object) { static_cast<void>(shape_of(object, false)); });
         } else if (what == "go") {
             const JsonValue* to = find_member(request, "place");
             if (to == nullptr || !to->IsUint()) fail_request("no place is given", "load the page again");
@@ -160,15 +163,35 @@ void Workbench::add_session(Json& result) const {
                 }));
 }
 
+/// Labels of the concepts of the vocabularies that lie where meshes are opened from; one that cannot be read offers none.
+JsonValue Workbench::words(JsonAllocator& a) const {
+    JsonValue found(rapidjson::kObjectType);
+    std::map<std::string, std::set<std::string>> labels;  // by language
+    for (const std::string& name : files_in(session_.root())) {
+        if (!name.ends_with(".vocabulary.json") && !is_skos(name)) continue;
+        try {
+            const Path file = session_.root() / name;
+            for (const Concept& one : (is_skos(name) ? read_skos(file) : read_vocabulary(file)).concepts)
+                for (const auto& [language, label] : one.labels) labels[language].insert(label);
+        } catch (const Error&) {  // NOLINT(bugprone-empty-catch)
+        }
+    }
+    for (const auto& [language, list] : labels) add_members(found, a, language, list);
+    return found;
+}
+
 void Workbench::hello(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     auto& a = result.GetAllocator();
-    add_members(result, a, "version", version(), "openable", session_.openable(), "operations",
+    add_members(result, a, "version", version(), "openable", session_.openable(), "words", words(a), "operations",
                 json_list(operations(), a, [&](const OperationEntry& entry) { return Call(entry).declaration(a); }));
     add_session(result);
 }
 
+/// Of a file that the session names.
+Path Workbench::located(const std::string& file) const { return (session_.folder() / file).lexically_normal(); }
+
 std::shared_ptr<const MeshFile> Workbench::mesh_of(const std::string& file) {
-    const Path path = session_.path_of(file);
+    const Path path = located(file);
     std::error_code ignored;
     const auto changed = std::filesystem::last_write_time(path, ignored).time_since_epoch().count();
     const std::string key = path.string() + "@" + std::to_string(changed) + "/" + std::to_string(size_of_file(path));
@@ -188,10 +211,10 @@ std::shared_ptr<const Workbench::Shape> Workbench::shape_of(const SessionObject&
     if (const std::string file = part("annotations"); !file.empty()) {
         ReadAnnotationsOptions reading;
         reading.force_mesh = deformed;
-        shape->set = read_annotations(session_.path_of(file), shape->mesh->mesh, reading);
+        shape->set = read_annotations(located(file), shape->mesh->mesh, reading);
     }
     if (const std::string file = object.part("graph"); !file.empty() && shape->set)
-        shape->graph = read_graph(session_.path_of(file), *shape->set);
+        shape->graph = read_graph(located(file), *shape->set);
     if (const std::string file = part("cage"); !file.empty()) shape->cage = mesh_of(file);
     return shape;
 }

@@ -24,7 +24,10 @@ struct Bench {
         write_mesh(scratch / "ball.ply", build_mesh(octahedron_sphere(3)), {}, {});
         start();
     }
-    void start() { workbench = std::make_unique<Workbench>(scratch / "session", scratch.path()); }
+    void start() {
+        workbench.reset();  // one at a time
+        workbench = std::make_unique<Workbench>(scratch / "session", scratch.path());
+    }
 
     /// The answer to a message; it has to be in order.
     Json ask(const std::string& message) const {
@@ -248,6 +251,31 @@ TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
     std::filesystem::remove(bench.scratch / "session/steps/s002/ball.ant.json");
     EXPECT_THROW(bench.start(), Error);
     EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds something else";
+}
+
+TEST(Session, OffersTheWordsOfVocabularies) {
+    Bench bench;
+    write_file(bench.scratch / "terracotta.vocabulary.json",
+               read_file(Path(OSTRAKA_SOURCE_DIR) / "data/terracotta.vocabulary.json"));
+    write_file(bench.scratch / "bad.vocabulary.json", "{");
+    const Json hello = bench.ask(R"({"id":1,"do":"hello"})");
+    ASSERT_TRUE(hello["result"]["words"].HasMember("en"));
+    EXPECT_GT(hello["result"]["words"]["en"].Size(), 3U);
+}
+
+TEST(Session, IsWorkedOnByOneAtATime) {
+    Bench bench;
+    EXPECT_THROW(Workbench(bench.scratch / "session", bench.scratch.path()), Error);
+    bench.start();
+}
+
+TEST(Session, DoesNotOpenWhatCannotBeRead) {
+    Bench bench;
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
+    write_file(bench.scratch / "bad.ply", "ply\ngarbage");
+    EXPECT_FALSE(bench.refused(R"({"id":1,"do":"open","name":"bad.ply"})").empty());
+    EXPECT_EQ(bench.workbench->session().steps().size(), 1U);
+    bench.ask(R"({"id":1,"do":"scene","known":[]})");
 }
 
 TEST(Session, GoesOnAfterItWasCancelled) {

@@ -287,6 +287,54 @@ try {
     for (const name of theirs.keys()) if (!/(report|record).json$/.test(name)) assert.equal(theirs.get(name), mine.get(name), name);
   });
 
+  await test("slices: a series with its slider, one where the picture is cut, files to take away", async () => {
+    copyFileSync(at("pot.ply"), at("cut.ply"));
+    ostraka("annotation", "apply", at("cut.ply"), join(project, "data/teapot.recipe.json"), at("cut.ant.json"));
+    const server = serve(at("cut.ply"));
+    const { page, told, close } = await open(await server.address);
+    await steps(page, 1);
+    await tab(page, "slicing");
+    await page.locator("#panel input[type=number]").first().fill("20");
+    await page.getByRole("button", { name: "Slice", exact: true }).click();
+    await steps(page, 2);
+    assert.equal(await page.evaluate(() => ostraka.page.page.objects[0].slices.levels.length), 20);
+    assert.ok(await page.evaluate(() => ostraka.model.files.value.some((one) => one.name.endsWith(".profile.svg"))));
+    // The plane of the picture, in the object's own coordinates: the slice lies on it.
+    await page.evaluate(() => (ostraka.page.clip.value = 0.25));
+    await page.getByRole("button", { name: "Slice at the cut" }).click();
+    await steps(page, 3);
+    const found = await page.evaluate(() => {
+      const about = ostraka.page.page.objects[0];
+      const level = about.slices.levels[0];
+      const of = ostraka.objects[0];
+      const world = of.group.localToWorld(of.vertex(0).set(...level.origin));
+      return { levels: about.slices.levels.length, z: world.z, contours: level.contours.length };
+    });
+    assert.ok(found.levels === 1 && found.contours > 0 && Math.abs(found.z - 0.25) < 1e-6, JSON.stringify(found));
+    await tab(page, "results");
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "cut.slices.json" }).click()]);
+    assert.equal(JSON.parse(readFileSync(await download.path(), "utf8")).format, "ostraka-slices");
+    // Where several annotations are under the pointer, a list says which.
+    await useTool(page, "look");
+    const place = await page.evaluate(() => {
+      ostraka.page.clip.value = 1;
+      const { view } = ostraka;
+      for (let y = 20; y < view.canvas.clientHeight; y += 7)
+        for (let x = 20; x < view.canvas.clientWidth; x += 7) {
+          const hit = view.pick(x, y);
+          if (hit && ostraka.objects[0].annotationsOn(hit.face).length > 1) return { x, y, list: ostraka.objects[0].annotationsOn(hit.face) };
+        }
+    });
+    const box = await page.locator(".canvas canvas").boundingBox();
+    await page.mouse.click(box.x + place.x, box.y + place.y);
+    assert.equal(await page.locator(".chooser button").count(), place.list.length);
+    await page.locator(".chooser button").last().click();
+    assert.equal(await page.evaluate(() => ostraka.page.chosen.value), place.list.at(-1));
+    assert.deepEqual(told, []);
+    await close();
+    await server.stop();
+  });
+
   await test("for everybody: keys reach all, axe finds nothing serious, three languages, tags stay text, problems are told", async () => {
     const evil = "</script><img src=x onerror=alert(1)>";
     copyFileSync(at("pot.ply"), at("evil.ply"));

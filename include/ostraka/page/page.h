@@ -82,8 +82,8 @@ struct PageObject {
         double deviation = 0;  ///< the largest distance of its vertices from what is shown
     };
     std::optional<Whole> whole = {};
-    /// Instead of packed geometry: the shape as it is, in single precision relative to the box, and a key that says which shape it
-    /// is. Without `sends_shape` only the key is there: the reader has that shape.
+    /// Instead of packed geometry: the shape as it is, in single precision relative to the box, and a key that says which shape
+    /// it is. Without `sends_shape` only the key is there: the reader has that shape.
     struct Exact {
         std::string key;
         bool sends_shape = true;

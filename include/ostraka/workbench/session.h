@@ -4,6 +4,7 @@
 
 #include "ostraka/operations/table.h"
 
+#include <functional>
 #include <optional>
 
 namespace ostraka {
@@ -46,20 +47,25 @@ struct SessionStep {
 class Session {
 public:
     /// Goes on with the session in `folder`, or begins one there. Files are opened from `root` and the folders in it, and saved
-    /// there. Throws Error (input) for a folder that holds something else, or a session that is damaged or whose files are gone.
+    /// there. Throws Error (input) for a folder that holds something else, a session that is damaged or whose files are gone, and
+    /// one that another process is at work on.
     Session(Path folder, Path root);
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
 
     [[nodiscard]] const SessionState& state() const;
     [[nodiscard]] const std::vector<SessionStep>& steps() const { return steps_; }
     /// How many of the steps count: those behind were undone.
     [[nodiscard]] std::size_t place() const { return place_; }
     [[nodiscard]] const Path& folder() const { return folder_; }
+    [[nodiscard]] const Path& root() const { return root_; }
 
     /// Meshes and templates that can be opened, by their names relative to the root.
     [[nodiscard]] std::vector<std::string> openable() const;
     /// A mesh with what lies beside it under its name (.ant.json, .graph.json, .cage.ply with .npy), or a template. Throws Error
-    /// (input) for a name that is none of `openable`.
-    void open(const std::string& name);
+    /// (input) for a name that is none of `openable`. `look` may refuse the object, before anything has changed.
+    void open(const std::string& name, const std::function<void(const SessionObject&)>& look = {});
 
     /// {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as": "deformed"}: runs an operation. A value of an
     /// input is {"part": PART, "object": INDEX} (INDEX: else the active one), {"file": FILE of the state}, {"document": JSON} or
@@ -99,11 +105,13 @@ private:
     void write() const;
     void read();
     void check_file(const std::string& file) const;
+    void lock();
 
     Path folder_, root_;
     std::vector<SessionStep> steps_;
     std::size_t place_ = 0, counter_ = 0;
     SessionState begin_;
+    int lock_ = -1;  ///< a descriptor that holds the folder
 };
 
 }  // namespace ostraka

@@ -50,8 +50,10 @@ private:
     void drag(const JsonValue& request, Json& result, std::string& bytes);
     void file(const JsonValue& request, Json& result, std::string& bytes);
 
+    [[nodiscard]] JsonValue words(JsonAllocator& allocator) const;
     void add_session(Json& result) const;
     std::shared_ptr<const Shape> shape_of(const SessionObject& object, bool deformed);
+    [[nodiscard]] Path located(const std::string& file) const;
     std::shared_ptr<const MeshFile> mesh_of(const std::string& file);
     Deformation& deformation();
 

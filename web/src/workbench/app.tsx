@@ -6,7 +6,7 @@ import * as page from "../state";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
 import * as model from "./model";
 import { Annotating, Deforming, Everything, Fragments, History, Relations, Results, Slicing } from "./panels";
-import { brushRadius, choose, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
+import { brushRadius, choose, clicked, Drawing, finish, groups, measureName, picked, radius, tool } from "./tools";
 import { text, type Key } from "./words";
 import { canEnter, enter } from "./xr";
 
@@ -262,6 +262,30 @@ function ViewBar() {
   );
 }
 
+/** Where several annotations are at the place that was clicked: which one is meant. */
+function Chooser() {
+  const at = clicked.value;
+  const about = page.page.objects[page.object.value];
+  if (!at || !about || at.list.length < 2) return null;
+  return (
+    <div class="chooser" role="group" aria-label={text("whichOne")} style={{ left: `${at.x + 10}px`, top: `${at.y + 10}px` }}>
+      {at.list.map((i) => (
+        <button
+          key={i}
+          type="button"
+          aria-pressed={page.chosen.value === i}
+          onClick={() => {
+            page.choose(i);
+            clicked.value = undefined;
+          }}
+        >
+          {about.annotations[i]?.tag || `#${about.annotations[i]?.id}`}
+        </button>
+      ))}
+    </div>
+  );
+}
+
 /** What the pointer is on is what "select" means. */
 function Pointed() {
   const first = page.hovered.value?.annotations[0] ?? -1;
@@ -392,6 +416,7 @@ export function App() {
           <div class="canvas">
             {view && <Picture key={turn} />}
             {view && <Drawing key={-turn} />}
+            <Chooser />
           </div>
           <Layers />
           {heard.value && <p class="quiet">{text("heard", heard.value)}</p>}

@@ -1,7 +1,7 @@
 // The camera of the picture as recipes say it (doc/recipes.md): in the object's own coordinates, so that the command sees the same.
 import * as THREE from "three";
 import type { DrawnObject } from "../geometry";
-import { view } from "../picture";
+import { drawn, view } from "../picture";
 import * as page from "../state";
 
 const rounded = (x: number) => Number(x.toPrecision(12));
@@ -48,4 +48,15 @@ export function paneOf(of: DrawnObject, x: number, y: number): [number, number] 
   const list = page.panes.value;
   const width = view!.canvas.clientWidth / Math.max(1, list.length);
   return [rounded(x - Math.max(0, list.indexOf(of.index)) * width), rounded(y)];
+}
+
+/** The plane that "Cut at" puts through the shown object: a point and the normal, in the object's own coordinates. */
+export function cutPlane(): number[] | undefined {
+  const of = drawn[page.object.value];
+  if (!of || page.clip.value >= 1) return undefined;
+  const inverse = of.group.matrixWorld.clone().invert();
+  const axis = page.clipAxis.value;
+  const point = new THREE.Vector3().setComponent(axis, page.clip.value).applyMatrix4(inverse);
+  const normal = new THREE.Vector3().setComponent(axis, 1).transformDirection(inverse);
+  return [...point.toArray().map((x, k) => rounded(x + of.about.origin[k])), ...normal.toArray().map(rounded)];
 }

@@ -25,6 +25,7 @@ model.link.onState = (open) => {
     void model.attempt(text("loading"), async () => {
       const { result } = await model.link.ask("hello");
       model.operations.value = result.operations;
+      model.words.value = result.words;
       await model.refresh();
     });
 };

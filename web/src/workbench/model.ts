@@ -51,6 +51,8 @@ export interface Step {
 export const link = new Link();
 export const operations = signal<Declaration[]>([]);
 export const openable = signal<string[]>([]);
+/** Labels of vocabularies, by language. */
+export const words = signal<Record<string, string[]>>({});
 export const objects = signal<SessionObject[]>([]);
 export const files = signal<SessionFile[]>([]);
 export const active = signal(0);

@@ -10,7 +10,8 @@ import { Tables } from "../tables";
 import { extract, linkCage, makeCage } from "./commands";
 import * as deform from "./deform";
 import { helpOf, Operations } from "./forms";
-import { change, download, files, goTo, has, history, object, objects, operations, outcome, part, place, run } from "./model";
+import { change, download, files, goTo, has, history, object, objects, operations, outcome, part, place, run, words as vocabulary } from "./model";
+import { cutPlane } from "./camera";
 import * as selection from "./selection";
 import { text, type Key } from "./words";
 
@@ -58,7 +59,9 @@ export function Annotating() {
   const [value, setValue] = useState("");
   const one = chosenAnnotation();
   const chosen = selection.selected.value;
-  const words = [...new Set(page.page.objects.flatMap((o) => o.annotations.map((a) => a.tag)))];
+  // What is there already, and what vocabularies offer in the reader's language, or in none.
+  const offered = [page.language.value, ""].flatMap((language) => vocabulary.value[language] ?? []);
+  const words = [...new Set([...page.page.objects.flatMap((o) => o.annotations.map((a) => a.tag)), ...offered])];
   return (
     <>
       <section aria-labelledby="selection-title">
@@ -361,6 +364,16 @@ function cut(count: number) {
   return run({ operation: "slice", title: text("slice"), with: given, keep });
 }
 
+/** The plane that the object is cut at in the picture: its slice alone, with medial axes. */
+function cutHere() {
+  const plane = cutPlane();
+  if (!plane) return;
+  const name = object.value!.name;
+  const given: Record<string, unknown> = { mesh: part("mesh"), plane, "medial-axis": [0.01, 0.05, 0.15] };
+  if (has("annotations")) given.annotations = part("annotations");
+  void run({ operation: "slice", title: text("sliceHere"), with: given, keep: [{ output: "output", file: `${name}.slices.json` }] });
+}
+
 export function Slicing() {
   const [count, setCount] = useState("40");
   return (
@@ -370,7 +383,9 @@ export function Slicing() {
           {text("count")} <input type="number" min="1" max="1000" value={count} onInput={(event) => setCount(event.currentTarget.value)} />
         </label>
         <Button name="slice" title={helpOf("slice")} onClick={() => void cut(Number(count))} />
+        <Button name="sliceHere" disabled={page.clip.value >= 1} onClick={cutHere} />
       </div>
+      <p class="quiet">{text("sliceHelp")}</p>
       <Slices />
       <More title="slice" operation="slice" />
       <More title="axis" operation="axis" />

@@ -29,6 +29,9 @@ interface Pick {
   camera: RecipeCamera;
   pixel: [number, number];
 }
+/** The annotations at the place that was clicked last, with the tool that looks. */
+export const clicked = signal<{ x: number; y: number; list: number[] } | undefined>(undefined);
+
 interface Place {
   x: number;
   y: number;
@@ -143,12 +146,23 @@ export const brushRadius = (of: DrawnObject) => Number((0.02 * Math.hypot(...of.
 /** Pointer and keys of the picture go to the tool; true where it takes them. */
 export function attach(canvas: HTMLCanvasElement): () => void {
   let down: Place | undefined;
+  let pressed: Place = { x: 0, y: 0 };
   let moved = false;
   const at = (event: PointerEvent): Place => {
     const box = canvas.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   };
+  const onClick = (event: MouseEvent) => {
+    const box = canvas.getBoundingClientRect();
+    const place = { x: event.clientX - box.left, y: event.clientY - box.top };
+    if (Math.hypot(place.x - pressed.x, place.y - pressed.y) > 4) return;
+    const hit = tool.value === "look" ? view?.pick(place.x, place.y) : undefined;
+    const list = hit && hit.object === page.object.value ? drawn[hit.object].annotationsOn(hit.face).filter((i) => page.isShown(hit.object, i)) : [];
+    clicked.value = list.length > 1 ? { ...place, list } : undefined;
+  };
   const onDown = (event: PointerEvent) => {
+    clicked.value = undefined;
+    pressed = at(event);
     if (event.button !== 0 || tool.value === "look") return;
     down = at(event);
     moved = false;
@@ -194,6 +208,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     } else if (event.key === "Escape") {
       if (picks.value.length > 0) picks.value = [];
       else selection.clear();
+      clicked.value = undefined;
       deform.letGo();
     }
   };
@@ -201,6 +216,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     // The second click of the two is a pick of its own.
     if (["path", "tape", "points"].includes(tool.value)) void finish();
   };
+  canvas.addEventListener("click", onClick);
   canvas.addEventListener("pointerdown", onDown);
   canvas.addEventListener("pointermove", onMove);
   canvas.addEventListener("pointerup", onUp);
@@ -208,6 +224,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
   canvas.addEventListener("dblclick", onDouble);
   choose(tool.value);
   return () => {
+    canvas.removeEventListener("click", onClick);
     canvas.removeEventListener("pointerdown", onDown);
     canvas.removeEventListener("pointermove", onMove);
     canvas.removeEventListener("pointerup", onUp);

@@ -14,7 +14,7 @@ export const canEnter = signal(false);
 void (navigator as any).xr?.isSessionSupported("immersive-vr").then((can: boolean) => (canEnter.value = can), () => {});
 
 /** Metres: how large the object is, and where it stands. */
-const size = signal(0.7);
+const size = signal(0.9);
 const height = signal(1.25);
 export const seated = (on: boolean) => (height.value = on ? 0.85 : 1.25);
 export const larger = (factor: number) => (size.value = Math.min(4, Math.max(0.1, size.value * factor)));
@@ -59,8 +59,8 @@ class Menu {
     this.canvas.width = 512;
     this.canvas.height = 40 * rows.length;
     this.texture = new THREE.CanvasTexture(this.canvas);
-    const tall = (0.24 * this.canvas.height) / this.canvas.width;
-    this.mesh = new THREE.Mesh(new THREE.PlaneGeometry(0.24, tall), new THREE.MeshBasicMaterial({ map: this.texture, side: THREE.DoubleSide }));
+    const tall = (0.16 * this.canvas.height) / this.canvas.width;
+    this.mesh = new THREE.Mesh(new THREE.PlaneGeometry(0.16, tall), new THREE.MeshBasicMaterial({ map: this.texture, side: THREE.DoubleSide }));
     this.draw(-1);
   }
   draw(marked: number) {
