@@ -1,0 +1,493 @@
+// How an edit and constraints become a shape: what 'deform', 'restore_constraints' and live drags share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include "ostraka/cage/cage.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/text.h"
+#include "ostraka/core/words.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/with_points.h"
+#include "ostraka/semantic/deform.h"
+#include "statement.h"
+#include "verdict.h"
+
+namespace ostraka::semantic {
+
+/// Without any, nothing would hold positions.
+inline constexpr double min_laplacian = 1e-3;
+
+/// Weight of the positions of points an edge apart, so that changes fade out over the spread, and over three edges at least.
+inline double closeness(const DeformOptions& options, const Mesh& mesh, double edge) {
+    return std::max(options.laplacian, min_laplacian) *
+           std::pow(std::min(edge / (options.spread * box_diagonal(mesh)), 1.0 / 3), 4);
+}
+
+inline void add_closeness(const std::vector<int>& ids, double weight, const Points& targets, int offset, const Points& rest,
+                          std::vector<std::unique_ptr<Constraint>>& list) {
+    if (ids.empty() || weight == 0) return;
+    ConstraintParameters parameters;
+    parameters.target.emplace(3, static_cast<Eigen::Index>(ids.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        parameters.target->col(static_cast<Eigen::Index>(i)) = targets.col(ids[i] - offset);
+    list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
+}
+
+/// On every vertex, those that `shape` has.
+inline void add_displacements(const Mesh& mesh, double weight, const Points& shape, const std::set<Index>& others,
+                              std::vector<std::unique_ptr<Constraint>>& list) {
+    if (weight == 0) return;
+    for (const Vertex v : mesh.vertices())
+        if (!mesh.is_isolated(v) && others.count(v.idx()) == 0)
+            list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(mesh, v), weight, {}, shape));
+}
+
+/// What solving for some of the constraints gives.
+struct Outcome {
+    Points points, cage;
+    SolveSummary summary;
+    int rounds = 0, passes = 0;
+    bool solved = false;
+    struct Residuals {
+        std::vector<double> of_low_level;
+        double distance = 0;
+    };
+    std::vector<Residuals> residuals;  ///< of each constraint
+    std::vector<std::string> texts;    ///< what is to be said of each
+    std::vector<semantic::Measured> measured;
+};
+
+/// Constraints over the vertices of a cage.
+struct CageSystem {
+    /// Rows for the cage's own points below those of the mesh, so that handles are constrained like any point.
+    std::unique_ptr<CageWeights> extended;
+    std::unique_ptr<CageSpaceSolver> solver;
+    std::size_t first_displacement = 0, displacements = 0;  ///< places of the Laplacian displacements of the cage
+};
+
+class Deformer {
+public:
+    Deformer(const HandleSpace& space, const RelationGraph& graph, const DeformOptions& options,
+             const RelationOptions& tolerances, const std::string& where, const std::string& graph_where)
+        : space_(space),
+          graph_(graph),
+          options_(options),
+          tolerances_(tolerances),
+          where_(where),
+          graph_where_(graph_where),
+          rest_(columns_of(space.mesh)) {}
+
+    DeformResult follow(const JsonValue& edit) {
+        DeformResult result;
+        last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
+        last_.touched.assign(last_.handles.size(), false);
+        last_.named.assign(space_.mesh.number_of_vertices(), false);
+        for (auto& state : follow_edit(edit, space_, where_)) {
+            last_ = std::move(state);
+            result.selected.push_back(last_.selected.size());
+        }
+        result.edited = shape_of_edit(space_, last_, options_);
+        asked_ = semantic::asked_vertices(space_, last_, columns_of(result.edited) - rest_);
+        result = finish(std::move(result));
+        result.followed = semantic::followed_edit(space_, last_, asked_, rest_, edited_, columns_of(result.points));
+        if (result.followed.share < options_.followed)
+            result.objections.push_back("the edit is followed by " + percent(result.followed.share) + ", " +
+                                        percent(options_.followed) + " are asked");
+        result.surface = semantic::surface_change(space_.mesh, with_points(space_.mesh, result.points));
+        const auto& [crossings, before, added, folds] = result.surface;
+        if (added > 0)
+            result.objections.push_back(counted(added, "pair") + " of faces cross that did not at rest (" +
+                                        std::to_string(crossings) + " in all, " + std::to_string(before) + " at rest)");
+        if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
+        if (space_.cage != nullptr)
+            for (const std::string& reason : unfit_for_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
+                result.objections.push_back("the cage is not fit for deformation: " + reason);
+        result.acceptable = result.objections.empty();
+        return result;
+    }
+
+    DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held) {
+        last_.handles = points;
+        last_.touched = held;
+        DeformResult result;
+        result.edited = points;
+        result = finish(std::move(result));
+        result.acceptable = result.objections.empty();
+        return result;
+    }
+
+    /// For a drag of these handles from where the edit leaves the cage, whose vertices are handed over; no solver where no
+    /// constraint asks for anything.
+    CageSystem begin(const JsonValue& edit, const std::vector<Index>& handles, std::vector<Point>& cage) {
+        last_.handles = points_of(*space_.cage);
+        last_.touched.assign(last_.handles.size(), false);
+        last_.named.assign(space_.mesh.number_of_vertices(), false);
+        for (auto& state : follow_edit(edit, space_, where_)) last_ = std::move(state);
+        for (const Index handle : handles) last_.touched[handle] = true;
+        last_.by_handles = true;
+        cage = last_.handles;
+        const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
+        edited_ = columns_of(shape);
+        edited_mesh_ = with_points(space_.mesh, shape);
+        EditState dragged = last_;  // somewhere: what counts is which vertices go along
+        for (const Index handle : handles)
+            dragged.handles[handle] = dragged.handles[handle] + Vector(0, 0, 0.01 * box_diagonal(space_.mesh));
+        asked_ = semantic::asked_vertices(space_, dragged, columns_of(shape_of_edit(space_, dragged, options_)) - rest_);
+        DeformResult result;
+        understand(result);
+        Outcome outcome;
+        outcome.points = edited_;
+        outcome.texts.resize(statements_.size());
+        return lower(used(result), outcome) ? cage_system() : CageSystem();
+    }
+
+private:
+    static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
+
+    DeformResult finish(DeformResult result) {
+        edited_ = columns_of(result.edited);
+        if (!edited_.allFinite() || edited_.cwiseAbs().maxCoeff() > 1e60)
+            throw Error(ErrorKind::input, where_, "leads to points beyond what can be computed with (1e60)",
+                        "look at the edit, and at the weights of the cage");
+        edited_mesh_ = with_points(space_.mesh, result.edited);
+        understand(result);
+        const std::vector<bool> all = used(result);
+        const Outcome outcome = solve(all);
+        result.points = list_of(outcome.points);
+        result.cage = list_of(outcome.cage);
+        result.summary = outcome.summary;
+        result.rounds = outcome.rounds;
+        result.passes = outcome.passes;
+        result.solved = outcome.solved;
+        report(result, outcome);
+        if (!result.objections.empty() && options_.conflicts > 0) find_conflicts(result, all);
+        return result;
+    }
+
+    void understand(DeformResult& result) {
+        const semantic::Shape shape{space_.mesh, space_.set, rest_};
+        std::map<Index, int> reattached;  // by which feature
+        for (const Relationship& relationship : graph_.relationships) {
+            if (!relationship.is_constraint) continue;
+            statements_.push_back(semantic::understand(shape, relationship, tolerances_, graph_where_));
+            const semantic::Statement& statement = statements_.back();
+            if (statement.reattachment && relationship.weight > 0)
+                for (const Annotation* feature : statement.reattachment->features)
+                    for (const Index v : vertices_of(space_.mesh, *feature)) {
+                        const auto [other, fresh] = reattached.try_emplace(v, feature->id);
+                        if (!fresh)
+                            throw Error(ErrorKind::input, graph_where_ + ", constraint " + std::to_string(relationship.id),
+                                        "seats annotation " + std::to_string(feature->id) + ", which touches annotation " +
+                                            std::to_string(other->second) + ", seated as well",
+                                        "seat one of them, or make one annotation of both");
+                    }
+            result.constraints.push_back(semantic::report_of(relationship, statement));
+        }
+    }
+
+    static std::vector<bool> used(const DeformResult& result) {
+        std::vector<bool> flags;
+        for (const ConstraintReport& report : result.constraints) flags.push_back(report.used);
+        return flags;
+    }
+
+    /// For the active constraints; all others are only measured.
+    Outcome solve(const std::vector<bool>& active) {
+        Outcome outcome;
+        hard_scale_ = 1;
+        outcome.points = edited_;
+        if (space_.cage != nullptr) outcome.cage = columns_of(last_.handles);
+        outcome.texts.resize(statements_.size());
+        bool follows = false, gauges = false;
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            follows = follows || (active[i] && statements_[i].follows);
+            gauges = gauges || (active[i] && statements_[i].until_it_holds);
+        }
+        // Measures are held to a thousandth of a part.
+        const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
+        Points before;
+        while (outcome.passes < (follows ? options_.passes : 1)) {
+            if (outcome.passes > 0 && !another_pass(active, outcome)) break;
+            before = outcome.points;
+            if (!solve_once(active, outcome)) break;
+            outcome.solved = true;
+            ++outcome.passes;
+            if (outcome.passes > 1 && (outcome.points - before).colwise().norm().maxCoeff() <= still) break;
+        }
+        std::vector<semantic::Reattachment> reattachments;
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            if (active[i] && statements_[i].reattachment) reattachments.push_back(*statements_[i].reattachment);
+        if (!reattachments.empty()) {
+            const auto reattached = semantic::reattach(space_.mesh, rest_, reattachments, outcome.points);
+            outcome.solved = true;
+            for (std::size_t i = 0; i < statements_.size(); ++i)
+                if (active[i] && statements_[i].reattachment && reattached.folded > 0)
+                    outcome.texts[i] = std::to_string(reattached.folded) + " faces around the features fold over";
+        }
+        const Mesh deformed = with_points(space_.mesh, list_of(outcome.points));
+        const semantic::State state(deformed);
+        keep_residuals(active, before, state, outcome);
+        for (const semantic::Statement& statement : statements_)
+            outcome.measured.push_back(statement.unknown.empty() ? statement.measure(state) : semantic::Measured());
+        return outcome;
+    }
+
+    /// Whether what a constraint follows may have moved.
+    [[nodiscard]] bool another_pass(const std::vector<bool>& active, const Outcome& outcome) const {
+        const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
+        const semantic::State now(mesh);
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            if (active[i] && statements_[i].follows &&
+                !(statements_[i].until_it_holds && statements_[i].measure(now).verdict == Verdict::holds))
+                return true;
+        return false;
+    }
+
+    /// The low-level constraints, from the outcome so far: parts that others refer to are as it has them. False if there are
+    /// none.
+    bool lower(const std::vector<bool>& active, Outcome& outcome) {
+        lowered_.clear();
+        support_.clear();
+        owner_.clear();
+        anchors_.clear();
+        rotating_.clear();
+        referred_.clear();
+        const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
+        const semantic::State now(mesh);
+        semantic::State edited(edited_mesh_);
+        edited.asked = asked_;
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            if (!active[i]) continue;
+            anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
+            rotating_.insert(statements_[i].rotating.begin(), statements_[i].rotating.end());
+            referred_.insert(statements_[i].referred.begin(), statements_[i].referred.end());
+            for (auto& constraint : statements_[i].lower(edited, now)) {
+                lowered_.push_back(std::move(constraint));
+                owner_.push_back(i);
+            }
+            if (statements_[i].prepare && outcome.passes == 0 && options_.space == DeformOptions::Space::mesh)
+                statements_[i].prepare(now, outcome.points);
+            if (statements_[i].support && options_.space == DeformOptions::Space::mesh)  // a cage is stiff by itself
+                for (auto& constraint : statements_[i].support(edited, now)) support_.push_back(std::move(constraint));
+        }
+        if (lowered_.empty()) return false;
+        if (space_.coordinates != nullptr && space_.coordinates->has_normals())
+            throw Error(ErrorKind::usage, "coordinates",
+                        "are Green coordinates, which serve unconstrained deformation only: constraints are solved without their "
+                        "normal term",
+                        "use mean value coordinates, or a graph without constraints");
+        return true;
+    }
+
+    /// Starts from the outcome. False if there is nothing to solve.
+    bool solve_once(const std::vector<bool>& active, Outcome& outcome) {
+        if (!lower(active, outcome)) return false;
+        if (options_.space == DeformOptions::Space::mesh) solve_mesh(outcome);
+        else solve_cage(outcome);
+        if (!outcome.summary.usable)
+            throw Error(ErrorKind::failure, where_, "the constraints have no usable solution: " + outcome.summary.text(),
+                        "look for constraints that contradict each other");
+        return true;
+    }
+
+    /// The low-level constraints move into the list; first_ is where they begin.
+    std::vector<std::unique_ptr<Constraint>> take(std::vector<std::unique_ptr<Constraint>> others) {
+        for (auto& constraint : support_) others.push_back(std::move(constraint));
+        first_ = others.size();
+        for (auto& constraint : lowered_) others.push_back(std::move(constraint));
+        return others;
+    }
+
+    void solve_mesh(Outcome& outcome) {
+        std::vector<std::unique_ptr<Constraint>> list;
+        std::vector<bool> constrained(space_.mesh.number_of_vertices(), false);
+        for (const auto& constraint : lowered_)
+            for (const int v : constraint->ids()) constrained[static_cast<std::size_t>(v)] = true;
+        std::vector<int> free, held, yielding;
+        for (const Vertex v : space_.mesh.vertices()) {
+            if (space_.mesh.is_isolated(v)) continue;
+            const bool handle = space_.cage == nullptr && last_.touched[v], anchor = anchors_.count(v.idx()) > 0;
+            const bool stands = handle || (referred_.count(v.idx()) > 0 && rotating_.count(v.idx()) == 0);
+            (anchor || (stands && !constrained[v]) ? held : handle ? yielding : free).push_back(static_cast<int>(v.idx()));
+        }
+        const double edge = mean_edge_length(space_.mesh);
+        add_closeness(free, closeness(options_, space_.mesh, edge), edited_, 0, rest_, list);
+        add_closeness(yielding, std::min(options_.handles, 81 * closeness(options_, space_.mesh, edge)), edited_, 0, rest_, list);
+        add_closeness(held, options_.handles, edited_, 0, rest_, list);
+        add_displacements(space_.mesh, options_.laplacian, options_.details == DeformOptions::Details::rest ? rest_ : edited_,
+                          rotating_, list);
+        const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
+        auto all = take(std::move(list));
+        if (any_hard) {
+            std::vector<bool> hard(all.size(), false);
+            for (std::size_t i = 0; i < owner_.size(); ++i) hard[first_ + i] = statements_[owner_[i]].hard;
+            HardSolver solver(std::move(all), hard, rest_);
+            HardOptions options;
+            options.inner = options_.solve;
+            options.inner.iterations = std::min(options.inner.iterations, HardOptions().inner.iterations);
+            options.rounds = options_.rounds;
+            options.start = hard_scale_;
+            const HardSummary summary = solver.solve(outcome.points, options);
+            outcome.summary = summary.last;
+            outcome.rounds += summary.rounds;
+            hard_scale_ = std::sqrt(summary.scale);
+        } else {
+            MeshSpaceSolver solver(std::move(all), rest_);
+            outcome.summary = solver.solve(outcome.points, options_.solve);
+        }
+    }
+
+    /// All constraints over the cage's vertices. Its first one holds the handles that steps moved, if there are any.
+    CageSystem cage_system() {
+        CageSystem system;
+        const WeightMatrix& weights = space_.coordinates->vertex;
+        const Eigen::Index n = weights.rows(), c = weights.cols();
+        system.extended = std::make_unique<CageWeights>(n + c, c);
+        system.extended->topRows(n) = weights;
+        system.extended->bottomRows(c).setIdentity();
+        const Points rest_cage = columns_of(*space_.cage), edited_cage = columns_of(last_.handles);
+        Points rest(3, n + c);
+        rest << rest_, rest_cage;
+        std::vector<std::unique_ptr<Constraint>> list;
+        // A point of the cage stands for as many of the mesh.
+        const double share = static_cast<double>(n) / static_cast<double>(c);
+        for (const bool touched : {true, false}) {
+            std::vector<int> ids;
+            for (Eigen::Index j = 0; j < c; ++j)
+                if (last_.touched[static_cast<std::size_t>(j)] == touched) ids.push_back(static_cast<int>(n + j));
+            const double weight = closeness(options_, space_.mesh, mean_edge_length(*space_.cage));
+            add_closeness(ids, touched ? options_.handles : std::min(options_.handles, share * weight), edited_cage,
+                          static_cast<int>(n), rest, list);
+        }
+        // What the cage tends to between constraints; else its points fly off for little.
+        Points shape = rest;
+        shape.rightCols(c) = options_.details == DeformOptions::Details::rest ? rest_cage : edited_cage;
+        system.first_displacement = list.size();
+        if (options_.laplacian > 0)
+            for (const Vertex v : space_.cage->vertices()) {
+                if (space_.cage->is_isolated(v)) continue;
+                list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(*space_.cage, v, static_cast<int>(n)),
+                                               share * options_.laplacian, {}, shape));
+            }
+        system.displacements = list.size() - system.first_displacement;
+        system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);
+        // What must hold counts a thousandfold: a cage may not be able to do it.
+        for (std::size_t i = 0; i < owner_.size(); ++i)
+            if (statements_[owner_[i]].hard)
+                system.solver->set_weight(first_ + i, 1e3 * system.solver->constraint(first_ + i).weight());
+        return system;
+    }
+
+    void solve_cage(Outcome& outcome) {
+        const CageSystem system = cage_system();
+        outcome.cage = columns_of(last_.handles);
+        outcome.summary = system.solver->solve(outcome.cage, options_.solve);
+        outcome.points = points_of(*system.extended, outcome.cage).leftCols(space_.coordinates->vertex.rows());
+    }
+
+    /// Of the low-level constraints of each, divided by their points (section 4.2.3), on the finished shape: against axes as they
+    /// are there, and measures as they were before the last pass.
+    void keep_residuals(const std::vector<bool>& active, const Points& before, const semantic::State& finished,
+                        Outcome& outcome) const {
+        if (!outcome.solved) return;
+        outcome.residuals.assign(statements_.size(), {});
+        const Mesh mesh = with_points(space_.mesh, list_of(before));
+        const semantic::State last(mesh);
+        semantic::State edited(edited_mesh_);
+        edited.asked = asked_;
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            if (!active[i]) continue;
+            const bool axes = statements_[i].follows && !statements_[i].until_it_holds;
+            Outcome::Residuals& residuals = outcome.residuals[i];
+            for (const auto& constraint : statements_[i].lower(edited, axes ? finished : last)) {
+                residuals.of_low_level.push_back(constraint->normalised_residual(finished.points));
+                residuals.distance = std::max(residuals.distance, constraint->greatest_distance(finished.points));
+            }
+        }
+    }
+
+    static std::string name_of(const ConstraintReport& report) {
+        return "constraint " + std::to_string(report.id) + " (" + report.type + ")";
+    }
+
+    void report(DeformResult& result, const Outcome& outcome) const {
+        const semantic::State before(edited_mesh_);
+        for (std::size_t i = 0; i < result.constraints.size(); ++i) {
+            ConstraintReport& report = result.constraints[i];
+            if (!report.used) {
+                if (report.weight != 0) result.objections.push_back(name_of(report) + " is left out");
+                continue;
+            }
+            const semantic::Measured then = statements_[i].measure(before), &now = outcome.measured[i];
+            report.before = then.verdict;
+            report.verdict = now.verdict;
+            for (const Deviation& deviation : then.deviations) report.before_values.push_back(deviation.value.value_or(0));
+            report.deviations = now.deviations;
+            report.text = now.text;
+            if (!outcome.texts[i].empty()) report.text += (report.text.empty() ? "" : "; ") + outcome.texts[i];
+            if (now.verdict != Verdict::holds)
+                result.objections.push_back(name_of(report) +
+                                            (now.verdict == Verdict::fails ? " does not hold" : " is not known to hold"));
+            if (i >= outcome.residuals.size() || outcome.residuals[i].of_low_level.empty()) continue;
+            auto list = outcome.residuals[i].of_low_level;
+            std::sort(list.begin(), list.end());
+            report.distance = outcome.residuals[i].distance;
+            if (report.hard && options_.space == DeformOptions::Space::cage && report.verdict != Verdict::holds)
+                report.text += (report.text.empty() ? "" : "; ") + std::string("off by ") + std::to_string(report.distance) +
+                               (space_.set.unit.empty() ? "" : " ") + space_.set.unit +
+                               " at its worst point, with these weights in this cage";
+            report.low_level = list.size();
+            report.minimum = list.front();
+            report.maximum = list.back();
+            report.median = (list[(list.size() - 1) / 2] + list[list.size() / 2]) / 2;
+            for (const double value : list) report.mean += value / static_cast<double>(list.size());
+        }
+    }
+
+    /// Leaves out one constraint after another. Those that fail are tried first.
+    void find_conflicts(DeformResult& result, const std::vector<bool>& all) {
+        const auto maximum = static_cast<std::size_t>(options_.conflicts);
+        std::vector<std::size_t> order;
+        for (const bool failing : {true, false})
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (all[i] && (result.constraints[i].verdict != Verdict::holds) == failing) order.push_back(i);
+        if (order.size() < 2) return;
+        if (order.size() > maximum) result.untried = order.size() - maximum;
+        order.resize(std::min(order.size(), maximum));
+        for (const std::size_t left_out : order) {
+            std::vector<bool> active = all;
+            active[left_out] = false;
+            const Outcome outcome = solve(active);
+            ConstraintConflict conflict;
+            conflict.id = result.constraints[left_out].id;
+            for (std::size_t i = 0; i < all.size(); ++i)
+                if (active[i] && result.constraints[i].verdict == Verdict::fails && outcome.measured[i].verdict == Verdict::holds)
+                    conflict.freed.push_back(result.constraints[i].id);
+            conflict.deviations = outcome.measured[left_out].deviations;
+            if (!conflict.freed.empty()) result.conflicts.push_back(std::move(conflict));
+        }
+    }
+
+    const HandleSpace& space_;
+    const RelationGraph& graph_;
+    const DeformOptions& options_;
+    const RelationOptions& tolerances_;
+    std::string where_, graph_where_;
+    Points rest_;
+    EditState last_;
+    std::vector<bool> asked_;  ///< vertices that the edit asks to move; empty: none is told from others
+    Mesh edited_mesh_;
+    Points edited_;
+    std::vector<semantic::Statement> statements_;  ///< of the constraints in the report
+    std::vector<std::unique_ptr<Constraint>> lowered_;
+    std::vector<std::unique_ptr<Constraint>> support_;
+    std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
+    std::size_t first_ = 0;           ///< its place in the solver's list
+    std::set<Index> anchors_, rotating_, referred_;
+    double hard_scale_ = 1;  ///< from which hard constraints are enforced, as passes so far tell
+};
+
+}  // namespace ostraka::semantic

@@ -1,0 +1,58 @@
+// Names of what a session holds.
+#pragma once
+
+#include "request.h"
+
+#include "ostraka/core/words.h"
+#include "ostraka/workbench/session.h"
+
+#include <algorithm>
+
+namespace ostraka::workbench {
+
+/// The part of an object that an output of this kind becomes; empty: none.
+inline std::string part_of(Kind kind) {
+    switch (kind) {
+        case Kind::mesh:
+            return "mesh";
+        case Kind::annotations:
+            return "annotations";
+        case Kind::graph:
+            return "graph";
+        case Kind::cage:
+            return "cage";
+        case Kind::coordinates:
+            return "coordinates";
+        case Kind::recipe:
+            return "recipe";
+        case Kind::edit:
+            return "edit";
+        default:
+            return {};
+    }
+}
+
+inline bool is_plain_name(const std::string& name) {
+    return !name.empty() && name.size() <= 100 && name.front() != '.' && printable(name) == name &&
+           name.find_first_of("/\\:$") == std::string::npos;
+}
+
+/// A name that no object has yet.
+inline std::string free_name(const SessionState& state, const std::string& name) {
+    const auto taken = [&](const std::string& one) {
+        return std::any_of(state.objects.begin(), state.objects.end(), [&](const SessionObject& o) { return o.name == one; });
+    };
+    std::string free = name;
+    for (int i = 2; taken(free); ++i) free = name + "-" + std::to_string(i);
+    return free;
+}
+
+/// Without the endings that files of parts have.
+inline std::string stem_of(const std::string& file) {
+    const std::string name = Path(file).filename().string();
+    for (const std::string_view end : {".ant.json", ".graph.json", ".recipe.json", ".edit.json", ".template.json", ".cage.ply"})
+        if (name.ends_with(end)) return name.substr(0, name.size() - end.size());
+    return Path(name).stem().string();
+}
+
+}  // namespace ostraka::workbench
