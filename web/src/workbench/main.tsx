@@ -6,6 +6,7 @@ import { drawn, view } from "../picture";
 import * as page from "../state";
 import "../style.css";
 import { App } from "./app";
+import * as camera from "./camera";
 import * as commands from "./commands";
 import * as deform from "./deform";
 import * as model from "./model";
@@ -52,5 +53,5 @@ effect(() => {
 
 // For tests of this page, which ask where things are.
 Object.defineProperty(window, "ostraka", {
-  value: { page, model, selection, tools, deform, commands, xr, shared, get view() { return view; }, get objects() { return drawn; } },
+  value: { page, camera, model, selection, tools, deform, commands, xr, shared, get view() { return view; }, get objects() { return drawn; } },
 });
