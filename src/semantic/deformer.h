@@ -82,13 +82,7 @@ public:
 
     DeformResult follow(const JsonValue& edit) {
         DeformResult result;
-        last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
-        last_.touched.assign(last_.handles.size(), false);
-        last_.named.assign(space_.mesh.number_of_vertices(), false);
-        for (auto& state : follow_edit(edit, space_, where_)) {
-            last_ = std::move(state);
-            result.selected.push_back(last_.selected.size());
-        }
+        result.selected = follow_steps(edit);
         result.edited = shape_of_edit(space_, last_, options_);
         asked_ = semantic::asked_vertices(space_, last_, columns_of(result.edited) - rest_);
         result = finish(std::move(result));
@@ -122,10 +116,7 @@ public:
     /// For a drag of these handles from where the edit leaves the cage, whose vertices are handed over; no solver where no
     /// constraint asks for anything.
     CageSystem begin(const JsonValue& edit, const std::vector<Index>& handles, std::vector<Point>& cage) {
-        last_.handles = points_of(*space_.cage);
-        last_.touched.assign(last_.handles.size(), false);
-        last_.named.assign(space_.mesh.number_of_vertices(), false);
-        for (auto& state : follow_edit(edit, space_, where_)) last_ = std::move(state);
+        follow_steps(edit);
         for (const Index handle : handles) last_.touched[handle] = true;
         last_.by_handles = true;
         cage = last_.handles;
@@ -145,6 +136,19 @@ public:
     }
 
 private:
+    /// To the state after the last step. How many handles each step selects.
+    std::vector<std::size_t> follow_steps(const JsonValue& edit) {
+        std::vector<std::size_t> selected;
+        last_.handles = points_of(space_.cage != nullptr ? *space_.cage : space_.mesh);
+        last_.touched.assign(last_.handles.size(), false);
+        last_.named.assign(space_.mesh.number_of_vertices(), false);
+        for (auto& state : follow_edit(edit, space_, where_)) {
+            last_ = std::move(state);
+            selected.push_back(last_.selected.size());
+        }
+        return selected;
+    }
+
     static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
 
     DeformResult finish(DeformResult result) {

@@ -11,7 +11,8 @@ std::vector<Path> files_for(const Session& session, bool deformed) {
     const SessionObject* object = state.object();
     if (object == nullptr) return found;
     for (const SessionFile& file : state.files)
-        if (file.name.ends_with(".npy") || file.name.ends_with(".json")) found.push_back(session.path_of(file.file));
+        if (file.of == object->name && (file.name.ends_with(".npy") || file.name.ends_with(".json")))
+            found.push_back(session.path_of(file.file));
     if (deformed) {
         const Path shape = session.path_of(object->part("deformed"));
         found.push_back(shape.parent_path() / "report.json");

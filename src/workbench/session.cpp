@@ -4,6 +4,7 @@
 
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
+#include "ostraka/operations/page_results.h"
 #include "ostraka/template_package/template.h"
 
 #include <fcntl.h>
@@ -32,7 +33,7 @@ SessionState state_from(const JsonValue& value) {
         state.objects.push_back(std::move(object));
     }
     for (const JsonValue& one : list_in(value, "files"))
-        state.files.push_back({text_in(one, "name"), text_in(one, "kind"), text_in(one, "file")});
+        state.files.push_back({text_in(one, "name"), text_in(one, "kind"), text_in(one, "file"), text_in(one, "of")});
     state.active = static_cast<std::size_t>(number_or(value, "active", 0));
     return state;
 }
@@ -44,12 +45,6 @@ Json copy_of(const JsonValue& value) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& session_parts() {
-    static const std::vector<std::string> parts{"mesh",   "annotations", "graph",    "cage",          "coordinates",
-                                                "recipe", "edit",        "deformed", "deformed cage", "deformed annotations"};
-    return parts;
-}
 
 std::string SessionObject::part(const std::string& which) const {
     const auto found = parts.find(which);
@@ -65,7 +60,7 @@ JsonValue to_json(const SessionState& state, JsonAllocator& allocator) {
                                      return json_object(allocator, "name", object.name, "parts", std::move(parts));
                                  }),
                        "active", state.active, "files", json_list(state.files, allocator, [&](const SessionFile& file) {
-                           return json_object(allocator, "name", file.name, "kind", file.kind, "file", file.file);
+                           return json_object(allocator, "name", file.name, "kind", file.kind, "file", file.file, "of", file.of);
                        }));
 }
 
@@ -231,10 +226,8 @@ std::vector<std::string> Session::openable() const {
     std::vector<std::string> found;
     const auto look = [&](const Path& folder, const std::string& before) {
         for (const std::string& name : files_in(folder)) {
-            const std::string kind = extension(name);
-            const bool is_mesh = kind == ".ply" || kind == ".obj" || kind == ".off" || kind == ".stl";
             if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
-            if (is_mesh || name.ends_with(".template.json")) found.push_back(before + name);
+            if (is_mesh_name(name) || name.ends_with(".template.json")) found.push_back(before + name);
         }
     };
     look(root_, "");

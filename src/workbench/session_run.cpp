@@ -227,9 +227,11 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
         else if (deforms && (part == "cage" || part == "annotations")) part.insert(0, "deformed ");
         if (slot->kind == Kind::mesh && slot->needed && !deforms) continue;
         if (part.empty() || target >= now.objects.size() || (slot->kind == Kind::mesh && !slot->needed)) {
-            std::erase_if(now.files, [&](const SessionFile& one) { return one.name == name; });
+            const std::string of = target < now.objects.size() ? now.objects[target].name : std::string();
+            std::erase_if(now.files, [&](const SessionFile& one) { return one.name == name && one.of == of; });
             const bool folder = is_folder(folder_ / made(name));
-            now.files.push_back({name, slot->kind == Kind::folder && !folder ? "file" : to_string(slot->kind), made(name)});
+            const std::string kind = slot->kind == Kind::folder && !folder ? "file" : to_string(slot->kind);
+            now.files.push_back({name, kind, made(name), of});
             if (folder) take_folder(made(name), now);
             continue;
         }

@@ -253,6 +253,22 @@ TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
     EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds something else";
 }
 
+TEST(Session, AMapIsShownWithItsOwnObject) {
+    Bench bench;
+    const auto maps = [&] {
+        std::vector<std::size_t> counts;
+        const Json scene = bench.ask(R"({"id":2,"do":"scene","known":[]})");
+        const Json content = parse_json(text_in(scene["result"], "content"), "the scene");
+        for (const JsonValue& object : list_in(content, "objects")) counts.push_back(object["maps"].Size());
+        return counts;
+    };
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
+    bench.ask(R"({"id":1,"do":"run","operation":"measure map","with":{"mesh":{"part":"mesh"},"of":"mean-curvature"}})");
+    EXPECT_EQ(maps(), std::vector<std::size_t>{1});
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");  // as many vertices, but another object
+    EXPECT_EQ(maps(), (std::vector<std::size_t>{0, 0}));
+}
+
 TEST(Session, OffersTheWordsOfVocabularies) {
     Bench bench;
     write_file(bench.scratch / "terracotta.vocabulary.json",

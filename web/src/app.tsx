@@ -7,6 +7,7 @@ import { Graph } from "./graph";
 import { Legend } from "./legend";
 import { address, closeEntry } from "./content";
 import { Picture, view } from "./picture";
+import { sixViews } from "./view";
 import { Slices } from "./slices";
 import * as state from "./state";
 import { numberText, page, word } from "./state";
@@ -110,14 +111,6 @@ function keepAddress() {
 
 function Toolbar() {
   const about = page.objects[state.object.value];
-  const views: [state.Word, number, number][] = [
-    ["front", 0, 0],
-    ["right", 90, 0],
-    ["back", 180, 0],
-    ["left", 270, 0],
-    ["top", 0, 89.9],
-    ["bottom", 0, -89.9],
-  ];
   const partner = state.blendPartner.value;
   return (
     <div class="toolbar" role="toolbar" aria-label={word("view")}>
@@ -167,7 +160,7 @@ function Toolbar() {
         <button type="button" onClick={() => view?.home()}>
           {word("fit")}
         </button>
-        {views.map(([key, azimuth, elevation]) => (
+        {sixViews.map(([key, azimuth, elevation]) => (
           <button key={key} type="button" onClick={() => view?.look(azimuth, elevation)}>
             {word(key)}
           </button>

@@ -5,6 +5,16 @@ import { shared, type DrawnObject } from "./geometry";
 
 CameraControls.install({ THREE });
 
+/** Azimuth and elevation in degrees. */
+export const sixViews = [
+  ["front", 0, 0],
+  ["right", 90, 0],
+  ["back", 180, 0],
+  ["left", 270, 0],
+  ["top", 0, 89.9],
+  ["bottom", 0, -89.9],
+] as const;
+
 /** What is under the pointer. */
 export interface Hit {
   object: number;

@@ -12,17 +12,15 @@ namespace ostraka {
 /// What one sees as one thing: a mesh with what belongs to it. Files are named relative to the session's folder, with '/'.
 struct SessionObject {
     std::string name;
-    std::map<std::string, std::string> parts;  ///< by session_parts()
+    std::map<std::string, std::string> parts;  ///< "mesh", "annotations", "graph", "cage", "coordinates", "recipe",
+                                               ///< and of a deformation "edit", "deformed", "deformed cage" and "... annotations"
     [[nodiscard]] std::string part(const std::string& which) const;
 };
-
-/// "mesh", "annotations", "graph", "cage", "coordinates", "recipe", and of a deformation under way "edit", "deformed",
-/// "deformed cage", "deformed annotations".
-const std::vector<std::string>& session_parts();
 
 /// A file that a step made and that is no part of an object: a table, a drawing, a map.
 struct SessionFile {
     std::string name, kind, file;
+    std::string of;  ///< the object that it says something of, by its name; empty: of none
 };
 
 /// What there is after a step. Files never change: a step makes new ones.

@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Language } from "../data";
 import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
+import { sixViews } from "../view";
 import { canListen, commands, gazed, heard, listen, listening, palette, say } from "./commands";
 import * as model from "./model";
 import { Annotating, Deforming, Everything, Fragments, History, Relations, Results, Slicing } from "./panels";
@@ -172,15 +173,6 @@ function Layers() {
   );
 }
 
-const views: [page.Word, number, number][] = [
-  ["front", 0, 0],
-  ["right", 90, 0],
-  ["back", 180, 0],
-  ["left", 270, 0],
-  ["top", 0, 89.9],
-  ["bottom", 0, -89.9],
-];
-
 /** The layers beside the object that is worked on, and how things are drawn. */
 effect(() => {
   const names = model.layers.value;
@@ -207,7 +199,7 @@ function ViewBar() {
         <button type="button" onClick={() => view?.home()}>
           {page.word("fit")}
         </button>
-        {views.map(([name, azimuth, elevation]) => (
+        {sixViews.map(([name, azimuth, elevation]) => (
           <button key={name} type="button" onClick={() => view?.look(azimuth, elevation)}>
             {page.word(name)}
           </button>

@@ -5,7 +5,7 @@ import * as page from "../state";
 import * as deform from "./deform";
 import { change, has, part, redo, run, undo } from "./model";
 import * as selection from "./selection";
-import { choose, finish, tool, type Tool } from "./tools";
+import { choose, finish, type Tool } from "./tools";
 import { text, type Key } from "./words";
 
 export interface Command {
@@ -164,4 +164,3 @@ export function listen(on: boolean) {
   listening.value = true;
 }
 
-export { tool };

@@ -118,15 +118,11 @@ interface Drag {
   rest: THREE.Vector3[];
   centre: THREE.Vector3;
   from: { x: number; y: number };
-  linear: THREE.Matrix3;
-  shift: THREE.Vector3;
   edit: { steps: object[] };
   constrained: boolean;
   /** Messages under way, and what is to be sent next. */
   asked: number;
   next: THREE.Vector3[] | undefined;
-  ready: boolean;
-  step: object | undefined;
 }
 let now: Drag | undefined;
 /** A drag that begins: it ends as soon as the command has answered. */
@@ -155,8 +151,8 @@ async function grabWhole(of: DrawnObject, motion: Motion, from: { x: number; y: 
   of.follows(weights);
   const centre = new THREE.Vector3(...of.about.size).multiplyScalar(0.5);
   now = {
-    of, motion, list: [], rest: [], centre, from, linear: new THREE.Matrix3(), shift: new THREE.Vector3(),
-    edit: { steps: [] }, constrained: false, asked: 0, next: undefined, ready: true, step: undefined,
+    of, motion, list: [], rest: [], centre, from,
+    edit: { steps: [] }, constrained: false, asked: 0, next: undefined,
   };
   return true;
 }
@@ -169,8 +165,8 @@ async function begin(of: DrawnObject, motion: Motion, from: { x: number; y: numb
     const centre = rest.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(rest.length);
     of.follows(numbersIn(answer, answer.result.weights));
     now = {
-      of, motion, list, rest, centre, from, linear: new THREE.Matrix3(), shift: new THREE.Vector3(),
-      edit: answer.result.edit, constrained: answer.result.constrained, asked: 0, next: undefined, ready: true, step: undefined,
+      of, motion, list, rest, centre, from,
+      edit: answer.result.edit, constrained: answer.result.constrained, asked: 0, next: undefined,
     };
     if (ended) await release(ended);
   });
@@ -225,14 +221,11 @@ export function affine(step: any, centre: THREE.Vector3): { linear: THREE.Matrix
 
 export function drag(to: { x: number; y: number }) {
   if (!now) return;
-  now.step = motionTo(now, to);
-  apply(now, now.step);
+  apply(now, motionTo(now, to));
 }
 
 function apply(one: Drag, step: any) {
   const { linear, shift } = affine(step, one.centre);
-  one.linear = linear;
-  one.shift = shift;
   const moved = one.rest.map((p) => p.clone().applyMatrix3(linear).add(shift));
   if (one.constrained) {
     one.next = moved;
@@ -333,14 +326,6 @@ async function finishWhole(one: Drag, step: object): Promise<boolean> {
   return done;
 }
 
-/** The same without a pointer: for keys, hands and voice. */
-export async function perform(motion: Motion, step: object): Promise<boolean> {
-  const of = subject();
-  if (!of || handles.value.size === 0) return false;
-  if (!(await begin(of, motion, { x: 0, y: 0 })) || !now) return false;
-  return finishWith(now, step);
-}
-
 /** For hands: the map is given, frame by frame, until it is let go as a step. */
 export async function hold(motion: Motion): Promise<boolean> {
   const of = subject();
@@ -348,7 +333,6 @@ export async function hold(motion: Motion): Promise<boolean> {
 }
 export function follow(step: object) {
   if (!now) return;
-  now.step = step;
   apply(now, step);
 }
 export const held = () => now;

@@ -1,6 +1,6 @@
 // Any operation of the table as a form: made from its declaration, filled with what the session has.
 import { useState } from "preact/hooks";
-import { files, has, object, objects, operations, part, run, type Declaration, type OperationInput, type OperationOption } from "./model";
+import { files, has, object, objects, operations, run, type Declaration, type OperationInput, type OperationOption } from "./model";
 import { text } from "./words";
 
 /** Kinds of inputs and the parts that are such. */
@@ -212,4 +212,3 @@ export function Operations({ only }: { only?: string }) {
 
 /** What the table says of an operation. */
 export const helpOf = (name: string) => operations.value.find((one) => one.name === name)?.help ?? "";
-export { part };

@@ -25,7 +25,6 @@ export function typeOf(of: Expression): "region" | "line" | "point" {
 }
 
 let mark: THREE.Object3D | undefined;
-let faces: Uint32Array | undefined;
 
 /** The object that is selected on: the one at rest. */
 export function target(): DrawnObject | undefined {
@@ -93,26 +92,18 @@ export function setSelection(next: Expression | undefined): Promise<boolean> {
     const { type, count } = answer.result;
     expression.value = next;
     selected.value = { type, count };
-    faces = type === "region" ? indicesIn(answer, answer.result.faces) : undefined;
+    const faces = type === "region" ? indicesIn(answer, answer.result.faces) : undefined;
     show(of, faces ? facesMark(of, faces) : type === "line" ? linesMark(of, answer.result.lines) : pointsMark(of, answer.result.points));
   });
 }
 
-export const selectedFaces = () => faces;
-
 export function clear() {
   expression.value = undefined;
   selected.value = undefined;
-  faces = undefined;
   if (mark) mark.removeFromParent();
   mark = undefined;
   view?.draw();
 }
 
-// Another content: what is selected is drawn on it, if it is still there.
-onShown.push(() => {
-  mark = undefined;
-  const again = expression.value;
-  if (!again) return;
-  clear();
-});
+// Another content: nothing of it is selected.
+onShown.push(clear);

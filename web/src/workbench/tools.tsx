@@ -1,14 +1,14 @@
 // Tools: what the pointer does on the picture, and what is drawn over it meanwhile.
 import { signal } from "@preact/signals";
 import CameraControls from "camera-controls";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect } from "preact/hooks";
 import * as THREE from "three";
 import type { DrawnObject } from "../geometry";
 import { drawn, view } from "../picture";
 import * as page from "../state";
 import { paneOf, recipeCamera, type RecipeCamera } from "./camera";
 import * as deform from "./deform";
-import { active, has, onShown, part, run } from "./model";
+import { has, onShown, part, run } from "./model";
 import * as selection from "./selection";
 import { text, type Key } from "./words";
 
@@ -235,12 +235,10 @@ export function attach(canvas: HTMLCanvasElement): () => void {
 
 onShown.push(() => {
   picks.value = [];
-  void active.value;
 });
 
 /** What is being drawn. */
 export function Drawing() {
-  const svg = useRef<SVGSVGElement>(null);
   useEffect(() => {
     if (!view) return;
     return attach(view.canvas);
@@ -252,7 +250,7 @@ export function Drawing() {
   const of = over.value;
   const points = of ? picks.value.map((one) => view!.place(of, one.point)).filter((one) => one !== undefined) : [];
   return (
-    <svg ref={svg} class="drawing-now" aria-hidden="true">
+    <svg class="drawing-now" aria-hidden="true">
       {(t === "rectangle" || t === "handles") && way.length > 1 && (
         <rect x={Math.min(a.x, b.x)} y={Math.min(a.y, b.y)} width={Math.abs(a.x - b.x)} height={Math.abs(a.y - b.y)} />
       )}

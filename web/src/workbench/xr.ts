@@ -5,9 +5,10 @@ import * as THREE from "three";
 import { flatMaterial, type DrawnObject } from "../geometry";
 import { drawn, view } from "../picture";
 import * as page from "../state";
-import { commands, gazed, gazedPoint, say, tool } from "./commands";
+import { commands, gazed, gazedPoint } from "./commands";
 import * as deform from "./deform";
 import { onShown } from "./model";
+import { tool } from "./tools";
 import { text } from "./words";
 
 export const canEnter = signal(false);
@@ -308,4 +309,3 @@ onShown.push(() => {
 });
 
 export const isInside = () => session !== undefined;
-export { say };
