@@ -23,6 +23,16 @@ struct TableOptions {
 };
 void transfer_table(const TableOptions& options);
 
+/// Free outlines drawn, carried to other resolutions and meshes and back, against the same curves laid there place by place.
+struct FreeOutlineOptions {
+    std::vector<std::string> objects{"made:teapot", "made:statuette", "made:hand"};  ///< made:NAME or mesh files
+    std::vector<std::size_t> sizes{5000, 50000, 100000, 1000000};                    ///< ascending
+    std::vector<double> shares{0.005, 0.025, 0.1};
+    int discs = 3;
+    std::string csv;
+};
+void free_outlines(const FreeOutlineOptions& options);
+
 /// Table 4.1: time and memory of a region made plane, over the mesh and through a cage.
 struct Table41Options {
     std::string made = "teapot", scan, output = "experiments-output/table-4-1";

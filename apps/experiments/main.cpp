@@ -34,6 +34,14 @@ void declare_transfer_table(CLI::App& command, TableOptions& options) {
     command.add_flag("--no-independent", options.no_independent, "leave out independently meshed resolutions");
 }
 
+void declare_free_outlines(CLI::App& command, FreeOutlineOptions& options) {
+    command.add_option("--objects", options.objects, "made:NAME or mesh files")->delimiter(',');
+    command.add_option("--sizes", options.sizes, "numbers of vertices, ascending")->delimiter(',');
+    command.add_option("--shares", options.shares, "of the surface, of the regions")->delimiter(',');
+    command.add_option("--discs", options.discs, "regions of each share")->capture_default_str();
+    command.add_option("--csv", options.csv, "raw rows");
+}
+
 void declare_table_4_1(CLI::App& command, Table41Options& options) {
     command.add_option("--made", options.made, "made object")->capture_default_str();
     command.add_option("--scan", options.scan, "mesh file instead; refined and simplified to each number of vertices");
@@ -273,6 +281,8 @@ struct Experiment {
 constexpr Experiment list[] = {
     {"table", "distortions per metric, size and pair of resolutions (thesis, Table 2.1)",
      declared<declare_transfer_table, transfer_table>},
+    {"free-outlines", "free outlines carried to other meshes and back, against the same curves laid there place by place",
+     declared<declare_free_outlines, free_outlines>},
     {"table-4-1", "a region made plane, over the mesh and through a cage: time and memory",
      declared<declare_table_4_1, table_4_1>},
     {"figure-4-6", "a region made plane, over the mesh and through a cage: what else moves",

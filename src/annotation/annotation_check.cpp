@@ -1,6 +1,7 @@
 // What must hold of every annotation, wherever it comes from.
 #include "annotation_places.h"
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/curves.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
@@ -124,6 +125,18 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
         places::check_face(mesh, annotation.faces[i], where, at + "/faces/" + to_string(i));
         if (i > 0 && annotation.faces[i] <= annotation.faces[i - 1])
             fail(where, at + "/faces/" + to_string(i), "the faces are not in ascending order without repeats", "sort them");
+    }
+    if (is_free(annotation)) {
+        if (annotation.all) fail(where, at, "the whole mesh has curves", "drop them or the mark \"all\"");
+        Annotation settled = annotation;
+        try {
+            settle_elements(mesh, settled);
+        } catch (const Error& error) {
+            fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());
+        }
+        if (settled.points != annotation.points || settled.polylines != annotation.polylines || settled.faces != annotation.faces)
+            throw Error(ErrorKind::failure, where, "at " + at + ": its curves and its elements do not say the same",
+                        "give it elements by its curves, or take the curves away");
     }
     if (annotation.all && annotation.faces.size() != mesh.number_of_faces())
         fail(where, at,

@@ -1,5 +1,6 @@
 #include "ostraka/annotation/annotation_maps.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/shortest_path.h"
 
@@ -274,19 +275,22 @@ bool AnnotationTable::contains(std::uint32_t set, int id) const {
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set) {
     if (mesh.has_garbage()) fail_work("mesh", "has removed elements", "collect its garbage before attaching annotations");
     AnnotationTable table;
-    std::vector<std::pair<Index, int>> vertices, edges, faces;
+    std::vector<std::pair<Index, int>> vertices, edges, faces, cuts;
     for (const auto& annotation : set.annotations) {
         for (const Index vertex : annotation.points) vertices.emplace_back(vertex, annotation.id);
         for (const auto& polyline : annotation.polylines)
             for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
                 edges.emplace_back(mesh.edge(find_halfedge(mesh, Vertex(polyline[k]), Vertex(polyline[k + 1]))), annotation.id);
         for (const Index face : annotation.faces) faces.emplace_back(face, annotation.id);
+        if (annotation.type == AnnotationType::region && is_free(annotation))
+            for (const auto& [face, share] : filling_of(mesh, annotation).cut) cuts.emplace_back(face, annotation.id);
         if (annotation.type == AnnotationType::region && !annotation.all)
             table.outlines[annotation.id] = extract_outlines(mesh, annotation.faces);
     }
     store<Vertex>(mesh, vertex_annotations, vertices, table);
     store<Edge>(mesh, edge_annotations, edges, table);
     store<Face>(mesh, face_annotations, faces, table);
+    store<Face>(mesh, face_cuts, cuts, table);
     return table;
 }
 
@@ -296,6 +300,7 @@ AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table
     Collector collector(mesh, table, before, vertex_map);
     AnnotationSet set = before;
     for (Annotation& annotation : set.annotations) {
+        annotation.curves.clear();  // of the mesh before: from here on its elements stand for it
         collector.follow(annotation);
         move_pins(annotation, vertex_map, mesh.number_of_vertices());
     }
@@ -305,7 +310,8 @@ AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table
 void detach_annotations(Mesh& mesh) {
     if (auto [map, found] = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations); found) mesh.remove_property_map(map);
     if (auto [map, found] = mesh.property_map<Edge, std::uint32_t>(edge_annotations); found) mesh.remove_property_map(map);
-    if (auto [map, found] = mesh.property_map<Face, std::uint32_t>(face_annotations); found) mesh.remove_property_map(map);
+    for (const char* name : {face_annotations, face_cuts})
+        if (auto [map, found] = mesh.property_map<Face, std::uint32_t>(name); found) mesh.remove_property_map(map);
 }
 
 void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std::size_t vertex_count) {

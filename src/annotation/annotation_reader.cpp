@@ -2,10 +2,11 @@
 #include "annotation_places.h"
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/flood.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -183,18 +184,79 @@ std::vector<Index> faces_of(const JsonValue& object, const Mesh& mesh, bool all,
     return faces;
 }
 
+/// A place in a file: a vertex, [vertex, vertex, share of the way], or a face with barycentric coordinates.
+SurfacePlace surface_place_of(const JsonValue& value, const Mesh& mesh, const std::string& where, const std::string& at) {
+    SurfacePlace place;
+    if (value.IsUint()) {
+        place.element[0] = value.GetUint();
+        places::check_vertex(mesh, place.element[0], where, at);
+    } else if (value.IsArray()) {
+        if (value.Size() != 3 || !value[0].IsUint() || !value[1].IsUint())
+            fail(where, at, "is no place on an edge", "give [vertex, vertex, share of the way between them]");
+        const Index a = value[0].GetUint(), b = value[1].GetUint();
+        places::check_vertex(mesh, a, where, at + "/0");
+        places::check_vertex(mesh, b, where, at + "/1");
+        places::check_edge(mesh, a, b, where, at);
+        const double share = value[2].GetDouble();
+        if (!(share > 0 && share < 1))
+            fail(where, at + "/2", "the share of the way is not between 0 and 1", "at an end of the edge, give the vertex");
+        place.kind = SurfaceNode::Kind::edge;
+        place.element = {std::min(a, b), std::max(a, b)};
+        place.weights[0] = a < b ? share : 1 - share;
+    } else {
+        const Index face = value["face"].GetUint();
+        places::check_face(mesh, face, where, at + "/face");
+        const std::array<double, 3> weights = triple_of(value["barycentric"]);
+        if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
+            fail(where, at + "/barycentric", "the weights do not sum to one", "mend them");
+        constexpr double rim = 1e-12;
+        if (std::min({weights[0], weights[1], weights[2]}) < rim) return place_of(mesh, surface_node(mesh, face, weights, rim));
+        place.kind = SurfaceNode::Kind::face;
+        place.element[0] = face;
+        place.weights = {weights[1], weights[2]};
+    }
+    return place;
+}
+
+/// Whether there are curves; if so the annotation's elements follow from them.
+bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at,
+                 Annotation& annotation) {
+    for (const auto& list : list_in(object, "curves")) {
+        const std::string here = at + "/curves/" + to_string(annotation.curves.size());
+        auto& curve = annotation.curves.emplace_back();
+        for (const auto& value : list.GetArray())
+            curve.push_back(surface_place_of(value, mesh, where, here + '/' + to_string(curve.size())));
+    }
+    if (!is_free(annotation)) return false;
+    if (annotation.all) fail(where, at + "/curves", "the whole mesh has no outlines", "drop \"curves\" or \"all\"");
+    const std::vector<Index> seeds = indices_of(list_in(object, "seeds"));
+    for (std::size_t i = 0; i < seeds.size(); ++i) places::check_face(mesh, seeds[i], where, at + "/seeds/" + to_string(i));
+    annotation.faces = seeds;  // whole components by a face of each
+    try {
+        settle_elements(mesh, annotation);
+    } catch (const Error& error) {
+        fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());
+    }
+    return true;
+}
+
 Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at,
                          std::vector<std::string>& notes) {
-    note_unknown(
-        object,
-        {"id", "tag", "colour", "type", "points", "polylines", "boundaries", "faces", "seeds", "all", "note", "attributes"}, at,
-        notes);
+    note_unknown(object,
+                 {"id", "tag", "colour", "type", "points", "polylines", "boundaries", "faces", "seeds", "all", "curves", "note",
+                  "attributes"},
+                 at, notes);
     Annotation annotation;
     annotation.id = object["id"].GetInt();
     annotation.tag = text_in(object, "tag");
     if (const JsonValue* colour = find_member(object, "colour"))
         annotation.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
     const std::string type = text_in(object, "type");
+    const auto rest = [&] {
+        annotation.note = text_in(object, "note");
+        annotation.attributes = attributes_of(list_in(object, "attributes"), where, at + "/attributes", notes);
+        return annotation;
+    };
     const auto require = [&](const char* member) {
         if (find_member(object, member) == nullptr)
             fail(where, at, "an annotation of type " + type + " without " + member,
@@ -208,21 +270,22 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
     if (type == "point") {
         annotation.type = AnnotationType::point;
         refuse({"polylines", "boundaries", "faces", "seeds", "all"});
+        if (read_curves(object, mesh, where, at, annotation)) return rest();
         require("points");
         annotation.points = indices_of(list_in(object, "points"));
     } else if (type == "line") {
         annotation.type = AnnotationType::line;
         refuse({"points", "boundaries", "faces", "seeds", "all"});
+        if (read_curves(object, mesh, where, at, annotation)) return rest();
         require("polylines");
         annotation.polylines = vertex_paths_of(object, "polylines");
     } else {
         refuse({"points", "polylines"});
         annotation.all = flag_in(object, "all");
+        if (read_curves(object, mesh, where, at, annotation)) return rest();
         annotation.faces = faces_of(object, mesh, annotation.all, where, at);
     }
-    annotation.note = text_in(object, "note");
-    annotation.attributes = attributes_of(list_in(object, "attributes"), where, at + "/attributes", notes);
-    return annotation;
+    return rest();
 }
 
 /// Is this the mesh the file was made for?
@@ -279,8 +342,8 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
     }
     validate(document, "annotations", where);
     if (const JsonValue* version = find_member(document, "version");
-        version != nullptr && (!version->IsInt() || version->GetInt() > 1))
-        fail(where, "/version", "the file is of a newer version than 1", "use a newer ostraka");
+        version != nullptr && (!version->IsInt() || version->GetInt() > 2))
+        fail(where, "/version", "the file is of a newer version than 2", "use a newer ostraka");
     note_unknown(document, {"format", "version", "mesh", "unit", "class", "up", "annotations", "provenance"}, "", set.notes);
     check_mesh(document, mesh, where, options.force_mesh, set.notes);
     set.object_class = text_in(document, "class");

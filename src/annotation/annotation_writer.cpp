@@ -1,7 +1,7 @@
 // Annotations -> JSON.
 
 #include "ostraka/annotation/annotation_file.h"
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
@@ -62,6 +62,18 @@ RegionParts parts_of(const Annotation& annotation, const Mesh& mesh) {
     RegionParts parts;
     parts.outlines = extract_outlines(mesh, annotation.faces);
     if (annotation.all) return parts;
+    if (is_free(annotation)) {
+        // Its faces are those of its curves, and of whole components that no curve runs through.
+        const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
+        const CurveFilling without = fill_curves(mesh, curves);
+        std::vector<bool> seen(mesh.number_of_faces(), false);
+        for (const Index first : annotation.faces)
+            if (!seen[first] && without.sides[first] == FaceSide::out) {
+                parts.seeds.push_back(first);
+                flood_faces(mesh, Face(first), seen);
+            }
+        return parts;
+    }
     const std::vector<bool> selected = face_flags(mesh, annotation.faces);
     Filling filling = fill_outlines(mesh, parts.outlines);
     for (const Index first : annotation.faces) {
@@ -73,16 +85,40 @@ RegionParts parts_of(const Annotation& annotation, const Mesh& mesh) {
     return parts;
 }
 
+JsonValue json_of(const SurfacePlace& place, JsonAllocator& allocator) {
+    const auto [u, v] = place.weights;
+    switch (place.kind) {
+        case SurfaceNode::Kind::vertex:
+            return JsonValue(place.element[0]);
+        case SurfaceNode::Kind::edge: {
+            JsonValue list(rapidjson::kArrayType);
+            list.PushBack(place.element[0], allocator).PushBack(place.element[1], allocator).PushBack(json_number(u), allocator);
+            return list;
+        }
+        default:
+            return json_object(allocator, "face", place.element[0], "barycentric",
+                               numbers_of(std::array<double, 3>{1 - u - v, u, v}, allocator));
+    }
+}
+
 JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAllocator& allocator) {
     JsonValue object = json_object(allocator, "id", annotation.id, "tag", annotation.tag, "colour", annotation.colour, "type",
                                    to_string(annotation.type));
     if (annotation.type == AnnotationType::point) add_members(object, allocator, "points", annotation.points);
     if (annotation.type == AnnotationType::line) add_members(object, allocator, "polylines", annotation.polylines);
+    if (is_free(annotation))
+        add_member(object, "curves",
+                   json_list(annotation.curves, allocator,
+                             [&](const std::vector<SurfacePlace>& curve) {
+                                 return json_list(curve, allocator,
+                                                  [&](const SurfacePlace& one) { return json_of(one, allocator); });
+                             }),
+                   allocator);
     if (annotation.type == AnnotationType::region) {
         add_members(object, allocator, "boundaries", parts.outlines);
         if (annotation.all) add_member(object, "all", JsonValue(true), allocator);
         add_given(object, allocator, "seeds", parts.seeds);
-        if (!parts.complete) add_members(object, allocator, "faces", annotation.faces);
+        if (!parts.complete && !is_free(annotation)) add_members(object, allocator, "faces", annotation.faces);
     }
     add_given(object, allocator, "note", annotation.note);
     add_members(object, allocator, "attributes",
@@ -96,6 +132,7 @@ Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::
     check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     Json document = json_document("annotations");
     auto& allocator = document.GetAllocator();
+    if (any_free(set)) document["version"] = 2;
     JsonValue made_for(rapidjson::kObjectType);
     add_given(made_for, allocator, "file", Path(mesh_file).filename().string());
     add_members(made_for, allocator, "vertices", mesh.number_of_vertices(), "faces", mesh.number_of_faces(), "sha256",

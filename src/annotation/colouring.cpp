@@ -1,5 +1,7 @@
 #include "ostraka/annotation/colouring.h"
 
+#include "ostraka/annotation/curves.h"
+
 #include "ostraka/render/colour_scale.h"
 
 #include <algorithm>
@@ -82,7 +84,7 @@ std::vector<const Annotation*> regions_largest_first(const Mesh& mesh, const Ann
     std::vector<std::pair<double, const Annotation*>> regions;
     for (auto annotation = set.annotations.rbegin(); annotation != set.annotations.rend(); ++annotation) {
         if (annotation->type != AnnotationType::region) continue;
-        regions.emplace_back(area_of(mesh, annotation->faces), &*annotation);
+        regions.emplace_back(area_of(mesh, *annotation), &*annotation);
     }
     std::stable_sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<const Annotation*> order;

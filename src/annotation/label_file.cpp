@@ -1,6 +1,7 @@
 #include "ostraka/annotation/label_file.h"
 
 #include "ostraka/annotation/colouring.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
@@ -123,12 +124,48 @@ std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std:
     return labels;
 }
 
-std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set) {
+namespace {
+
+/// The smallest region on each face.
+std::vector<std::int32_t> labels_on_top(const Mesh& mesh, const AnnotationSet& set) {
     std::vector<std::int32_t> labels(mesh.number_of_faces(), no_label);
     for (const Annotation* region : regions_largest_first(mesh, set))
         if (!region->all)
             for (const Index face : region->faces) labels[face] = region->id;
     return labels;
 }
+
+}  // namespace
+
+FaceLabels face_labels(const Mesh& mesh, const AnnotationSet& set) {
+    FaceLabels result;
+    const AlongEdges along_edges(mesh, set);
+    result.of_face = labels_on_top(along_edges.mesh(), along_edges.annotations());
+    if (!along_edges.cut()) return result;
+    // A face that outlines cut has the label of most of its area.
+    const std::vector<std::int32_t> parts = std::move(result.of_face);
+    const std::vector<Index>& origin = along_edges.cut()->face_origin;
+    result.of_face.assign(mesh.number_of_faces(), no_label);
+    double lost = 0, area = 0;
+    for (std::size_t f = 0; f < origin.size();) {
+        std::map<std::int32_t, double> shares;
+        const Index face = origin[f];
+        double whole = 0;
+        for (; f < origin.size() && origin[f] == face; ++f) {
+            const double part = face_area(along_edges.mesh(), Face(static_cast<Index>(f)));
+            shares[parts[f]] += part;
+            whole += part;
+        }
+        const auto most =
+            std::max_element(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        result.of_face[face] = most->first;
+        lost += whole - most->second;
+        area += whole;
+    }
+    result.lost = area > 0 ? lost / area : 0;
+    return result;
+}
+
+std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set) { return face_labels(mesh, set).of_face; }
 
 }  // namespace ostraka

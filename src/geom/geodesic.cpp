@@ -1,6 +1,7 @@
 #include "ostraka/geom/geodesic.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/geom/shortest_path.h"
 #include "surface_patch.h"
 
 #include <CGAL/Surface_mesh_shortest_path.h>
@@ -145,6 +146,102 @@ double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const Surfac
     const auto target = place_in(mesh, patch, to, end.front());
     const double exact = patch.scale * search.shortest_distance_to_source_points(target.first, target.second).first;
     return exact >= 0 ? std::min(exact, shortest) : shortest;
+}
+
+namespace {
+
+/// The places that a path of a patch runs through, on the whole mesh.
+struct PathPlaces {
+    const Mesh& mesh;
+    const SurfacePatch& patch;
+    std::vector<SurfaceNode> nodes;
+
+    void add(SurfaceNode node) { nodes.push_back(std::move(node)); }
+    void operator()(Mesh::Vertex_index v) { add(surface_node(mesh, Vertex(patch.vertices[v]))); }
+    void operator()(Mesh::Halfedge_index h, Kernel::FT along) {
+        const Index a = patch.vertices[patch.mesh.source(h)], b = patch.vertices[patch.mesh.target(h)];
+        SurfacePlace place;
+        constexpr double snap = 1e-9;
+        if (along < snap || along > 1 - snap) {
+            place.element[0] = along < 0.5 ? a : b;
+        } else {
+            place.kind = SurfaceNode::Kind::edge;
+            place.element = {std::min(a, b), std::max(a, b)};
+            place.weights[0] = a < b ? along : 1 - along;
+        }
+        add(node_at(mesh, place));
+    }
+    void operator()(Mesh::Face_index, PathTraits::Barycentric_coordinates) {}  // one of the ends, which is known
+};
+
+}  // namespace
+
+std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to) {
+    const std::vector<Face> start = faces_at(mesh, from), end = faces_at(mesh, to);
+    SurfaceCurve curve;
+    curve.nodes = {from, to};
+    if (const Index face = common_face(mesh, from, to); face != no_index) {
+        curve.faces = {face};
+        return curve;
+    }
+    if (start.empty() || end.empty()) return std::nullopt;
+    const std::vector<double> lengths = edge_distances(mesh, gates(mesh, from, start), infinite);
+    double shortest = infinite;
+    for (const auto& [v, way] : gates(mesh, to, end)) shortest = std::min(shortest, lengths[v] + way);
+    if (!std::isfinite(shortest)) return std::nullopt;
+    const double sum = shortest * (1 + 1e-9);
+    const auto met = [&](Face face) {
+        return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
+    };
+    const SurfacePatch patch = cut_out(mesh, grow_faces(mesh, start, met), from.point);
+    ExactSearch search(patch.mesh);
+    // From the end on, so that the sequence runs from the start.
+    const auto source = place_in(mesh, patch, to, end.front());
+    search.add_source_point(source.first, source.second);
+    const auto target = place_in(mesh, patch, from, start.front());
+    PathPlaces places{mesh, patch, {}};
+    const double exact = patch.scale * search.shortest_path_sequence_to_source_points(target.first, target.second, places).first;
+    if (exact >= 0 && exact <= sum) {
+        std::vector<SurfaceNode> nodes{from};
+        const auto add = [&](const SurfaceNode& node) {
+            const SurfaceNode& last = nodes.back();
+            if (node.kind == last.kind && node.element == last.element &&
+                (node.kind == SurfaceNode::Kind::vertex || node.point == last.point))
+                return true;
+            if (common_face(mesh, last, node) == no_index) return false;
+            nodes.push_back(node);
+            return true;
+        };
+        bool joined = true;
+        for (const SurfaceNode& node : places.nodes) joined = joined && add(node);
+        joined = joined && add(to);
+        if (joined) {
+            curve.nodes = std::move(nodes);
+            for (std::size_t i = 1; i < curve.nodes.size(); ++i)
+                curve.faces.push_back(common_face(mesh, curve.nodes[i - 1], curve.nodes[i]));
+            return curve;
+        }
+    }
+    // Along edges: from a corner of the first place's face to one of the last's.
+    const auto nearest = [&](const SurfaceNode& node, const std::vector<Face>& faces) {
+        if (node.kind == SurfaceNode::Kind::vertex) return Vertex(node.element);
+        const auto corner = corners(mesh, faces.front());
+        return *std::min_element(corner.begin(), corner.end(), [&](Vertex a, Vertex b) {
+            return CGAL::squared_distance(mesh.point(a), node.point) < CGAL::squared_distance(mesh.point(b), node.point);
+        });
+    };
+    PathSearch paths(mesh);
+    curve.nodes = {from};
+    for (const Index v : paths.find(nearest(from, start), nearest(to, end), {}))
+        if (!(from.kind == SurfaceNode::Kind::vertex && v == from.element) &&
+            !(to.kind == SurfaceNode::Kind::vertex && v == to.element))
+            curve.nodes.push_back(surface_node(mesh, Vertex(v)));
+    curve.nodes.push_back(to);
+    for (std::size_t i = 1; i < curve.nodes.size(); ++i) {
+        curve.faces.push_back(common_face(mesh, curve.nodes[i - 1], curve.nodes[i]));
+        if (curve.faces.back() == no_index) return std::nullopt;
+    }
+    return curve;
 }
 
 }  // namespace ostraka

@@ -1,5 +1,7 @@
 #include "ostraka/geom/surface_trace.h"
 
+#include "ostraka/core/error.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,6 +78,101 @@ SurfaceNode surface_node(const Mesh& mesh, Index face, const std::array<double, 
     node.barycentric = barycentric;
     node.point = point_at(mesh, face, barycentric);
     return node;
+}
+
+SurfacePlace place_of(const Mesh& mesh, const SurfaceNode& node) {
+    SurfacePlace place;
+    place.kind = node.kind;
+    place.element[0] = node.element;
+    if (node.kind == SurfaceNode::Kind::edge) {
+        const Halfedge h = mesh.halfedge(Edge(node.element), 0);
+        const Index a = mesh.source(h), b = mesh.target(h);
+        place.element = {std::min(a, b), std::max(a, b)};
+        place.weights[0] = a < b ? node.parameter : 1 - node.parameter;
+    } else if (node.kind == SurfaceNode::Kind::face) {
+        place.weights = {node.barycentric[1], node.barycentric[2]};
+    }
+    return place;
+}
+
+SurfaceNode node_at(const Mesh& mesh, const SurfacePlace& place) {
+    const auto missing = [](const std::string& what) {
+        fail_input("a place on the surface", "names " + what + ", which the mesh does not have",
+                   "give the mesh that the place was made for");
+    };
+    const auto [first, second] = place.element;
+    const auto [u, v] = place.weights;
+    const auto outside = [](const std::string& what) {
+        fail_input("a place on the surface", "has weights that are not within " + what, "mend or remove it");
+    };
+    SurfaceNode node;
+    node.kind = place.kind;
+    node.element = first;
+    switch (place.kind) {
+        case SurfaceNode::Kind::vertex:
+            if (first >= mesh.number_of_vertices()) missing("vertex " + std::to_string(first));
+            node.point = mesh.point(Vertex(first));
+            break;
+        case SurfaceNode::Kind::edge: {
+            const std::string name = "an edge from vertex " + std::to_string(first) + " to vertex " + std::to_string(second);
+            if (first >= mesh.number_of_vertices() || second >= mesh.number_of_vertices()) missing(name);
+            const Halfedge h = find_halfedge(mesh, Vertex(first), Vertex(second));
+            if (!h.is_valid()) missing(name);
+            if (!(u > 0 && u < 1)) outside("the edge");
+            node.element = mesh.edge(h);
+            node.parameter = mesh.halfedge(mesh.edge(h), 0) == h ? u : 1 - u;
+            const Point &a = mesh.point(Vertex(first)), &b = mesh.point(Vertex(second));
+            node.point = a + u * (b - a);
+            break;
+        }
+        case SurfaceNode::Kind::face:
+            if (first >= mesh.number_of_faces()) missing("face " + std::to_string(first));
+            if (!(u >= 0 && v >= 0 && u + v <= 1)) outside("the face");
+            node.barycentric = {1 - u - v, u, v};
+            node.point = point_at(mesh, first, node.barycentric);
+    }
+    return node;
+}
+
+Index common_face(const Mesh& mesh, const SurfaceNode& a, const SurfaceNode& b) {
+    if (a.kind == SurfaceNode::Kind::face && b.kind == SurfaceNode::Kind::face)
+        return a.element == b.element ? a.element : no_index;
+    Index lowest = no_index;
+    const std::vector<Face> others = faces_of(mesh, b);
+    for (const Face f : faces_of(mesh, a))
+        if (static_cast<Index>(f) < lowest && std::find(others.begin(), others.end(), f) != others.end()) lowest = f;
+    return lowest;
+}
+
+Index common_edge(const Mesh& mesh, const SurfaceNode& a, const SurfaceNode& b) {
+    using Kind = SurfaceNode::Kind;
+    if (a.kind == Kind::face || b.kind == Kind::face) return no_index;
+    if (a.kind == Kind::edge && b.kind == Kind::edge) return a.element == b.element ? a.element : no_index;
+    if (a.kind == Kind::vertex && b.kind == Kind::vertex) {
+        const Halfedge h = find_halfedge(mesh, Vertex(a.element), Vertex(b.element));
+        return h.is_valid() ? static_cast<Index>(mesh.edge(h)) : no_index;
+    }
+    const SurfaceNode &vertex = a.kind == Kind::vertex ? a : b, &edge = a.kind == Kind::vertex ? b : a;
+    const Halfedge h = mesh.halfedge(Edge(edge.element), 0);
+    return Vertex(vertex.element) == mesh.source(h) || Vertex(vertex.element) == mesh.target(h) ? edge.element : no_index;
+}
+
+SurfaceCurve curve_through(const Mesh& mesh, const std::vector<SurfacePlace>& places) {
+    SurfaceCurve curve;
+    curve.nodes.reserve(places.size());
+    curve.faces.reserve(places.size());
+    for (const SurfacePlace& place : places) {
+        curve.nodes.push_back(node_at(mesh, place));
+        if (curve.nodes.size() == 1) continue;
+        const Index face = common_face(mesh, curve.nodes[curve.nodes.size() - 2], curve.nodes.back());
+        if (face == no_index)
+            fail_input("a curve",
+                       "its places " + std::to_string(curve.nodes.size() - 2) + " and " + std::to_string(curve.nodes.size() - 1) +
+                           " lie in no common face",
+                       "neighbours on a curve must share a face: add the places where it crosses edges");
+        curve.faces.push_back(face);
+    }
+    return curve;
 }
 
 double SurfaceCurve::length() const {

@@ -1,9 +1,11 @@
 #include "ostraka/interchange/edit.h"
 
 #include "fields.h"
+
 #include "text.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/ids.h"
@@ -12,6 +14,7 @@
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace ostraka {
@@ -171,15 +174,11 @@ private:
         if (annotation.type != other.type)
             fail_input(here_, "a " + to_string(other.type) + " cannot become part of a " + to_string(annotation.type),
                        "merge annotations of one type");
-        std::set<Index> known(annotation.points.begin(), annotation.points.end());
-        std::copy_if(other.points.begin(), other.points.end(), std::back_inserter(annotation.points),
-                     [&](Index point) { return known.insert(point).second; });
-        annotation.polylines.insert(annotation.polylines.end(), other.polylines.begin(), other.polylines.end());
-        std::vector<Index> faces;
-        std::set_union(annotation.faces.begin(), annotation.faces.end(), other.faces.begin(), other.faces.end(),
-                       std::back_inserter(faces));
-        annotation.faces = std::move(faces);
-        annotation.all = annotation.all || other.all;
+        if (is_free(annotation) || is_free(other)) {
+            join_curves(annotation, other);
+        } else {
+            join_elements(annotation, other);
+        }
         for (Attribute attribute : other.attributes) {
             const auto twin = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
                 return a.name == attribute.name && a.type == attribute.type;
@@ -199,6 +198,35 @@ private:
         set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(from));
     }
 
+    /// On the mesh cut along the curves of both.
+    void join_curves(Annotation& annotation, const Annotation& other) const {
+        AnnotationSet both;
+        both.annotations = {annotation, other};
+        const CutMesh cut = cut_along_curves(mesh_, both);
+        Annotation joined = cut.annotations.annotations[0];
+        join_elements(joined, cut.annotations.annotations[1]);
+        if (!joined.all) bring_back(mesh_, cut, joined);
+        annotation.points = std::move(joined.points);
+        annotation.polylines = std::move(joined.polylines);
+        annotation.faces = std::move(joined.faces);
+        annotation.curves = std::move(joined.curves);
+        annotation.all = joined.all;
+        if (annotation.all) annotation.faces.resize(mesh_.number_of_faces());
+        if (annotation.all) std::iota(annotation.faces.begin(), annotation.faces.end(), Index{0});
+    }
+
+    static void join_elements(Annotation& annotation, const Annotation& other) {
+        std::set<Index> known(annotation.points.begin(), annotation.points.end());
+        std::copy_if(other.points.begin(), other.points.end(), std::back_inserter(annotation.points),
+                     [&](Index point) { return known.insert(point).second; });
+        annotation.polylines.insert(annotation.polylines.end(), other.polylines.begin(), other.polylines.end());
+        std::vector<Index> faces;
+        std::set_union(annotation.faces.begin(), annotation.faces.end(), other.faces.begin(), other.faces.end(),
+                       std::back_inserter(faces));
+        annotation.faces = std::move(faces);
+        annotation.all = annotation.all || other.all;
+    }
+
     void split(std::size_t at) {
         const Annotation whole = set_.annotations[at];
         std::vector<Annotation> parts;
@@ -207,12 +235,24 @@ private:
             part.points.clear();
             part.polylines.clear();
             part.faces.clear();
+            part.curves.clear();
             part.all = false;
             return parts.emplace_back(std::move(part));
         };
-        for (const Index point : whole.points) add().points = {point};
-        for (const auto& polyline : whole.polylines) add().polylines = {polyline};
-        for (auto& patch : patches(mesh_, whole.faces)) add().faces = std::move(patch);
+        if (is_free(whole)) {
+            AnnotationSet alone;
+            alone.annotations.push_back(whole);
+            const CutMesh cut = cut_along_curves(mesh_, alone);
+            const Annotation& plain = cut.annotations.annotations.front();
+            for (const Index point : plain.points) add().points = {point};
+            for (const auto& polyline : plain.polylines) add().polylines = {polyline};
+            for (auto& patch : patches(cut.mesh, plain.faces)) add().faces = std::move(patch);
+            for (Annotation& part : parts) bring_back(mesh_, cut, part);
+        } else {
+            for (const Index point : whole.points) add().points = {point};
+            for (const auto& polyline : whole.polylines) add().polylines = {polyline};
+            for (auto& patch : patches(mesh_, whole.faces)) add().faces = std::move(patch);
+        }
         if (parts.size() < 2) {
             notes_.push_back("annotation " + to_string(whole.id) + " '" + interchange::words(whole.tag) +
                              "' is one piece already");

@@ -6,6 +6,7 @@
 #include "text.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
@@ -362,7 +363,10 @@ private:
 
 std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes) {
-    return FeatureWriter(mesh, set, mesh_file, provenance, notes).write();
+    const AlongEdges along_edges(mesh, set);
+    if (along_edges.cut())
+        notes.emplace_back("the mesh is cut along free outlines: read on the mesh itself, faces are in a region or not");
+    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, notes).write();
 }
 
 }  // namespace ostraka

@@ -11,7 +11,8 @@ bool same(const Attribute& a, const Attribute& b) {
 }
 
 bool same_geometry(const Annotation& a, const Annotation& b) {
-    return a.type == b.type && a.points == b.points && a.polylines == b.polylines && a.all == b.all && a.faces == b.faces;
+    return a.type == b.type && a.points == b.points && a.polylines == b.polylines && a.all == b.all && a.faces == b.faces &&
+           a.curves == b.curves;
 }
 
 bool same(const Annotation& a, const Annotation& b) {
@@ -58,6 +59,11 @@ std::string words(const Attribute& attribute) {
 }
 
 std::string geometry_words(const Annotation& annotation) {
+    if (!annotation.curves.empty() && annotation.type != AnnotationType::point) {
+        std::size_t places = 0;
+        for (const auto& curve : annotation.curves) places += curve.size();
+        return std::to_string(places) + " places on " + std::to_string(annotation.curves.size()) + " free curves";
+    }
     if (annotation.type == AnnotationType::point) return std::to_string(annotation.points.size()) + " points";
     if (annotation.type == AnnotationType::region)
         return annotation.all ? "the whole" : std::to_string(annotation.faces.size()) + " faces";

@@ -124,12 +124,14 @@ private:
             merged.points = from.points;
             merged.polylines = from.polylines;
             merged.faces = from.faces;
+            merged.curves = from.curves;
             merged.all = from.all;
         };
         if (same_geometry(ours, theirs) || same_geometry(theirs, base)) return;
         if (same_geometry(ours, base)) return take(theirs);
         const bool regions = base.type == AnnotationType::region && ours.type == base.type && theirs.type == base.type &&
-                             !base.all && !ours.all && !theirs.all;
+                             !base.all && !ours.all && !theirs.all && base.curves.empty() && ours.curves.empty() &&
+                             theirs.curves.empty();
         if (options_.merge_faces && regions) {
             // A face has two states: what differs from the base on one side counts, and both cannot differ from it in two ways.
             std::vector<Index> faces, all;

@@ -1,6 +1,6 @@
 #include "ostraka/measure/descriptors.h"
 
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
 #include "ostraka/geom/oriented_box.h"
@@ -48,14 +48,6 @@ void add_statistics(std::vector<Quantity>& list, const std::string& name, const 
     list.push_back(number(name + " 95 %", s.percentile_95, power, unit));
 }
 
-double length_of(const Mesh& mesh, const Annotation& annotation) {
-    double sum = 0;
-    for (const auto& polyline : annotation.polylines)
-        for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
-            sum += std::sqrt(CGAL::squared_distance(mesh.point(Vertex(polyline[k])), mesh.point(Vertex(polyline[k + 1]))));
-    return sum;
-}
-
 }  // namespace
 
 std::string unit_of(const Quantity& quantity, const std::string& unit) {
@@ -85,9 +77,27 @@ struct DescriptorSearch::Cache {
         return box;
     }
 
+    /// The mesh cut along the curves of the free annotation asked for last, and what is asked of it there.
+    struct Cut {
+        Annotation annotation;
+        CutMesh object;
+        std::unique_ptr<DescriptorSearch> search;
+        [[nodiscard]] const Annotation& plain() const { return object.annotations.annotations.front(); }
+    };
+    const Cut& cut_of(const Mesh& mesh, const Annotation& annotation) {
+        if (!cut || cut->annotation.curves != annotation.curves || cut->annotation.faces != annotation.faces) {
+            AnnotationSet alone;
+            alone.annotations.push_back(annotation);
+            cut = std::make_unique<Cut>(Cut{annotation, cut_along_curves(mesh, alone), nullptr});
+            cut->search = std::make_unique<DescriptorSearch>(cut->object.mesh);
+        }
+        return *cut;
+    }
+
 private:
     std::vector<Index> boxed_faces;
     OrientedBox box;
+    std::unique_ptr<Cut> cut;
 };
 
 DescriptorSearch::DescriptorSearch(const Mesh& mesh, DescriptorOptions options)
@@ -110,9 +120,15 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
     if (annotation.type == AnnotationType::line && name == "length") return number(name, length_of(mesh_, annotation), 1);
     if (annotation.type != AnnotationType::region) return std::nullopt;
     const auto& faces = annotation.faces;
-    if (name == "area") return number(name, measure_region(mesh_, faces).area, 2);
-    if (name == "perimeter") return number(name, measure_region(mesh_, faces).perimeter, 1);
-    if (name == "circularity") return number(name, measure_region(mesh_, faces).circularity(), 0);
+    if (name == "area") return number(name, measure_region(mesh_, annotation).area, 2);
+    if (name == "perimeter") return number(name, measure_region(mesh_, annotation).perimeter, 1);
+    if (name == "circularity") return number(name, measure_region(mesh_, annotation).circularity(), 0);
+    if (is_free(annotation)) {
+        const auto known = std::find(region_quantities().begin(), region_quantities().end(), name);
+        if (known == region_quantities().end()) return std::nullopt;
+        const Cache::Cut& cut = cache_->cut_of(mesh_, annotation);
+        return cut.search->find(cut.plain(), name);
+    }
     if (faces.empty()) return std::nullopt;
     if (name == "volume") return number(name, region_solid(mesh_, faces).volume, 3);
     if (name == "volume bound") return number(name, region_solid(mesh_, faces).volume_bound, 3);
@@ -137,19 +153,24 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
 std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, const std::vector<NamedMap>& maps) {
     std::vector<Quantity> result;
     const std::string who = name_of(annotation);
-    const std::vector<Index> vertices = touched_vertices(mesh_, annotation);
+    // A free annotation is described on the mesh cut along its curves, with the values of the mesh as it is.
+    const Cache::Cut* cut = is_free(annotation) ? &cache_->cut_of(mesh_, annotation) : nullptr;
+    const Mesh& mesh = cut == nullptr ? mesh_ : cut->object.mesh;
+    const Annotation& plain = cut == nullptr ? annotation : cut->plain();
+    const std::vector<Index> vertices = touched_vertices(mesh, plain);
     if (vertices.empty()) fail_input(who, "has no elements to describe", "select some first");
     const bool region = annotation.type == AnnotationType::region;
     if (annotation.type == AnnotationType::line) result.push_back(*find(annotation, "length"));
     if (region)
         for (const std::string& name : region_quantities()) result.push_back(*find(annotation, name));
-    const auto of_map = [&](const std::vector<double>& values, const std::string& where) {
-        if (region) return vertex_statistics(mesh_, values, annotation.faces, where);
-        if (values.size() != mesh_.number_of_vertices())
-            fail_input(where,
-                       "has " + std::to_string(values.size()) + " values for " + std::to_string(mesh_.number_of_vertices()) +
-                           " vertices",
-                       "give one value for each of the vertices");
+    const auto of_map = [&](const std::vector<double>& given, const std::string& where) {
+        if (given.size() != mesh_.number_of_vertices())
+            fail_input(
+                where,
+                "has " + std::to_string(given.size()) + " values for " + std::to_string(mesh_.number_of_vertices()) + " vertices",
+                "give one value for each of the vertices");
+        const std::vector<double> values = cut == nullptr ? given : cut->object.vertex_values(mesh_, given);
+        if (region) return vertex_statistics(mesh, values, plain.faces, where);
         std::vector<double> here;
         for (const Index v : vertices) {
             if (!std::isfinite(values[v]))
@@ -165,8 +186,9 @@ std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, c
     if (options_.thickness && region) {
         std::vector<double> values, weights;
         double all = 0, with = 0;
-        for (const Index face : annotation.faces) {
-            const double area = face_area(mesh_, Face(face)), value = thickness()[face];
+        for (const Index face : plain.faces) {
+            const double area = face_area(mesh, Face(face)),
+                         value = thickness()[cut == nullptr ? face : cut->object.face_origin[face]];
             all += area;
             if (!std::isfinite(value)) continue;
             with += area;

@@ -1,6 +1,6 @@
 #include "ostraka/measure/examine.h"
 
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
 
@@ -103,6 +103,7 @@ private:
     }
 
     void line(const Annotation& annotation, const std::string& at) {
+        if (is_free(annotation)) return;  // its edges are only the nearest
         if (annotation.polylines.empty()) defect(at, "there are no poly-lines" + because(annotation));
         std::set<std::pair<Index, Index>> edges;
         for (std::size_t i = 0; i < annotation.polylines.size(); ++i) {
@@ -116,6 +117,7 @@ private:
     }
 
     void region(const Annotation& annotation, const std::string& at) {
+        if (is_free(annotation)) return;  // its outlines bound it, or it could not be read
         if (annotation.faces.empty()) defect(at, "there are no faces" + because(annotation));
         const std::size_t patches = count_patches(mesh_, annotation.faces);
         if (patches > 1) remark(at, "the region has " + to_string(patches) + " separate patches");
@@ -149,10 +151,10 @@ AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation) {
             summary.length = evaluate(mesh, annotation, std::string("length")).value_or(0);
             break;
         case AnnotationType::region: {
-            const RegionMeasures measures = measure_region(mesh, annotation.faces);
+            const RegionMeasures measures = measure_region(mesh, annotation);
             summary.elements = annotation.faces.size();
-            summary.patches = count_patches(mesh, annotation.faces);
-            summary.outlines = extract_outlines(mesh, annotation.faces).size();
+            summary.patches = std::max<std::size_t>(is_free(annotation) ? 1 : 0, count_patches(mesh, annotation.faces));
+            summary.outlines = is_free(annotation) ? annotation.curves.size() : extract_outlines(mesh, annotation.faces).size();
             summary.area = measures.area;
             summary.length = measures.perimeter;
             break;

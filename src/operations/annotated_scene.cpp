@@ -1,7 +1,7 @@
 #include "annotated_scene.h"
 
 #include "ostraka/annotation/colouring.h"
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/smooth_regions.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -84,21 +84,20 @@ public:
         if (label.faces.empty() && label.points.empty()) scene_.labels.pop_back();
     }
 
-    void draw_measures(PathSearch& search, const Annotation& annotation, const std::string& unit) {
+    void draw_measures(PathSearch& search, const Mesh& mesh, const Annotation& annotation, const std::string& unit) {
         constexpr Rgb ink{30, 30, 34}, white{255, 255, 255};
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
             const Measure& measure = attribute.measure;
-            std::vector<Point> line = way_of(search, mesh_, measure);
-            if (line.empty()) line = pins_of(mesh_, measure);
+            std::vector<Point> line = way_of(search, mesh, measure);
+            if (line.empty()) line = pins_of(mesh, measure);
             if (line.empty()) continue;
             SceneLine& drawn = scene_.lines.emplace_back();
             for (const Point& p : line) drawn.points.push_back({p.x(), p.y(), p.z()});
             drawn.colour = ink;
             drawn.width = 1.8;
             drawn.through = true;
-            for (const Point& p : pins_of(mesh_, measure))
-                scene_.markers.push_back({{p.x(), p.y(), p.z()}, white, 3.5, "", true});
+            for (const Point& p : pins_of(mesh, measure)) scene_.markers.push_back({{p.x(), p.y(), p.z()}, white, 3.5, "", true});
             const std::string in = !measure.unit.empty() ? measure.unit : unit;
             std::string text = attribute.name;
             if (measure.value) text += ": " + digits(*measure.value, 4) + (in.empty() ? "" : " " + in);
@@ -222,7 +221,18 @@ private:
 
 }  // namespace
 
-void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style) {
+void draw_annotations(Scene& scene, const Mesh& given_mesh, const AnnotationSet& given, const AnnotationStyle& given_style) {
+    // Free outlines are drawn as they are: on the mesh cut along them.
+    const AlongEdges along_edges(given_mesh, given);
+    const Mesh& mesh = along_edges.mesh();
+    const AnnotationSet& set = along_edges.annotations();
+    AnnotationStyle style = given_style;
+    if (const auto& cut = along_edges.cut()) {
+        scene.mesh = to_soup(mesh);
+        if (!scene.vertex_values.empty()) scene.vertex_values = cut->vertex_values(given_mesh, scene.vertex_values);
+        if (!scene.face_values.empty()) scene.face_values = cut->face_values(scene.face_values);
+        style.smooth = false;
+    }
     AnnotationDrawing drawing(scene, mesh, set, style);
     // Outlines come first, so that lines lie on top of them.
     for (const bool regions : {true, false})
@@ -230,8 +240,8 @@ void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, 
             if ((annotation.type == AnnotationType::region) == regions) drawing.draw(annotation);
     for (const Annotation& annotation : set.annotations) drawing.add_to_legend(annotation);
     if (style.measures) {
-        PathSearch search(mesh);
-        for (const Annotation& annotation : set.annotations) drawing.draw_measures(search, annotation, set.unit);
+        PathSearch search(given_mesh);  // a tape along edges is one along the edges of the mesh itself
+        for (const Annotation& annotation : given.annotations) drawing.draw_measures(search, given_mesh, annotation, set.unit);
     }
     scene.unit = set.unit;
 }

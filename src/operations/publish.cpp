@@ -2,6 +2,7 @@
 #include "annotated_scene.h"
 #include "operations.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
@@ -95,8 +96,9 @@ struct Publish final : AnnotatedMeshOperation {
         Page page(name);
         PageObject shown;
         shown.name = name;
-        shown.mesh = &on;
-        shown.annotations = &known;
+        const AlongEdges along_edges(on, known);  // free outlines are seen on the mesh cut along them
+        shown.mesh = &along_edges.mesh();
+        shown.annotations = &along_edges.annotations();
         page.add(shown);
         if (!known.annotations.empty()) page.add(annotation_table(on, known, 0, name));
         write_file(folder.in("index.html"), page.html(context.provenance().to_line()));

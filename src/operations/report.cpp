@@ -3,6 +3,7 @@
 #include "operations.h"
 #include "ostraka/operations/page_results.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -404,6 +405,17 @@ struct MakeReport final : Operation {
             shown.mesh = &one.file.mesh;
             shown.maps = std::move(one.maps);
             if (one.set) shown.annotations = &*one.set;
+        }
+        std::optional<AlongEdges> along_edges;  // free outlines are seen on the mesh cut along them
+        if (shown.annotations != nullptr) along_edges.emplace(*shown.mesh, *shown.annotations);
+        if (along_edges && along_edges->cut()) {
+            for (PageMap& map : shown.maps) {
+                map.values = along_edges->cut()->vertex_values(*shown.mesh, map.values);
+                if (!map.categories.empty())
+                    for (double& value : map.values) value = std::round(value);
+            }
+            shown.mesh = &along_edges->mesh();
+            shown.annotations = &along_edges->annotations();
         }
         to.add(shown);
         if (!table.rows.empty()) to.add(std::move(table));

@@ -79,6 +79,9 @@ void SelectStep::describe(OptionList& visit) {
     visit("tag", tag, "what it is");
     visit("id", id, "its id; a free one if it is new and none is given");
     visit("type", type, "of a new one; else what the tool selects", Choices{"point", "line", "region"});
+    visit("outline", outline,
+          "along the edges of the mesh, or free: as drawn, through its faces; of an edited one as it is, of a new one edges",
+          Choices{"edges", "free"});
     visit("colour", colour, "red,green,blue", Range{0, 255});
     visit("action", action, "what to do with the annotation of this id",
           Choices{"make", "add to", "remove from", "replace", "delete", "retag"});
@@ -283,6 +286,8 @@ Json SelectStep::step(const AnnotationSet& set) const {
     if (!colour.empty()) add_members(document, a, "colour", colour);
     const char* made = !path.empty() ? "line" : nearest.empty() && vertices.empty() ? "region" : "point";
     if (makes) add_members(document, a, "type", type.value_or(made));
+    if (outline && action != "delete" && action != "retag" && (*outline == "free" || !makes))
+        add_members(document, a, "outline", *outline);
     if (action != "delete" && action != "retag")
         add_members(document, a, "frame", frame, "select", StepWriter(*this, a).selected());
     return document;

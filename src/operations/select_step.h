@@ -26,7 +26,7 @@ struct SelectStep {
     double zoom = 1;
     // what for
     std::string tag, action = "make";
-    std::optional<std::string> type;
+    std::optional<std::string> type, outline;
     std::vector<int> colour;
     std::optional<int> id;
 

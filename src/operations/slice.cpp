@@ -2,6 +2,7 @@
 #include "operations.h"
 #include "slice_report.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/report/slice_drawing.h"
 #include "ostraka/slicing/silhouette.h"
@@ -116,7 +117,7 @@ struct SliceObject final : Operation {
             report.note(mesh.file() + ": " + cut.reason + " (slice along another --direction)");
             return report.answer_no();
         }
-        add_slices(report, {cut, unit_of_lengths, !plane.empty(), compared_axes(mesh->mesh, faces, cut, axes),
+        add_slices(report, {cut, unit_of_lengths, !plane.empty(), compared_axes(on(), faces, cut, axes),
                             thickness_homogeneity(cut.slices),
                             plane.empty() ? tubular_part(cut.stack(), cut.descriptors, tube_options) : Tube{}});
         for (const auto& [form, file] : output.files(plane.empty() && direction != "skeleton"))
@@ -164,6 +165,9 @@ struct SliceObject final : Operation {
         return slice_frame({plane[0], plane[1], plane[2]}, normal);
     }
 
+    /// The mesh, cut along the outlines of what is sliced where these are free.
+    [[nodiscard]] const Mesh& on() const { return along_edges ? along_edges->mesh() : mesh->mesh; }
+
     /// Unit, upward direction and faces: as asked for, else as the annotations say.
     void read_part() {
         unit_of_lengths = unit;
@@ -172,8 +176,10 @@ struct SliceObject final : Operation {
             const AnnotationSet& set = annotations.on(mesh->mesh);
             if (unit.empty()) unit_of_lengths = set.unit;
             if (set.up) upward = *set.up, up_known = true;
+            if (!names.empty()) along_edges.emplace(mesh->mesh, set);
             for (const auto& name : names) {
-                const Annotation& annotation = find_annotation(set, name, annotations.file());
+                const Annotation& annotation =
+                    *along_edges->annotations().find(find_annotation(set, name, annotations.file()).id);
                 if (annotation.type != AnnotationType::region)
                     fail_usage("annotation '" + name + "' is no region", "only regions can be sliced");
                 faces.insert(faces.end(), annotation.faces.begin(), annotation.faces.end());
@@ -188,14 +194,14 @@ struct SliceObject final : Operation {
     [[nodiscard]] CutObject cut_it() const {
         CutObject cut;
         if (!plane.empty()) {
-            cut = cut_parallel(mesh->mesh, frame_of_plane(), {0}, faces);
+            cut = cut_parallel(on(), frame_of_plane(), {0}, faces);
         } else {
             CutOptions options{own_axis(), upwards, {heights, spacing, count.value_or(50), range[0], range[1]}, {}};
             if (!options.direction && direction != "up") {
                 const auto along = direction_of(direction, "--direction");
                 options.up = {along[0], along[1], along[2]};
             }
-            cut = cut_object(mesh->mesh, faces, options);
+            cut = cut_object(on(), faces, options);
         }
         if (!residues.empty()) add_medial_axes(cut, residues);
         return cut;
@@ -212,8 +218,8 @@ struct SliceObject final : Operation {
                 break;
             case SliceForm::mesh: {
                 MeshExtras extras;
-                extras.face_colours = slice_colours(mesh->mesh, cut, colour_by);
-                context.notes({}, write_mesh(file, mesh->mesh, extras, {.comment = context.provenance().to_line()}));
+                extras.face_colours = slice_colours(on(), cut, colour_by);
+                context.notes({}, write_mesh(file, on(), extras, {.comment = context.provenance().to_line()}));
                 break;
             }
             case SliceForm::sheet:
@@ -250,7 +256,7 @@ struct SliceObject final : Operation {
             SliceFrame view = cut.frames[0];
             view.v = view.normal;
             view.normal = CGAL::cross_product(view.u, view.v);
-            content.view = silhouette(mesh->mesh, view, 500, faces);
+            content.view = silhouette(on(), view, 500, faces);
         }
         return content;
     }
@@ -259,7 +265,7 @@ struct SliceObject final : Operation {
     void draw_profile(const Path& file, bool asked, const CutObject& cut, Report& report) const {
         const double turn = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
-        const Profile found = find_profile(mesh->mesh, axis, turn);
+        const Profile found = find_profile(on(), axis, turn);
         const std::string name = file.filename().string();
         const std::string not_turned = 2 * found.open >= 24
                                            ? "the contours of " + std::to_string(found.open) +
@@ -279,7 +285,7 @@ struct SliceObject final : Operation {
     void add_notes(Report& report, const CutObject& cut) const {
         if (!up_known && (direction == "rotation" || direction == "principal"))
             report.note("which end of the axis is up is not known (0,0,1 taken): if it is upside down, give --up");
-        if (!cut.parallel && is_hollow(mesh->mesh, upwards, faces))
+        if (!cut.parallel && is_hollow(on(), upwards, faces))
             report.note(
                 "the object is hollow: its skeleton lies in the wall or wanders through the mouth, so that slices "
                 "across it cut the wall aslant (--direction rotation or up cuts a vessel)");
@@ -301,6 +307,7 @@ struct SliceObject final : Operation {
     TubeOptions tube_options;
 
     // Found by `read_part`.
+    std::optional<AlongEdges> along_edges;
     std::vector<Index> faces;  ///< of the part; empty: all
     Vector upwards{0, 0, 1};
     bool up_known = false;

@@ -9,7 +9,7 @@ namespace ostraka {
 std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repair(), make_mesh_simplify(),
     make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_make();
 std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
-    make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(),
+    make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(), make_annotation_smooth(),
     make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
     make_annotation_edit(), make_annotation_diff(), make_annotation_merge(), make_annotation_infer();
 std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_list(),
@@ -43,6 +43,7 @@ constexpr OperationEntry entries[]{
     {"annotation creases", "find ridges and hollows of the surface, such as clay leaves at joints; exit code 3 if there is none", make_annotation_creases},
     {"annotation facets", "tell the outer, inner and fracture surface of a fragment apart; exit code 3 if there is no fracture", make_annotation_facets},
     {"annotation segment", "cut a mesh into parts of like thickness, each an annotation", make_annotation_segment},
+    {"annotation smooth", "outlines and lines without the steps of the edges: fair curves through the faces", make_annotation_smooth},
     {"annotation transfer", "carry annotations to another resolution of the same object, and say how faithful they are", make_annotation_transfer},
     {"annotation survival", "the smallest resolution at which each annotation survives", make_annotation_survival},
     {"annotation export", "write annotations in the formats of other tools", make_annotation_export},

@@ -141,6 +141,7 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
         if (old.faces != match->faces)
             for (Attribute& attribute : old.attributes)
                 if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
+        if (old.faces != match->faces) old.curves.clear();
         old.faces = std::move(match->faces);
         old.all = false;
         store(old, quantities, set.unit);

@@ -2,9 +2,9 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/submesh.h"
 #include "ostraka/io/diagnose.h"
-#include "ostraka/remesh/insert_curves.h"
 
 #include <algorithm>
 #include <cmath>

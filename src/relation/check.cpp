@@ -1,5 +1,6 @@
 #include "ostraka/relation/check.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/relation/geometric.h"
 #include "ostraka/relation/topology.h"
 
@@ -29,13 +30,23 @@ std::size_t missing(const Sorted& inner, const Sorted& outer) {
     return left.size();
 }
 
+/// Per cent of the area of `inner` that is not in `outer`, on a mesh cut along free outlines; what rounding leaves there is
+/// nothing.
+double area_outside(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
+    std::vector<Index> left;
+    std::set_difference(inner.faces.begin(), inner.faces.end(), outer.faces.begin(), outer.faces.end(), std::back_inserter(left));
+    const double whole = area_of(mesh, inner.faces), share = whole > 0 ? 100 * area_of(mesh, left) / whole : 100;
+    return share < 1e-4 ? 0 : share;
+}
+
 /// Per cent of the elements of `inner` (faces, edges or vertices, by the rule that applies) that are not in `outer`; 100 where no
 /// rule allows containment.
-double outside(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
+double outside(const Mesh& mesh, bool cut, const Annotation& inner, const Annotation& outer) {
     const auto share = [](std::size_t part, std::size_t whole) {
         return whole == 0 ? 100.0 : 100.0 * double(part) / double(whole);
     };
     const bool into_region = outer.type == AnnotationType::region;
+    if (inner.type == AnnotationType::region && into_region && cut) return area_outside(mesh, inner, outer);
     if (inner.type == AnnotationType::region)
         return into_region ? share(missing(inner.faces, outer.faces), inner.faces.size()) : 100;
     if (inner.type == AnnotationType::line && outer.type == AnnotationType::point) return 100;
@@ -52,16 +63,16 @@ void conclude(RelationCheck& check, double value, const std::string& quantity, c
     check.verdict = holds ? Verdict::holds : Verdict::fails;
 }
 
-void check_containment(const Mesh& mesh, const std::vector<const Annotation*>& members, RelationCheck& check) {
-    const double share = outside(mesh, *members[1], *members[0]);
+void check_containment(const Mesh& mesh, bool cut, const std::vector<const Annotation*>& members, RelationCheck& check) {
+    const double share = outside(mesh, cut, *members[1], *members[0]);
     conclude(check, share, "outside", "%", share == 0);
     if (share > 0) check.text = "part of the second lies outside of the first";
 }
 
-void check_equal_selections(const Mesh& mesh, const std::vector<const Annotation*>& members, RelationCheck& check) {
+void check_equal_selections(const Mesh& mesh, bool cut, const std::vector<const Annotation*>& members, RelationCheck& check) {
     double share = 0;
     for (const Annotation* member : members)
-        share = std::max({share, outside(mesh, *member, *members[0]), outside(mesh, *members[0], *member)});
+        share = std::max({share, outside(mesh, cut, *member, *members[0]), outside(mesh, cut, *members[0], *member)});
     conclude(check, share, "not common", "%", share == 0);
     if (share > 0) check.text = "the selections differ";
 }
@@ -81,11 +92,15 @@ void check_adjacency(const SharedLengths& adjacent, const std::string& unit, con
 
 }  // namespace
 
-std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+std::vector<RelationCheck> check_relations(const Mesh& given_mesh, const AnnotationSet& given, const RelationGraph& graph,
                                            const RelationOptions& options) {
-    check_graph(graph, set, "graph");
+    check_graph(graph, given, "graph");
+    const AlongEdges along_edges(given_mesh, given);
+    const Mesh& mesh = along_edges.mesh();
+    const AnnotationSet& set = along_edges.annotations();
+    const bool cut = along_edges.cut().has_value();
     SharedLengths adjacent;
-    const Topology found = topology(mesh, set);
+    const Topology found = topology(given_mesh, given);
     for (const auto& pair : found.adjacent) {
         const int a = set.annotations[pair.a].id, b = set.annotations[pair.b].id;
         adjacent[std::minmax(a, b)] = pair.length;
@@ -100,8 +115,8 @@ std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet
         const RelationType* type = find_relation_type(relationship.type);
         if (relationship.is_constraint) check.text = "a constraint: the fit of a deformation tells";
         else if (type == nullptr) check.text = "a type of its own: experts tell";
-        else if (type->geometric == GeometricRelation::containment) check_containment(mesh, members, check);
-        else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(mesh, members, check);
+        else if (type->geometric == GeometricRelation::containment) check_containment(mesh, cut, members, check);
+        else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(mesh, cut, members, check);
         else if (type->geometric == GeometricRelation::adjacency) check_adjacency(adjacent, set.unit, members, check);
         else check = meter.measure(relationship);
     }

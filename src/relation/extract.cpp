@@ -1,6 +1,7 @@
 // Candidates for the geometric relationships, each measured before it is reported.
 #include "meter.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/limits.h"
 
 #include <set>
@@ -227,7 +228,9 @@ ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set,
     using enum GeometricRelation;
     for (const GeometricRelation kind : {same_level, horizontal_support, side_contact})
         if (!set.up && is_wanted(kind, types)) result.not_looked_for.push_back(relation_type(kind).name);
-    for (Relationship& relationship : RelationMeter(mesh, set, options).extract(types, 0)) add(std::move(relationship));
+    const AlongEdges along_edges(mesh, set);
+    for (Relationship& relationship : RelationMeter(along_edges.mesh(), along_edges.annotations(), options).extract(types, 0))
+        add(std::move(relationship));
     return result;
 }
 

@@ -1,8 +1,10 @@
 #include "ostraka/relation/topology.h"
 
 #include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/curves.h"
 
 #include <bit>
+#include <numeric>
 #include <unordered_map>
 
 namespace ostraka {
@@ -63,6 +65,34 @@ struct FaceClasses {
                     split_to.push_back(0);
                 }
                 of = split_to[of];
+            }
+    }
+    /// What free outlines that are one up to rounding leave between them: less than a millionth of each region there. Its faces
+    /// go to the regions' neighbours over their longest edge, which say nothing else.
+    void drop_slivers(const Mesh& mesh, const AnnotationSet& set) {
+        std::vector<double> area(parent.size(), 0), of_region(set.annotations.size(), 0);
+        for (const Face f : mesh.faces()) {
+            const double part = face_area(mesh, f);
+            area[of_face[f]] += part;
+            for (std::uint32_t c = of_face[f]; c != 0; c = parent[c]) of_region[region[c]] += part;
+        }
+        std::vector<bool> sliver(parent.size(), false);
+        const double whole = std::accumulate(area.begin(), area.end(), 0.0);
+        for (std::uint32_t c = 0; c < parent.size(); ++c) {
+            double least = whole;
+            for (const std::uint32_t r : regions(c)) least = std::min(least, of_region[r]);
+            sliver[c] = area[c] < 1e-6 * least;
+        }
+        for (int round = 0; round < 3; ++round)  // slivers lie in rows
+            for (const Face f : mesh.faces()) {
+                if (!sliver[of_face[f]]) continue;
+                double longest = -1;
+                for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(f))) {
+                    const Face g = mesh.face(mesh.opposite(h));
+                    if (g == Mesh::null_face() || sliver[of_face[g]]) continue;
+                    const double length = CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
+                    if (length > longest) longest = length, of_face[f] = of_face[g];
+                }
             }
     }
     /// Ascending.
@@ -237,9 +267,13 @@ std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& cl
 
 }  // namespace
 
-Topology topology(const Mesh& mesh, const AnnotationSet& set) {
-    check_annotations(set, mesh, "annotations");
-    const FaceClasses classes(mesh, set);
+Topology topology(const Mesh& given_mesh, const AnnotationSet& given) {
+    check_annotations(given, given_mesh, "annotations");
+    const AlongEdges along_edges(given_mesh, given);
+    const Mesh& mesh = along_edges.mesh();
+    const AnnotationSet& set = along_edges.annotations();
+    FaceClasses classes(mesh, set);
+    if (along_edges.cut()) classes.drop_slivers(mesh, set);
     Containments containments = contain(mesh, set, classes);
     Topology result;
     result.adjacent = adjacent_pairs(mesh, classes, containments.overlaps);

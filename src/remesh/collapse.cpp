@@ -27,10 +27,10 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
     // hub of a thousand spokes costs no more than its neighbour.
     const Halfedge first_u = mesh.opposite(h), first_v = h;
     Halfedge at_u = first_u, at_v = first_v;
-    std::size_t degree = 0;
+    std::size_t valence = 0;
     do {
         at_u = mesh.opposite(mesh.next(at_u)), at_v = mesh.opposite(mesh.next(at_v));
-        ++degree;
+        ++valence;
     } while (at_u != first_u && at_v != first_v);
     const bool both = at_u == first_u && at_v == first_v;
     const Halfedge small = at_u == first_u ? first_u : first_v, large = small == first_u ? first_v : first_u;
@@ -44,7 +44,7 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
     });
     if (common != static_cast<std::size_t>(left) + static_cast<std::size_t>(right)) return false;
     // Both opposite corners joined by an edge that closes the link: the component is a tetrahedron.
-    return !(left && right && both && degree == 3);
+    return !(left && right && both && valence == 3);
 }
 
 namespace {

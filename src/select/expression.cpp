@@ -79,6 +79,7 @@ Point ExpressionEvaluator::point(const JsonValue& list, PlaceFrame frame, const 
 }
 
 Index ExpressionEvaluator::vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
+    if (whole_ != nullptr) return whole_->vertex(pick, frame, at);  // old vertices keep their index
     if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame, at));
     if (pick.IsObject()) {
         const SurfaceHit hit = seen(pick, frame, at);
@@ -97,6 +98,10 @@ Index ExpressionEvaluator::vertex(const JsonValue& pick, PlaceFrame frame, const
 Index ExpressionEvaluator::face(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
     if (pick.IsArray()) return nearest_face(mesh_, point(pick, frame, at));
     if (pick.IsObject()) return seen(pick, frame, at).face;
+    if (whole_ != nullptr) {
+        const auto& origin = cut_->face_origin;
+        return static_cast<Index>(std::lower_bound(origin.begin(), origin.end(), whole_->face(pick, frame, at)) - origin.begin());
+    }
     if (pick.GetUint() >= mesh_.number_of_faces())
         fail(at, "face " + to_string(pick.GetUint()) + " of a mesh with " + to_string(mesh_.number_of_faces()) + " faces",
              "pick by coordinates, or another face");
@@ -150,7 +155,11 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
         return faces_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                           visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
+    // What runs along the edges of the mesh is asked there.
+    if (whole_ != nullptr && (kind == "segments" || kind == "grow" || kind == "shrink" || kind == "faces"))
+        return faces_of_origin(whole_->faces(expression, around, at));
     if (is_reckoned(kind)) return reckoned_faces(kind, *value, frame, at + '/' + kind);
+    if (whole_ != nullptr && kind == "lasso") return lassoed(*value, frame, at + "/lasso");
     std::vector<bool> result(mesh_.number_of_faces(), false);
     if (kind == "all") {
         result.assign(mesh_.number_of_faces(), true);

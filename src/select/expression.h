@@ -3,7 +3,7 @@
 
 #include "camera_reader.h"
 
-#include "ostraka/annotation/annotation.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/json.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/select/scalars.h"
@@ -31,6 +31,12 @@ struct Surroundings {
     Path folder;                         ///< of the files that expressions name
 };
 
+/// Where the borders of a selection run through the faces.
+struct SelectionBorders {
+    std::vector<SurfaceCurve> curves;                        ///< pieces, each in one face, and legs of lassos
+    std::map<std::string, std::vector<std::size_t>> lassos;  ///< by the place of the lasso in the recipe: its curves
+};
+
 /// Evaluates expressions on one mesh. `set` holds the annotations made so far. All errors name file and JSON pointer.
 class ExpressionEvaluator {
 public:
@@ -42,6 +48,18 @@ public:
     std::vector<bool> faces(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
     std::vector<Index> vertices(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
     std::vector<std::vector<Index>> polylines(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+
+    /// The lines of an expression as geodesics.
+    std::vector<std::vector<SurfacePlace>> curves(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+
+    /// Adds the places at which the selection's borders cross faces: of volumes, pictures, thresholds and brushes straight pieces
+    /// between the exact places on edges, of lassos geodesics. Others run along edges and add nothing.
+    void add_borders(const JsonValue& expression, PlaceFrame frame, const std::string& at, SelectionBorders& borders) const;
+    /// From now on answers for the mesh that `whole` is of, cut along these borders: each face lies on one side of them. All
+    /// three must outlive it.
+    void stand_on(const ExpressionEvaluator& whole, const CutMesh& cut, const SelectionBorders& borders) {
+        whole_ = &whole, cut_ = &cut, borders_ = &borders;
+    }
 
     /// A vertex given by index or as the one nearest to a point.
     Index vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const;
@@ -72,6 +90,8 @@ private:
     /// Picked vertices that have faces.
     std::vector<Index> surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
     std::vector<Index> brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    std::vector<bool> faces_of_origin(const std::vector<bool>& whole) const;
+    std::vector<bool> lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;
     ScalarRange interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const;
@@ -84,6 +104,10 @@ private:
     std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
     [[noreturn]] void fail(const std::string& at, const std::string& what, const std::string& remedy) const;
 
+    const ExpressionEvaluator* whole_ = nullptr;  ///< of the mesh that was cut, if this one is
+    const CutMesh* cut_ = nullptr;
+    const SelectionBorders* borders_ = nullptr;
+    mutable ScalarMap uncut_;  ///< the values asked for last, as they are on that mesh
     const Mesh& mesh_;
     const std::vector<std::int32_t>& face_labels_;
     const AnnotationSet& set_;

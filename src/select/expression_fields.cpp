@@ -41,6 +41,11 @@ std::vector<Index> ExpressionEvaluator::brush_centres(const JsonValue& value, Pl
 }
 
 ScalarMap ExpressionEvaluator::scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const {
+    if (whole_ != nullptr) {
+        ScalarMap map = uncut_ = whole_->scalar(value, frame, at);
+        map.values = map.on_faces ? cut_->face_values(map.values) : cut_->vertex_values(whole_->mesh_, map.values);
+        return map;
+    }
     std::string chosen;
     for (const char* name : {"coordinate", "curvature", "thickness", "distance", "map"}) {
         if (find_member(value, name) == nullptr) continue;
@@ -114,6 +119,7 @@ void ExpressionEvaluator::in_place(const std::string& at, const std::function<vo
 }
 
 ScalarRange ExpressionEvaluator::interval(const JsonValue& value, const ScalarMap& map, const std::string& at) const {
+    if (whole_ != nullptr) return whole_->interval(value, uncut_, at);
     ScalarRange result;
     if (find_member(value, "above") == nullptr && find_member(value, "below") == nullptr)
         fail(at, "a threshold with neither above nor below", "give one of them, or both");
@@ -160,6 +166,13 @@ std::vector<bool> ExpressionEvaluator::segments(const JsonValue& value, PlaceFra
 
 std::vector<bool> ExpressionEvaluator::reckoned_faces(const std::string& kind, const JsonValue& value, PlaceFrame frame,
                                                       const std::string& at) const {
+    if (kind == "brush" && whole_ != nullptr) {
+        const double radius = length(value["radius"].GetDouble(), frame);
+        const ScalarMap distance{
+            cut_->vertex_values(whole_->mesh_, distances_within(whole_->mesh_, whole_->brush_centres(value, frame, at), radius)),
+            false};
+        return faces_between(mesh_, distance, {-std::numeric_limits<double>::infinity(), radius});
+    }
     if (kind == "brush") return brushed_faces(mesh_, brush_centres(value, frame, at), length(value["radius"].GetDouble(), frame));
     if (kind == "threshold") {
         const ScalarMap map = scalar(value, frame, at);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace ostraka {
@@ -40,7 +41,8 @@ public:
         if (const JsonValue* unit = find_member(recipe, "unit")) set_.unit = unit->GetString();
         if (const JsonValue* up = find_member(recipe, "up")) set_.up = triple_of(*up);
         const PlaceFrame frame = ExpressionEvaluator::frame_of(recipe, PlaceFrame{});
-        evaluator_.look_from({find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_});
+        surroundings_ = {find_member(recipe, "cameras"), frame, set_.up.value_or(std::array<double, 3>{0, 0, 1}), folder_};
+        evaluator_.look_from(surroundings_);
         const JsonValue& steps = recipe["annotations"];
         for (rapidjson::SizeType i = 0; i < steps.Size(); ++i) step(steps[i], frame, "/annotations/" + to_string(i));
         if (!set_.object_class.empty()) ensure_root(set_, mesh_);
@@ -73,8 +75,54 @@ private:
         else edit(action, step, frame, at);
     }
 
+    /// What a selection is on the mesh cut along its borders, joined there with a region that is given: its faces with those
+    /// added, without those taken away, or those alone.
+    Annotation selected_free(const JsonValue& select, PlaceFrame frame, const std::string& here, const std::string& action,
+                             const Annotation* given) {
+        SelectionBorders borders;
+        evaluator_.add_borders(select, frame, here, borders);
+        const CutMesh cut = cut_along_curves(mesh_, set_, borders.curves);
+        const std::vector<std::int32_t> labels =
+            face_labels_.empty() ? std::vector<std::int32_t>() : cut.face_values(face_labels_);
+        ExpressionEvaluator there(cut.mesh, labels, cut.annotations, where_);
+        there.look_from(surroundings_);
+        there.stand_on(evaluator_, cut, borders);
+        const std::vector<bool> named = there.faces(select, frame, here);
+        if (std::none_of(named.begin(), named.end(), [](bool b) { return b; }))
+            fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
+        Annotation annotation;
+        annotation.faces = flagged(named);
+        if (given != nullptr && action != "replace") {
+            std::vector<bool> flags = face_flags(cut.mesh, cut.annotations.find(given->id)->faces);
+            for (const Index face : annotation.faces) flags[face] = action == "add to";
+            annotation.faces = flagged(flags);
+        }
+        annotation.all = annotation.faces.size() == cut.mesh.number_of_faces();
+        if (annotation.all) {
+            annotation.faces.resize(mesh_.number_of_faces());
+            std::iota(annotation.faces.begin(), annotation.faces.end(), Index{0});
+        } else if (!annotation.faces.empty()) {
+            bring_back(mesh_, cut, annotation);
+        }
+        return annotation;
+    }
+
+    /// The same of points and lines, at the places that are picked and along geodesics.
+    Annotation drawn_free(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here) {
+        if (type == AnnotationType::point)
+            fail(here, "selects vertices: there are no free points of a selection", "leave out \"outline\"");
+        Annotation annotation;
+        annotation.type = type;
+        annotation.curves = evaluator_.curves(select, frame, here);
+        settle_elements(mesh_, annotation);
+        return annotation;
+    }
+
     /// Faces, poly-lines or points of a step, in an annotation of this type.
-    Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here) {
+    Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here, bool free) {
+        if (free)
+            return type == AnnotationType::region ? selected_free(select, frame, here, "make", nullptr)
+                                                  : drawn_free(type, select, frame, here);
         Annotation annotation;
         annotation.type = type;
         if (type == AnnotationType::region) {
@@ -108,7 +156,8 @@ private:
             fail(at + "/id", "the id " + to_string(id) + " is taken",
                  "give each annotation its own (free is " + to_string(free_id(set_)) +
                      "), or an action such as 'add to' that edits the older one");
-        Annotation annotation = selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select");
+        Annotation annotation =
+            selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select", wants_free(step));
         annotation.id = id;
         annotation.colour = fresh_colour(mesh_, set_, annotation);
         set_looks(annotation, step);
@@ -141,9 +190,19 @@ private:
         Annotation annotation = *found;
         if (changes) {
             const std::string here = at + "/select";
-            const Annotation part = selected(annotation.type, *select, frame, here);
-            change(annotation, action, part);
-            if (annotation.faces.empty() && annotation.polylines.empty() && annotation.points.empty())
+            const bool free = wants_free(step) || (is_free(annotation) && text_in(step, "outline").empty());
+            if (annotation.type == AnnotationType::region && free) {
+                const Annotation region = selected_free(*select, frame, here, action, found);
+                annotation.faces = region.faces;
+                annotation.curves = region.curves;
+                annotation.all = region.all;
+            } else {
+                const Annotation part = selected(annotation.type, *select, frame, here, free);
+                // Lines of which one is free are free: along the edges if need be.
+                if (free || is_free(annotation)) change_curves(annotation, action, part, here);
+                else change(annotation, action, part);
+            }
+            if (annotation.faces.empty() && annotation.polylines.empty() && annotation.points.empty() && !is_free(annotation))
                 fail(here, "leaves nothing of annotation " + to_string(id), "select less, or use the action 'delete'");
             for (Attribute& attribute : annotation.attributes)
                 if (attribute.type == AttributeType::measure && attribute.measure.tool == "bounding" &&
@@ -163,6 +222,39 @@ private:
             for (Attribute& attribute : fresh.attributes) annotation.attributes.push_back(std::move(attribute));
         }
         *set_.find(id) = std::move(annotation);
+    }
+
+    static bool wants_free(const JsonValue& step) { return text_in(step, "outline") == "free"; }
+
+    void change_curves(Annotation& annotation, const std::string& action, const Annotation& part, const std::string& here) const {
+        if (action == "replace" || (annotation.type == AnnotationType::region)) {
+            annotation.faces = part.faces;
+            annotation.polylines = part.polylines;
+            annotation.points = part.points;
+            annotation.curves = part.curves;
+            annotation.all = part.all;
+            return;
+        }
+        if (action != "add to")
+            fail(here, "takes a part from a " + to_string(annotation.type) + " that is free", "use the action 'replace'");
+        const auto as_curves = [](const Annotation& one) {
+            if (is_free(one)) return one.curves;
+            std::vector<std::vector<SurfacePlace>> curves;
+            const auto add = [&](const std::vector<Index>& path) {
+                auto& curve = curves.emplace_back();
+                for (const Index v : path) {
+                    curve.emplace_back();
+                    curve.back().element[0] = v;
+                }
+            };
+            for (const auto& line : one.polylines) add(line);
+            for (const Index v : one.points) add({v});
+            return curves;
+        };
+        auto curves = as_curves(annotation);
+        for (auto& curve : as_curves(part)) curves.push_back(std::move(curve));
+        annotation.curves = std::move(curves);
+        settle_elements(mesh_, annotation);
     }
 
     void change(Annotation& annotation, const std::string& action, const Annotation& part) const {
@@ -267,6 +359,7 @@ private:
     AnnotationSet set_;
     Path folder_;
     std::set<int> before_, touched_;  ///< ids of annotations that were there, and of those that steps name
+    Surroundings surroundings_;
     ExpressionEvaluator evaluator_;
 };
 

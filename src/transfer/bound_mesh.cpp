@@ -1,6 +1,8 @@
 #include "ostraka/transfer/bound_mesh.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/transfer/lay_curves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +74,7 @@ BoundMesh::BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated)
 }
 
 SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
+    keep_curved();
     AnnotationTable table = attach();
     std::optional<AnnotationMerger> merger;
     if (annotations) merger.emplace(mesh, table);
@@ -82,6 +85,7 @@ SimplifyResult BoundMesh::simplify(const SimplifyOptions& options) {
 }
 
 RefineResult BoundMesh::refine(const RefineOptions& options) {
+    keep_curved();
     const AnnotationTable table = attach();
     RefineResult result = ostraka::refine(mesh, options);
     const auto from_parents = [&]<class Value>(const char* name, const std::vector<Value>&, const auto& between) {
@@ -107,9 +111,24 @@ RefineResult BoundMesh::refine(const RefineOptions& options) {
     return result;
 }
 
+void BoundMesh::keep_curved() {
+    if (annotations && any_free(*annotations)) curved_ = std::make_shared<const Curved>(Curved{mesh, *annotations});
+}
+
 AnnotationTable BoundMesh::attach() {
     AnnotationTable table;
-    if (annotations) table = attach_annotations(mesh, *annotations);
+    if (annotations) {
+        // Free annotations bind no element of the mesh.
+        AnnotationSet bound = *annotations;
+        for (Annotation& annotation : bound.annotations)
+            if (is_free(annotation)) {
+                annotation.curves.clear();
+                annotation.points.clear();
+                annotation.polylines.clear();
+                annotation.faces.clear();
+            }
+        table = attach_annotations(mesh, bound);
+    }
     to_map<Face>(mesh, face_colour, extras.face_colours);
     to_map<Face>(mesh, face_label, extras.face_labels);
     to_map<Vertex>(mesh, vertex_colour, extras.vertex_colours);
@@ -128,6 +147,11 @@ void BoundMesh::detach(const AnnotationTable& table, const std::vector<Index>& v
     if (!annotations) return;
     annotations = collect_annotations(mesh, table, AnnotationSet(*annotations), vertex_map);
     detach_annotations(mesh);
+    if (curved_) {
+        for (auto& note : lay_free_annotations(curved_->mesh, curved_->annotations, mesh, *annotations))
+            notes.push_back(std::move(note));
+        curved_.reset();
+    }
     for (auto& note : refresh_measures(mesh, *annotations).notes) notes.push_back(std::move(note));
     for (Change& change : changes) {
         const Annotation* now = annotations->find(change.id);
@@ -165,14 +189,11 @@ MarkedParts BoundMesh::marked(const AnnotationTable& table, bool pins) const {
 BoundMesh::Size BoundMesh::size_of(const Annotation& annotation) const {
     Size size;
     if (annotation.type == AnnotationType::region) {
-        const RegionMeasures region = measure_region(mesh, annotation.faces);
+        const RegionMeasures region = measure_region(mesh, annotation);
         size = {annotation.faces.size(), region.area, region.perimeter};
     } else if (annotation.type == AnnotationType::line) {
-        for (const auto& line : annotation.polylines)
-            for (std::size_t i = 1; i < line.size(); ++i) {
-                ++size.elements;
-                size.length += std::sqrt(CGAL::squared_distance(mesh.point(Vertex(line[i - 1])), mesh.point(Vertex(line[i]))));
-            }
+        for (const auto& line : annotation.polylines) size.elements += line.size() - 1;
+        size.length = length_of(mesh, annotation);
     } else {
         size.elements = annotation.points.size();
     }

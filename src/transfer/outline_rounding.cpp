@@ -252,7 +252,7 @@ void OutlineRounding::round(std::size_t region, FilledRegion& filled, double edg
     const Annotation& annotation = set_.annotations[region];
     RoundingGoal goal;
     goal.area = area_of(source_, annotation.faces);
-    goal.perimeter = length_of(segments_of(source_, annotation, extract_outlines(source_, annotation.faces)));
+    goal.perimeter = length_of(segments_of(source_, annotation));
     goal.edge = edge;
     goal.coarser = edge > 1.5 * source_edge_;
     if (balance && goal.area > 0 && goal.perimeter > 0) round_region(target_, filled, shares, goal);

@@ -26,11 +26,11 @@ namespace {
 /// that may be worked on side by side.
 class RegionSamples {
 public:
-    RegionSamples(const Mesh& mesh, const std::vector<Index>& region, const std::vector<Outline>& outlines,
-                  const SurfaceSearch& other, const CorrespondenceOptions& options,
+    RegionSamples(const Mesh& mesh, const RegionArea& area, const SurfaceSearch& other, const CorrespondenceOptions& options,
                   std::function<bool(const SurfaceHit&)> contains)
         : mesh_(mesh),
-          region_(region),
+          region_(area.faces),
+          free_(area.free.get()),
           other_(other),
           contains_(std::move(contains)),
           on_rim_(mesh.number_of_vertices(), false),
@@ -38,13 +38,12 @@ public:
           fine_(0.3 * other.typical_edge()),
           search_radius_(options.max_distance * other.diagonal()),
           min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)),
-          stride_(std::max<std::size_t>(1, (region.size() + max_inner - 1) / max_inner)),
-          sums_((region.size() + piece_size - 1) / piece_size) {
-        for (const Outline& outline : outlines)
-            for (const Index v : outline) {
-                near_[v] = on_rim_[v] = true;
-                for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near_[mesh.target(h)] = true;
-            }
+          stride_(std::max<std::size_t>(1, (region_.size() + max_inner - 1) / max_inner)),
+          sums_((region_.size() + piece_size - 1) / piece_size) {
+        for (const Index v : area.rim) {
+            near_[v] = on_rim_[v] = true;
+            for (const Halfedge h : CGAL::halfedges_around_source(Vertex(v), mesh)) near_[mesh.target(h)] = true;
+        }
     }
 
     [[nodiscard]] std::size_t pieces() const { return sums_.size(); }
@@ -77,7 +76,10 @@ private:
         const auto vertices = corners(mesh_, Face(region_[i]));
         const Point &a = mesh_.point(vertices[0]), &b = mesh_.point(vertices[1]), &c = mesh_.point(vertices[2]);
         const Vector area_vector = 0.5 * CGAL::cross_product(b - a, c - a);
-        const double area = std::sqrt(area_vector.squared_length());
+        const double whole = std::sqrt(area_vector.squared_length());
+        const Index face = region_[i];
+        const bool in_part = free_ != nullptr && free_->cuts(face);
+        const double area = in_part ? whole * free_->share(face) : whole;
         if (!(area > 0)) return;
         const auto is_near = [&](Vertex v) -> bool { return near_[v]; };
         const bool in_band = std::any_of(vertices.begin(), vertices.end(), is_near);
@@ -85,18 +87,20 @@ private:
             sums.passed_over += area;
             return;
         }
-        const Vector normal = area_vector / area;
+        const Vector normal = area_vector / whole;
         const auto share_inside = [&](int n) {  // at the centroids of the n * n equal triangles of a regular subdivision
-            int hits = 0;
+            int hits = 0, asked = 0;
             for (int u = 0; u < n; ++u)
                 for (int v = 0; u + v < n; ++v)
                     for (int half = 0; half < (u + v + 1 < n ? 2 : 1); ++half) {
                         const double s = (u + (half == 0 ? 1.0 : 2.0) / 3) / n, t = (v + (half == 0 ? 1.0 : 2.0) / 3) / n;
                         const Point place = a + s * (b - a) + t * (c - a);
+                        if (in_part && !free_->contains(face, place)) continue;
+                        ++asked;
                         const auto hit = other_.closest_compatible(place, normal, min_cosine_, search_radius_);
                         if (hit && contains_(*hit)) ++hits;
                     }
-            return static_cast<double>(hits) / (n * n);
+            return asked > 0 ? static_cast<double>(hits) / asked : 1.0;  // too small a part to be met
         };
         if (!in_band) {
             const double inside = area * share_inside(1);
@@ -117,6 +121,7 @@ private:
 
     const Mesh& mesh_;
     const std::vector<Index>& region_;
+    const FreeRegion* free_;
     const SurfaceSearch& other_;
     std::function<bool(const SurfaceHit&)> contains_;
     std::vector<bool> on_rim_, near_;  ///< vertices on the outline; those and their neighbours make the band sampled finely
@@ -138,14 +143,19 @@ void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const st
             [&](std::size_t i) {
                 const OverlapQuestion& question = questions[first + i / 2];
                 if (i % 2 == 0) {
-                    samples[i].emplace(source.mesh, *question.source_faces, question.source_outlines, target.search, options,
-                                       question.in_target);
-                } else {
-                    samples[i].emplace(target.mesh, *question.target_faces, question.target_outlines, source.search, options,
-                                       [in_source = face_flags(source.mesh, *question.source_faces)](const SurfaceHit& hit) {
-                                           return static_cast<bool>(in_source[hit.face]);
-                                       });
+                    samples[i].emplace(source.mesh, question.source, target.search, options, question.in_target);
+                    return;
                 }
+                std::function<bool(const SurfaceHit&)> in_source;
+                if (question.source.free)
+                    in_source = [&free = *question.source.free](const SurfaceHit& hit) {
+                        return free.contains(hit.face, hit.point);
+                    };
+                else
+                    in_source = [flags = face_flags(source.mesh, question.source.faces)](const SurfaceHit& hit) {
+                        return static_cast<bool>(flags[hit.face]);
+                    };
+                samples[i].emplace(target.mesh, question.target, source.search, options, std::move(in_source));
             },
             1);
         std::vector<std::pair<RegionSamples*, std::size_t>> pieces;
@@ -192,16 +202,41 @@ std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source
     return {vote.begin(), vote.end()};
 }
 
-Segments segments_of(const Mesh& mesh, const Annotation& annotation, const std::vector<Outline>& outlines) {
-    Segments segments;
-    const auto add = [&](Index a, Index b) { segments.emplace_back(mesh.point(Vertex(a)), mesh.point(Vertex(b))); };
-    for (const Index v : annotation.points) add(v, v);
-    for (const auto& line : annotation.polylines) {
-        if (line.size() == 1) add(line[0], line[0]);
-        for (std::size_t i = 0; i + 1 < line.size(); ++i) add(line[i], line[i + 1]);
+FreeRegion::FreeRegion(const Mesh& mesh, const Annotation& annotation)
+    : filling_(filling_of(mesh, annotation)), cut_(mesh, curves_on(mesh, annotation), filling_) {}
+
+bool FreeRegion::contains(Index face, const Point& place) const {
+    return filling_.sides[face] == FaceSide::in || (cuts(face) && cut_.inside(face, place));
+}
+
+double FreeRegion::share(Index face) const {
+    const auto found = std::lower_bound(filling_.cut.begin(), filling_.cut.end(), std::make_pair(face, -1.0));
+    return found == filling_.cut.end() || found->first != face ? 1.0 : found->second;
+}
+
+RegionArea region_area(const Mesh& mesh, const Annotation& annotation) {
+    RegionArea area;
+    if (!is_free(annotation)) {
+        area.faces = annotation.faces;
+        for (const Outline& outline : extract_outlines(mesh, annotation.faces))
+            area.rim.insert(area.rim.end(), outline.begin(), outline.end());
+        return area;
     }
-    for (const Outline& outline : outlines)
-        for (std::size_t i = 0; i < outline.size(); ++i) add(outline[i], outline[(i + 1) % outline.size()]);
+    area.free = std::make_shared<const FreeRegion>(mesh, annotation);
+    const std::vector<FaceSide>& sides = area.free->filling().sides;
+    for (Index f = 0; f < sides.size(); ++f)
+        if (sides[f] != FaceSide::out) area.faces.push_back(f);
+    for (const auto& [face, share] : area.free->filling().cut)
+        for (const Vertex v : corners(mesh, Face(face))) area.rim.push_back(v);
+    return area;
+}
+
+Segments segments_of(const Mesh& mesh, const Annotation& annotation) {
+    Segments segments;
+    for (const auto& curve : drawn_curves(mesh, annotation)) {
+        if (curve.size() == 1) segments.emplace_back(curve[0], curve[0]);
+        for (std::size_t i = 1; i < curve.size(); ++i) segments.emplace_back(curve[i - 1], curve[i]);
+    }
     return segments;
 }
 

@@ -1,10 +1,11 @@
 // How much of a region arrived where it belongs.
 #pragma once
 
-#include "ostraka/annotation/outline.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <functional>
+#include <memory>
 
 namespace ostraka {
 
@@ -14,10 +15,31 @@ struct ScoredMesh {
     const SurfaceSearch& search;
 };
 
-/// A region on both meshes, its outlines, and whether a place on the target lies in it.
+/// A free region, to be asked about places.
+class FreeRegion {
+public:
+    FreeRegion(const Mesh& mesh, const Annotation& annotation);
+    [[nodiscard]] bool contains(Index face, const Point& place) const;
+    [[nodiscard]] bool cuts(Index face) const { return filling_.sides[face] == FaceSide::cut; }
+    [[nodiscard]] double share(Index face) const;
+    [[nodiscard]] const CurveFilling& filling() const { return filling_; }
+
+private:
+    CurveFilling filling_;
+    CutFaces cut_;
+};
+
+/// What a region holds of its mesh.
+struct RegionArea {
+    std::vector<Index> faces;  ///< in it, in part or whole
+    std::vector<Index> rim;    ///< the vertices at its outline
+    std::shared_ptr<const FreeRegion> free;
+};
+RegionArea region_area(const Mesh& mesh, const Annotation& annotation);
+
+/// A region on both meshes, and whether a place on the target lies in it.
 struct OverlapQuestion {
-    const std::vector<Index>*source_faces, *target_faces;
-    std::vector<Outline> source_outlines, target_outlines;
+    RegionArea source, target;
     std::function<bool(const SurfaceHit&)> in_target;
     TransferScore* score;  ///< gets overlap and wrong side; its areas are known
 };
@@ -33,9 +55,9 @@ void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const st
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,
                                  const Mesh& target, const CorrespondenceOptions& options);
 
-/// Outline of a region, or the edges of a line, or points as segments without length.
+/// Outline of a region, or the pieces of a line, or points as segments without length.
 using Segments = std::vector<std::pair<Point, Point>>;
-Segments segments_of(const Mesh& mesh, const Annotation& annotation, const std::vector<Outline>& outlines);
+Segments segments_of(const Mesh& mesh, const Annotation& annotation);
 double length_of(const Segments& segments);
 
 }  // namespace ostraka

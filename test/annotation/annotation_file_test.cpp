@@ -242,7 +242,7 @@ TEST(AnnotationFile, ErrorsOfTheFileAndItsSelections) {
     const Mesh mesh = grid(3);
     expect_error("[]", mesh, "root", "object");
     expect_error(R"({"format": "ostraka-graph", "annotations": []})", mesh, "/format", "ostraka-graph");
-    expect_error(R"({"version": 2, "annotations": []})", mesh, "/version", "newer");
+    expect_error(R"({"version": 3, "annotations": []})", mesh, "/version", "newer");
     expect_error(R"({"format": "ostraka-annotations", "up": [0, 0, 0], "annotations": []})", mesh, "/up", "no length");
     expect_error(with(R"({"id": 1.5, "tag": "", "type": "point", "points": []})"), mesh, "/annotations/0/id", "integer");
     expect_error(with(R"({"id": 1, "type": "point", "points": []})"), mesh, "/annotations/0", "tag");

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/json.h"
 #include "ostraka/core/mesh.h"
+#include "ostraka/geom/surface_trace.h"
 
 #include <array>
 #include <optional>
@@ -60,7 +61,8 @@ enum class AnnotationType { point, line, region };
 /// The colour of what tells no part from another: the whole object.
 inline constexpr std::array<int, 3> neutral_colour{190, 190, 190};
 
-/// Selections are plain indices of the mesh they belong to. Exactly one of `points`, `polylines`, `faces` is used.
+/// Selections are plain indices of the mesh they belong to. Exactly one of `points`, `polylines`, `faces` is used. A free
+/// annotation has curves of its own, which need not follow the edges; its elements then are the nearest to them (curves.h).
 struct Annotation {
     int id = 0;
     std::string tag;
@@ -69,7 +71,10 @@ struct Annotation {
     std::vector<Index> points;                  ///< vertices, in the order given
     std::vector<std::vector<Index>> polylines;  ///< successive vertices joined by edges; closed when first = last
     std::vector<Index> faces;                   ///< the region's faces, ascending, without repeats
-    bool all = false;                           ///< a region that is the whole mesh: `faces` lists every face
+    /// Of a free annotation, neighbours in one face: each the outline of a region, its interior to the left, closed (the first
+    /// place is repeated) or from border to border; a poly-line, closed if its first place is its last; or one place, of points.
+    std::vector<std::vector<SurfacePlace>> curves;
+    bool all = false;  ///< a region that is the whole mesh: `faces` lists every face
     std::vector<Attribute> attributes;
     std::string note;  ///< what a transfer or a simplification had to do to it, if anything
 };

@@ -13,6 +13,8 @@ namespace ostraka {
 inline constexpr const char* vertex_annotations = "v:annotations";
 inline constexpr const char* edge_annotations = "e:annotations";
 inline constexpr const char* face_annotations = "f:annotations";
+/// Of each face the regions whose free outlines cut it: it is neither in nor out of them, but counted in where more of it is.
+inline constexpr const char* face_cuts = "f:annotation-cuts";
 
 /// The sets that occur, each once, and what an edited mesh can no longer tell.
 class AnnotationTable {
@@ -31,7 +33,7 @@ private:
     std::map<std::vector<int>, std::uint32_t> numbers_;
 };
 
-/// Writes the set into the three maps of `mesh` (made if they are missing, overwritten if not). An edit that splits a face or an
+/// Writes the set into the maps of `mesh` (made if they are missing, overwritten if not). An edit that splits a face or an
 /// edge gives the parts the number of the whole; an edge between two faces with different numbers is on an outline. Linear in the
 /// mesh and the selections.
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
@@ -41,12 +43,12 @@ AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set);
 /// from the faces. Points and poly-lines follow the vertex map, in their order; with an empty map they come from the vertices and
 /// edges that carry them, in index order, and pins keep their indices. Poly-line vertices that became one are merged, and a link
 /// that was split is followed along the edges that carry the annotation. A region that lost all its faces becomes a line or a
-/// point, keeps its tag and says so in `note`. Values of measures and descriptors are marked stale: `refresh_measures` computes
-/// them anew.
+/// point, keeps its tag and says so in `note`. Free annotations lose their curves, which `lay_curves` gives them anew. Values of
+/// measures and descriptors are marked stale: `refresh_measures` computes them anew.
 AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
                                   const std::vector<Index>& vertex_map = {});
 
-/// Removes the three maps.
+/// Removes the maps.
 void detach_annotations(Mesh& mesh);
 
 /// Moves the pins of an annotation's measures by `vertex_map` (empty: they stay) to a mesh of `vertex_count` vertices and marks

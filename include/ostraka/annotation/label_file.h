@@ -29,7 +29,14 @@ AnnotationSet regions_from_labels(const Mesh& mesh, const std::vector<std::int32
 /// A face gets the label that two of its corners have; the first corner's if all differ.
 std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std::vector<std::int32_t>& vertex_labels);
 
-/// Per face the id of the smallest region (by area, then by place in the set) that covers it; the whole object does not count.
+/// Labels of faces, and the share of the area that has another one since free outlines cut faces.
+struct FaceLabels {
+    std::vector<std::int32_t> of_face;
+    double lost = 0;
+};
+/// Per face the id of the smallest region (by area, then by place in the set) that covers it, of a face that free outlines cut
+/// that of most of its area; the whole object does not count.
+FaceLabels face_labels(const Mesh& mesh, const AnnotationSet& set);
 std::vector<std::int32_t> labels_of(const Mesh& mesh, const AnnotationSet& set);
 
 }  // namespace ostraka

@@ -5,6 +5,7 @@
 #include "ostraka/geom/surface_trace.h"
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace ostraka {
@@ -26,5 +27,9 @@ std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair
 /// The length of the shortest curve over the faces between two places; infinite if none joins them. Only the faces that a curve
 /// no longer than the shortest edge path can meet are worked on. Throws Error (usage) for a place that is not on the mesh.
 double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);
+
+/// The shortest curve over the faces between two places, straight in each face; nothing if none joins them. Where a face without
+/// area hinders the exact method, the shortest edge path.
+std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);
 
 }  // namespace ostraka

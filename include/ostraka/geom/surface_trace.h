@@ -25,12 +25,34 @@ SurfaceNode surface_node(const Mesh& mesh, Vertex vertex);
 /// The faces that hold the node.
 std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node);
 
+/// The same without coordinates: it stays on its element when vertices move.
+struct SurfacePlace {
+    SurfaceNode::Kind kind = SurfaceNode::Kind::vertex;
+    std::array<Index, 2> element{no_index, no_index};  ///< the vertex; the ends of the edge, the lower first; the face
+    std::array<double, 2> weights{0, 0};  ///< on an edge: the share of the way from its first end; in a face: of its corners 1, 2
+    bool operator==(const SurfacePlace&) const = default;
+    auto operator<=>(const SurfacePlace&) const = default;
+};
+SurfacePlace place_of(const Mesh& mesh, const SurfaceNode& node);
+/// Throws Error (input) for an element that the mesh does not have, or weights that are not in it.
+SurfaceNode node_at(const Mesh& mesh, const SurfacePlace& place);
+
 /// A curve over the surface: each piece nodes[i] -> nodes[i + 1] lies in one face.
 struct SurfaceCurve {
     std::vector<SurfaceNode> nodes;
     std::vector<Index> faces;  ///< one per piece: the face that holds it (either one for a piece along an edge)
     [[nodiscard]] double length() const;
 };
+
+/// A face that holds both nodes, the lowest of several; no_index if there is none.
+Index common_face(const Mesh& mesh, const SurfaceNode& a, const SurfaceNode& b);
+
+/// The edge that holds both nodes; no_index if none does, or one of them is inside a face.
+Index common_edge(const Mesh& mesh, const SurfaceNode& a, const SurfaceNode& b);
+
+/// The curve through places of which neighbours lie in one face. Throws Error (input) as `node_at`, and for neighbours that share
+/// no face.
+SurfaceCurve curve_through(const Mesh& mesh, const std::vector<SurfacePlace>& places);
 
 /// Follows the plane through both nodes and the direction `up` (the mean surface normal, say) over the surface, from
 /// `from` to `to`. Nothing if the walk meets the border, does not arrive, or grows longer than `limit`.

@@ -13,7 +13,8 @@ namespace ostraka {
 /// first in which they meet no other, so that the first set with a feature at a place tells the smallest region there. Lines and
 /// points are primitives of their own. Ids are 16 bit numbers, or floats above 65535 annotations. A vertex attribute _VERTEX
 /// holds the index of the vertex in the mesh (up to 2^24). Throws Error (failure) for a mesh without triangles, coordinates
-/// beyond single precision or a file beyond four gigabytes. `notes` says what was rounded.
+/// beyond single precision or a file beyond four gigabytes. `notes` says what was rounded. Where annotations are free, the mesh
+/// is cut along their curves.
 std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                         std::vector<std::string>& notes);
 

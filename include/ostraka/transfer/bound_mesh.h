@@ -6,6 +6,7 @@
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/simplify.h"
 
+#include <memory>
 #include <optional>
 
 namespace ostraka {
@@ -53,11 +54,19 @@ public:
     std::vector<Change> changes;  ///< in the order of the annotations at first
 
 private:
+    /// Mesh and annotations before a step, where some are free: their curves are laid on what it leaves.
+    struct Curved {
+        Mesh mesh;
+        AnnotationSet annotations;
+    };
+    void keep_curved();
     AnnotationTable attach();
     /// Reads back what `attach` bound; `vertex_map` from the mesh as it was then.
     void detach(const AnnotationTable& table, const std::vector<Index>& vertex_map);
     [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool pins) const;
     [[nodiscard]] Size size_of(const Annotation& annotation) const;
+
+    std::shared_ptr<const Curved> curved_;
 };
 
 }  // namespace ostraka

@@ -3,8 +3,8 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/options.h"
+#include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/shortest_path.h"
-#include "ostraka/remesh/insert_curves.h"
 #include "ostraka/transfer/correspondence.h"
 
 #include <optional>
@@ -19,6 +19,7 @@ struct TransferOptions {
     enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
     enum class Rounding { path, area, balanced } rounding = Rounding::balanced;
     enum class Cover { overlapping, enclosing, enclosed } cover = Cover::overlapping;
+    enum class Outlines { kept, free, edges } outlines = Outlines::kept;
     bool refine = false;
     bool overlap = true;
     bool force = false;
@@ -67,7 +68,8 @@ struct TransferResult {
 
 /// Transfers every annotation. Points go to the corresponding vertices; poly-lines and outlines become edge paths between
 /// corresponding vertices; regions are what lies to the left of their outlines; measures move with their pins and are
-/// evaluated anew. A region too small for the target becomes a line or a point and says so.
+/// evaluated anew. A region too small for the target becomes a line or a point and says so. Free annotations, and with
+/// `outlines` free all, are laid by their curves (lay_curves.h) and keep their type, however small.
 /// Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
 TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
                         const TransferOptions& options = {});

@@ -1,10 +1,12 @@
-#include "ostraka/remesh/insert_curves.h"
+#include "ostraka/geom/insert_curves.h"
 
 #include "face_cutter.h"
+#include "ostraka/geom/shortest_path.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 namespace ostraka {
@@ -32,8 +34,24 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
             result.face_origin.push_back(f);
         }
     }
-    for (const Point& p : cutter.new_points()) soup.points.push_back({p.x(), p.y(), p.z()});
+    result.new_nodes = cutter.new_nodes();
+    for (const SurfaceNode& node : result.new_nodes) soup.points.push_back({node.point.x(), node.point.y(), node.point.z()});
     result.mesh = build_mesh(soup);
+    for (const auto& [edge, list] : cutter.on_edge())
+        for (const auto& [parameter, v] : list) result.on_edge[edge].push_back(v);
+    std::optional<PathSearch> search;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        std::vector<Index>& path = result.paths.emplace_back();
+        for (const Index v : cutter.path(c)) {
+            if (!path.empty() && !find_halfedge(result.mesh, Vertex(path.back()), Vertex(v)).is_valid()) {
+                // Rounding kept this piece out of its face: along the edges beside it.
+                if (!search) search.emplace(result.mesh);
+                const std::vector<Index> way = search->find(Vertex(path.back()), Vertex(v), {});
+                if (way.size() > 2) path.insert(path.end(), way.begin() + 1, way.end() - 1);
+            }
+            path.push_back(v);
+        }
+    }
     return result;
 }
 

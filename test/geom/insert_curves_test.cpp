@@ -1,4 +1,4 @@
-#include "ostraka/remesh/insert_curves.h"
+#include "ostraka/geom/insert_curves.h"
 
 #include "meshes.h"
 #include "ostraka/core/error.h"

@@ -4,6 +4,7 @@
 #include "ostraka/core/mesh.h"
 #include "ostraka/geom/surface_trace.h"
 
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct InsertedCurves {
     Mesh mesh;                                    ///< old vertices first, under their old indices; the surface is unchanged
     std::vector<Index> face_origin;               ///< new face -> old face
     std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: the vertex at it
+    std::vector<std::vector<Index>> paths;        ///< per curve: all vertices along it, neighbours joined by an edge
+    std::vector<SurfaceNode> new_nodes;           ///< of the vertices beyond the old ones: where they are on the old mesh
+    std::map<Index, std::vector<Index>> on_edge;  ///< old edge -> new vertices on it, from the source of its first halfedge
 };
 
 /// Adds a vertex at each node of the curves and cuts the faces so that each piece of a curve is an edge, or a path of edges

@@ -18,17 +18,53 @@ using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
 }  // namespace
 
-FaceCutter::FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves) : mesh_(mesh) {
+FaceCutter::FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves) : mesh_(mesh), curves_(curves) {
     place_nodes(curves);
     for (std::size_t c = 0; c < curves.size(); ++c)
         for (std::size_t i = 0; i < curves[c].faces.size(); ++i) {
             const Index a = node_vertex_[c][i], b = node_vertex_[c][i + 1];
-            if (a != b) cuts_[curves[c].faces[i]].segments.emplace_back(std::min(a, b), std::max(a, b));
+            if (a == b || common_edge(mesh_, curves[c].nodes[i], curves[c].nodes[i + 1]) != no_index) continue;
+            cuts_[curves[c].faces[i]].segments.emplace_back(std::min(a, b), std::max(a, b));
         }
     // A face whose edge got a vertex must be cut even if no curve runs through it.
     for (const auto& [edge, list] : on_edge_)
         for (const unsigned k : {0U, 1U})
             if (const Halfedge h = mesh_.halfedge(Edge(edge), k); !mesh_.is_border(h)) cuts_[mesh_.face(h)];
+    for (auto& [face, cut] : cuts_) {
+        std::sort(cut.segments.begin(), cut.segments.end());
+        cut.segments.erase(std::unique(cut.segments.begin(), cut.segments.end()), cut.segments.end());
+    }
+}
+
+std::vector<Index> FaceCutter::path(std::size_t curve) const {
+    const SurfaceCurve& drawn = curves_[curve];
+    if (drawn.nodes.empty()) return {};
+    std::vector<Index> vertices{node_vertex_[curve].front()};
+    for (std::size_t i = 0; i < drawn.faces.size(); ++i) {
+        const Index a = node_vertex_[curve][i], b = node_vertex_[curve][i + 1];
+        if (a == b) continue;
+        std::vector<Index> between;
+        bool forward = a < b;
+        if (const Index edge = common_edge(mesh_, drawn.nodes[i], drawn.nodes[i + 1]); edge != no_index) {
+            const auto along = [&](const SurfaceNode& node) {
+                return node.kind == SurfaceNode::Kind::edge                                  ? node.parameter
+                       : Vertex(node.element) == mesh_.source(mesh_.halfedge(Edge(edge), 0)) ? 0.0
+                                                                                             : 1.0;
+            };
+            const double from = along(drawn.nodes[i]), to = along(drawn.nodes[i + 1]);
+            forward = from < to;
+            if (const auto found = on_edge_.find(edge); found != on_edge_.end())
+                for (const auto& [parameter, v] : found->second)
+                    if (parameter > std::min(from, to) && parameter < std::max(from, to) && v != a && v != b)
+                        between.push_back(v);
+        } else if (const auto found = crossed_.find(std::minmax(a, b)); found != crossed_.end()) {
+            between = found->second;
+        }
+        if (!forward) std::reverse(between.begin(), between.end());
+        vertices.insert(vertices.end(), between.begin(), between.end());
+        vertices.push_back(b);
+    }
+    return vertices;
 }
 
 std::vector<Index> FaceCutter::faces() const {
@@ -37,9 +73,9 @@ std::vector<Index> FaceCutter::faces() const {
     return list;
 }
 
-Index FaceCutter::add_point(const Point& p) {
-    points_.push_back(p);
-    return static_cast<Index>(mesh_.number_of_vertices() + points_.size() - 1);
+Index FaceCutter::add_node(const SurfaceNode& node) {
+    nodes_.push_back(node);
+    return static_cast<Index>(mesh_.number_of_vertices() + nodes_.size() - 1);
 }
 
 void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
@@ -62,7 +98,7 @@ void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
                     std::get<1>(near->first) <= node.parameter + same) {
                     v = near->second;
                 } else {
-                    v = add_point(node.point);
+                    v = add_node(node);
                     edge_vertex.emplace(std::make_tuple(node.element, node.parameter), v);
                     on_edge_[node.element].emplace_back(node.parameter, v);
                 }
@@ -71,7 +107,7 @@ void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
                 const auto [entry, fresh] =
                     face_vertex.emplace(std::make_tuple(node.element, node.barycentric[1], node.barycentric[2]), 0);
                 if (fresh) {
-                    entry->second = add_point(node.point);
+                    entry->second = add_node(node);
                     cuts_[node.element].inner.push_back(entry->second);
                 }
                 v = entry->second;
@@ -105,11 +141,11 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     const Cut cut = found == cuts_.end() ? Cut{} : found->second;
     std::vector<std::array<Index, 3>> triangles;
     if (area_vector(mesh_, Face(face)).squared_length() > 0) {
-        const std::size_t points_before = points_.size();
+        const std::size_t nodes_before = nodes_.size();
         // With every curve first; where rounding spoils the border, with the border alone: the curves then follow edges nearby.
         for (const bool with_curves : {true, false}) {
             if (triangulate(face, cut, vertex_path, with_curves, triangles)) return triangles;
-            points_.resize(points_before, Point(0, 0, 0));
+            nodes_.resize(nodes_before);
             triangles.clear();
         }
     }
@@ -147,6 +183,26 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
         if (!insert(v)) return false;
     const std::size_t known = handle.size();
     std::set<std::pair<Index, Index>> rim;
+    // The vertices that a piece from v to w runs through, where it is no edge of the triangulation.
+    const auto note_crossings = [&](Index v, Index w) {
+        const auto from = handle.find(v), to = handle.find(w);
+        if (from == handle.end() || to == handle.end() || rim.count({v, w}) > 0 ||
+            triangulation.is_edge(from->second, to->second))
+            return;
+        const Kernel::Point_2 p = from->second->point(), q = to->second->point();
+        const Kernel::Vector_2 along = q - p;
+        std::vector<std::pair<double, Index>> between;
+        for (const auto& [other, other_handle] : handle) {
+            const Kernel::Vector_2 d = other_handle->point() - p;
+            const double share = (d * along) / along.squared_length();
+            if (other != v && other != w && share > 0 && share < 1 && (d - share * along).squared_length() < 1e-18)
+                between.emplace_back(share, other);
+        }
+        std::sort(between.begin(), between.end());
+        std::vector<Index>& list = crossed_[{v, w}];
+        list.clear();
+        for (const auto& [share, other] : between) list.push_back(other);
+    };
     for (std::size_t i = 0; i < vertex_path.size(); ++i) {
         const Index v = vertex_path[i], w = vertex_path[(i + 1) % vertex_path.size()];
         rim.emplace(std::min(v, w), std::max(v, w));
@@ -165,8 +221,19 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
         for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
             if (old.count(v) == 0) fresh.push_back(v);
         std::sort(fresh.begin(), fresh.end(), [](auto v, auto w) { return v->point() < w->point(); });
-        for (const auto v : fresh) v->info() = add_point(origin + scale * (v->point().x() * x + v->point().y() * y));
+        for (const auto v : fresh) {
+            SurfaceNode node;
+            node.kind = SurfaceNode::Kind::face;
+            node.element = face;
+            const Point place = origin + scale * (v->point().x() * x + v->point().y() * y);
+            node.barycentric = nearest_barycentric(mesh_.point(a), mesh_.point(b), mesh_.point(c), place);
+            node.point = point_at(mesh_, face, node.barycentric);
+            v->info() = add_node(node);
+            handle[v->info()] = v;
+        }
     }
+    if (with_curves)
+        for (const auto& [v, w] : cut.segments) note_crossings(v, w);
     // Faces of the triangulation within the rim: everything not reachable from outside without crossing it.
     const auto on_rim = [&](Triangulation::Face_handle f, int i) {
         const auto v = f->vertex(Triangulation::cw(i)), w = f->vertex(Triangulation::ccw(i));

@@ -1,0 +1,378 @@
+#include "ostraka/annotation/curves.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
+#include "ostraka/geom/insert_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
+
+bool is_closed(const std::vector<SurfacePlace>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
+
+/// The corner or end nearest to a place.
+Index nearest_vertex(const Mesh& mesh, const SurfacePlace& place) {
+    const auto [u, v] = place.weights;
+    if (place.kind == SurfaceNode::Kind::vertex) return place.element[0];
+    if (place.kind == SurfaceNode::Kind::edge) return place.element[u <= 0.5 ? 0 : 1];
+    const auto corner = corners(mesh, Face(place.element[0]));
+    const double w = 1 - u - v;
+    return corner[w >= u && w >= v ? 0 : u >= v ? 1 : 2];
+}
+
+/// Without repeats and without "a, b, a".
+std::vector<Index> without_spikes(const std::vector<Index>& walk) {
+    std::vector<Index> path;
+    for (const Index v : walk) {
+        if (!path.empty() && path.back() == v) continue;
+        if (path.size() > 1 && path[path.size() - 2] == v) path.pop_back();
+        else path.push_back(v);
+    }
+    return path;
+}
+
+/// Whole components that the region lists and no curve runs through: a face of each.
+std::vector<Index> seeds_of(const Mesh& mesh, const Annotation& annotation, const std::vector<SurfaceCurve>& curves,
+                            const CurveFilling& filling) {
+    std::vector<Index> seeds;
+    std::vector<bool> seen, curved;
+    for (const Index f : annotation.faces) {
+        if (f >= filling.sides.size() || filling.sides[f] != FaceSide::out) continue;
+        if (seen.empty()) {
+            seen.assign(mesh.number_of_faces(), false);
+            curved = seen;
+            for (const SurfaceCurve& curve : curves)
+                for (const Index g : curve.faces) curved[g] = true;
+        }
+        if (seen[f]) continue;
+        const std::vector<Face> component = flood_faces(mesh, Face(f), seen);
+        if (std::none_of(component.begin(), component.end(), [&](Face g) -> bool { return curved[g]; })) seeds.push_back(f);
+    }
+    return seeds;
+}
+
+CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation, const std::vector<SurfaceCurve>& curves) {
+    CurveFilling filling = fill_curves(mesh, curves);
+    const std::vector<Index> seeds = seeds_of(mesh, annotation, curves, filling);
+    return seeds.empty() ? filling : fill_curves(mesh, curves, seeds);
+}
+
+}  // namespace
+
+bool any_free(const AnnotationSet& set) { return std::any_of(set.annotations.begin(), set.annotations.end(), is_free); }
+
+std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation) {
+    std::vector<SurfaceCurve> curves;
+    for (const auto& places : annotation.curves) {
+        const std::string where = name_of(annotation) + ", curve " + std::to_string(curves.size());
+        const std::size_t least = annotation.type == AnnotationType::point ? 1 : 2;
+        if (places.size() < least || (annotation.type == AnnotationType::point && places.size() > 1))
+            fail_input(where, "has " + std::to_string(places.size()) + " places",
+                       annotation.type == AnnotationType::point ? "give each point one" : "give two or more");
+        try {
+            curves.push_back(curve_through(mesh, places));
+        } catch (const Error& error) {
+            throw Error(error.kind(), where, error.problem(), error.remedy());
+        }
+        if (annotation.type != AnnotationType::region || is_closed(places)) continue;
+        const auto on_border = [&](const SurfaceNode& node) {
+            if (node.kind == SurfaceNode::Kind::vertex) return mesh.is_border(Vertex(node.element));
+            return node.kind == SurfaceNode::Kind::edge && mesh.is_border(Edge(node.element));
+        };
+        if (!on_border(curves.back().nodes.front()) || !on_border(curves.back().nodes.back()))
+            fail_input(where, "is an outline that does not close",
+                       "repeat its first place at the end; on an open mesh it may also end "
+                       "at the border");
+    }
+    return curves;
+}
+
+CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation) {
+    return filling_of(mesh, annotation, curves_on(mesh, annotation));
+}
+
+void settle_elements(const Mesh& mesh, Annotation& annotation) {
+    if (!is_free(annotation)) return;
+    const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
+    if (annotation.type == AnnotationType::region) {
+        const CurveFilling filling = filling_of(mesh, annotation, curves);
+        if (filling.conflicts > 0)
+            fail_input(name_of(annotation),
+                       "its outlines contradict each other at " + std::to_string(filling.conflicts) + " places",
+                       "the interior lies to the left of each curve: turn those that run the wrong way, and let them not cross");
+        annotation.faces = filling.majority();
+        return;
+    }
+    annotation.points.clear();
+    annotation.polylines.clear();
+    for (const auto& places : annotation.curves) {
+        std::vector<Index> walk;
+        for (const SurfacePlace& place : places) walk.push_back(nearest_vertex(mesh, place));
+        if (annotation.type == AnnotationType::point) annotation.points.push_back(walk.front());
+        else if (walk = without_spikes(walk); walk.size() > 1) annotation.polylines.push_back(std::move(walk));
+    }
+}
+
+RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation) {
+    if (!is_free(annotation)) return measure_region(mesh, annotation.faces);
+    const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
+    const CurveFilling filling = filling_of(mesh, annotation, curves);
+    RegionMeasures measures{filling.area(mesh), filling.border};
+    for (const SurfaceCurve& curve : curves) measures.perimeter += curve.length();
+    return measures;
+}
+
+double area_of(const Mesh& mesh, const Annotation& annotation) {
+    if (annotation.type != AnnotationType::region) return 0;
+    return is_free(annotation) ? filling_of(mesh, annotation).area(mesh) : area_of(mesh, annotation.faces);
+}
+
+double length_of(const Mesh& mesh, const Annotation& annotation) {
+    double sum = 0;
+    if (is_free(annotation)) {
+        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) sum += curve.length();
+        return sum;
+    }
+    for (const auto& polyline : annotation.polylines)
+        for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
+            sum += distance(mesh.point(Vertex(polyline[k])), mesh.point(Vertex(polyline[k + 1])));
+    return sum;
+}
+
+std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation) {
+    std::vector<std::vector<Point>> curves;
+    if (is_free(annotation)) {
+        for (const SurfaceCurve& curve : curves_on(mesh, annotation)) {
+            auto& points = curves.emplace_back();
+            for (const SurfaceNode& node : curve.nodes) points.push_back(node.point);
+        }
+        return curves;
+    }
+    const auto add = [&](const std::vector<Index>& path, bool closed) {
+        auto& points = curves.emplace_back();
+        for (const Index v : path) points.push_back(mesh.point(Vertex(v)));
+        if (closed && !path.empty()) points.push_back(points.front());
+    };
+    for (const Index v : annotation.points) add({v}, false);
+    for (const auto& polyline : annotation.polylines) add(polyline, false);
+    if (annotation.type == AnnotationType::region && !annotation.all)
+        for (const Outline& outline : extract_outlines(mesh, annotation.faces)) add(outline, true);
+    return curves;
+}
+
+std::vector<double> CutMesh::vertex_values(const Mesh& before, const std::vector<double>& values) const {
+    std::vector<double> all = values;
+    all.reserve(values.size() + nodes.size());
+    for (const SurfaceNode& node : nodes) {
+        if (node.kind == SurfaceNode::Kind::edge) {
+            const Halfedge h = before.halfedge(Edge(node.element), 0);
+            all.push_back((1 - node.parameter) * values[before.source(h)] + node.parameter * values[before.target(h)]);
+        } else {
+            const auto corner = corners(before, Face(node.element));
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k) sum += node.barycentric[k] * values[corner[k]];
+            all.push_back(sum);
+        }
+    }
+    return all;
+}
+
+namespace {
+
+/// The faces of a free region on the cut mesh.
+std::vector<Index> faces_on_cut(const Mesh& mesh, const Annotation& annotation, const std::vector<SurfaceCurve>& curves,
+                                const std::vector<std::vector<Index>>& paths, const CutMesh& cut) {
+    const CurveFilling filling = filling_of(mesh, annotation, curves);
+    std::vector<Halfedge> edges;
+    for (const auto& path : paths)
+        for (std::size_t i = 0; i + 1 < path.size(); ++i)
+            if (const Halfedge h = find_halfedge(cut.mesh, Vertex(path[i]), Vertex(path[i + 1])); h.is_valid())
+                edges.push_back(h);
+    const Filling filled = fill_edges(cut.mesh, edges);
+    std::vector<Index> faces;
+    std::optional<CutFaces> places;
+    for (Index f = 0; f < cut.face_origin.size(); ++f) {
+        const Index old = cut.face_origin[f];
+        bool inside = filling.sides[old] == FaceSide::in;
+        if (filling.sides[old] == FaceSide::cut) {
+            if (filled.conflicts == 0) {
+                inside = filled.selected[f];
+            } else {
+                if (!places) places.emplace(mesh, curves, filling);
+                inside = places->inside(old, centroid(cut.mesh, Face(f)));
+            }
+        }
+        if (inside) faces.push_back(f);
+    }
+    return faces;
+}
+
+}  // namespace
+
+CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::vector<SurfaceCurve>& more) {
+    std::vector<SurfaceCurve> curves;
+    std::vector<std::size_t> first;  // of each annotation's curves
+    for (const Annotation& annotation : set.annotations) {
+        first.push_back(curves.size());
+        for (SurfaceCurve& curve : curves_on(mesh, annotation)) curves.push_back(std::move(curve));
+    }
+    first.push_back(curves.size());
+    curves.insert(curves.end(), more.begin(), more.end());
+    InsertedCurves inserted = insert_curves(mesh, curves);
+    CutMesh cut;
+    cut.mesh = std::move(inserted.mesh);
+    cut.face_origin = std::move(inserted.face_origin);
+    cut.nodes = std::move(inserted.new_nodes);
+    cut.old_vertices = mesh.number_of_vertices();
+    cut.more_paths.assign(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first.back()), inserted.paths.end());
+    cut.annotations = set;
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation& from = set.annotations[i];
+        Annotation& to = cut.annotations.annotations[i];
+        to.curves.clear();
+        const std::vector<std::vector<Index>> paths(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first[i]),
+                                                    inserted.paths.begin() + static_cast<std::ptrdiff_t>(first[i + 1]));
+        if (is_free(from)) {
+            if (from.type == AnnotationType::point) {
+                to.points.clear();
+                for (const auto& path : paths) to.points.push_back(path.front());
+            } else if (from.type == AnnotationType::line) {
+                to.polylines.clear();
+                for (const auto& path : paths)
+                    if (path.size() > 1) to.polylines.push_back(path);
+            } else {
+                const std::vector<SurfaceCurve> own(curves.begin() + static_cast<std::ptrdiff_t>(first[i]),
+                                                    curves.begin() + static_cast<std::ptrdiff_t>(first[i + 1]));
+                to.faces = faces_on_cut(mesh, from, own, paths, cut);
+            }
+            continue;
+        }
+        if (from.type == AnnotationType::region) {
+            const std::vector<bool> selected = face_flags(mesh, from.faces);
+            to.faces.clear();
+            for (Index f = 0; f < cut.face_origin.size(); ++f)
+                if (selected[cut.face_origin[f]]) to.faces.push_back(f);
+        }
+        for (std::size_t k = 0; k < from.polylines.size(); ++k) {
+            const std::vector<Index>& line = from.polylines[k];
+            std::vector<Index> path{line.front()};
+            for (std::size_t v = 1; v < line.size(); ++v) {
+                const Halfedge h = find_halfedge(mesh, Vertex(line[v - 1]), Vertex(line[v]));
+                if (h.is_valid()) {
+                    if (const auto on = inserted.on_edge.find(mesh.edge(h)); on != inserted.on_edge.end()) {
+                        std::vector<Index> between = on->second;
+                        if (mesh.halfedge(mesh.edge(h), 0) != h) std::reverse(between.begin(), between.end());
+                        path.insert(path.end(), between.begin(), between.end());
+                    }
+                }
+                path.push_back(line[v]);
+            }
+            to.polylines[k] = std::move(path);
+        }
+    }
+    return cut;
+}
+
+namespace {
+
+/// Leaves out places that lie between their neighbours on a straight piece in one face or along one edge, and repeats.
+std::vector<SurfacePlace> without_needless(const Mesh& mesh, std::vector<SurfacePlace> places) {
+    using Kind = SurfaceNode::Kind;
+    const bool closed = is_closed(places);
+    const auto needless = [&](const SurfacePlace& before, const SurfacePlace& place, const SurfacePlace& after) {
+        if (place.kind == Kind::vertex) return false;
+        const SurfaceNode a = node_at(mesh, before), b = node_at(mesh, place), c = node_at(mesh, after);
+        if (place.kind == Kind::edge) {  // needed unless both neighbours lie on the same edge
+            const Halfedge h = mesh.halfedge(Edge(b.element), 0);
+            for (const SurfaceNode* other : {&a, &c})
+                if (!(other->kind == Kind::edge && other->element == b.element) &&
+                    !(other->kind == Kind::vertex &&
+                      (Vertex(other->element) == mesh.source(h) || Vertex(other->element) == mesh.target(h))))
+                    return false;
+        } else if (common_face(mesh, a, c) == no_index) {
+            return false;
+        }
+        const Vector whole = c.point - a.point, part = b.point - a.point;
+        const double length = whole.squared_length();
+        return length > 0 && CGAL::cross_product(whole, part).squared_length() <= 1e-20 * length * length && part * whole > 0 &&
+               part * whole < length;
+    };
+    std::vector<SurfacePlace> kept;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (!kept.empty() && kept.back() == places[i]) continue;
+        if (!kept.empty() && i + 1 < places.size() && needless(kept.back(), places[i], places[i + 1])) continue;
+        kept.push_back(places[i]);
+    }
+    if (closed && kept.size() > 4 && needless(kept[kept.size() - 2], kept.front(), kept[1])) {
+        kept.erase(kept.begin());
+        kept.back() = kept.front();
+    }
+    return kept;
+}
+
+}  // namespace
+
+void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
+    annotation.curves.clear();
+    bool free = false;
+    const auto place = [&](Index v) {
+        if (v >= cut.old_vertices) return place_of(mesh, cut.nodes[v - cut.old_vertices]);
+        SurfacePlace vertex;
+        vertex.element[0] = v;
+        return vertex;
+    };
+    const auto joined = [&](const SurfacePlace& a, const SurfacePlace& b) {
+        using Kind = SurfaceNode::Kind;
+        return a.kind == Kind::vertex && b.kind == Kind::vertex &&
+               find_halfedge(mesh, Vertex(a.element[0]), Vertex(b.element[0])).is_valid();
+    };
+    const auto add = [&](const std::vector<Index>& path) {
+        std::vector<SurfacePlace> places;
+        for (const Index v : path) places.push_back(place(v));
+        places = without_needless(mesh, std::move(places));
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (places[i].kind != SurfaceNode::Kind::vertex || (i > 0 && !joined(places[i - 1], places[i]))) free = true;
+        annotation.curves.push_back(std::move(places));
+    };
+    if (annotation.type == AnnotationType::point) {
+        for (const Index v : annotation.points) add({v});
+    } else if (annotation.type == AnnotationType::line) {
+        for (const auto& line : annotation.polylines) add(line);
+    } else {
+        for (const Outline& outline : extract_outlines(cut.mesh, annotation.faces)) {
+            // Along the border of the mesh there is nothing to say.
+            const std::size_t n = outline.size();
+            std::vector<bool> border(n);
+            for (std::size_t i = 0; i < n; ++i)
+                border[i] = cut.mesh.is_border(
+                    cut.mesh.opposite(find_halfedge(cut.mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
+            if (std::none_of(border.begin(), border.end(), [](bool b) { return b; })) {
+                std::vector<Index> loop = outline;
+                loop.push_back(outline.front());
+                add(loop);
+                continue;
+            }
+            for (std::size_t i = 0; i < n; ++i) {
+                if (border[i] || !border[(i + n - 1) % n]) continue;
+                std::vector<Index> run{outline[i]};
+                for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
+                add(run);
+            }
+        }
+        std::vector<Index> old;
+        for (const Index f : annotation.faces) old.push_back(cut.face_origin[f]);
+        old.erase(std::unique(old.begin(), old.end()), old.end());
+        annotation.faces = std::move(old);
+    }
+    if (free || annotation.type != AnnotationType::region) settle_elements(mesh, annotation);
+    if (!free) annotation.curves.clear();  // it follows the edges of the mesh: elements and curves say the same
+}
+
+}  // namespace ostraka

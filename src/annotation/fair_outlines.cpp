@@ -1,0 +1,454 @@
+#include "ostraka/annotation/fair_outlines.h"
+
+#include "ostraka/annotation/curves.h"
+#include "ostraka/core/error.h"
+#include "ostraka/geom/polyline_distance.h"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using Places = std::vector<SurfacePlace>;
+
+Segments segments(const std::vector<Point>& points) {
+    Segments list;
+    for (std::size_t i = 1; i < points.size(); ++i) list.emplace_back(points[i - 1], points[i]);
+    return list;
+}
+
+double gap(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
+
+/// A stretch of curves between places that stay, or a loop.
+struct Strand {
+    Places before;  ///< a loop repeats its first
+    bool closed = false;
+    std::vector<Point> points;  ///< of `before`
+    std::vector<Point> fair;    ///< as it is to run; ends stay
+    std::vector<Vector> aside;  ///< at each of these the direction to the left on the surface
+    Places after;               ///< on the surface
+    double length = 0;
+    double room = 0.85;  ///< share of the distance that fairing may use: some is left for the shift that keeps areas
+};
+
+/// A curve of an annotation as strands in turn.
+struct Use {
+    std::size_t strand;
+    bool backwards;
+};
+
+class Fairing {
+public:
+    Fairing(const Mesh& mesh, const FairOptions& options) : mesh_(mesh), search_(mesh), options_(options) {
+        limit_ = options.distance > 0 ? options.distance : 0.75 * mean_edge_length(mesh);
+    }
+
+    std::vector<FairedAnnotation> run(std::vector<Annotation*> annotations) {
+        std::vector<std::vector<Places>> curves;
+        for (const Annotation* annotation : annotations) curves.push_back(curves_of(*annotation));
+        for (const bool regions : {true, false}) find_junctions(annotations, curves, regions);
+        for (std::size_t i = 0; i < curves.size(); ++i) {
+            auto& uses = uses_.emplace_back();
+            for (const Places& curve : curves[i]) uses.push_back(strands_of(curve, is_region(*annotations[i])));
+        }
+        for (Strand& strand : strands_) fair(strand);
+        for (Strand& strand : strands_) draw(strand);
+        std::vector<FairedAnnotation> result(annotations.size());
+        std::vector<double> area(annotations.size(), 0);
+        for (std::size_t i = 0; i < annotations.size(); ++i) {
+            const Annotation& one = *annotations[i];
+            result[i].id = one.id;
+            if (one.type == AnnotationType::region) {
+                const RegionMeasures measures = measure_region(mesh_, one);
+                result[i].area_before = area[i] = measures.area;
+                result[i].length_before = measures.perimeter;
+            } else {
+                result[i].length_before = length_of(mesh_, one);
+            }
+        }
+        // An outline that would cross itself is left as it was, with all that shares strands with it.
+        for (int round = 0; round < 20; ++round) {
+            if (!options_.let_area_change)
+                for (int k = 0; k < 4; ++k)
+                    if (!keep_areas(annotations, area)) break;
+            bool sound = true;
+            for (Strand& strand : strands_) {  // what the shift or the surface took too far starts nearer
+                if (strand.fair.empty() || hausdorff_distance(segments(drawn(strand)), segments(strand.points)) <= limit_)
+                    continue;
+                sound = false;
+                strand.room *= 0.85;
+                if (round < 15) fair(strand), draw(strand);
+                else leave(strand);
+            }
+            if (!sound) continue;
+            for (std::size_t i = 0; i < annotations.size(); ++i) {
+                Annotation faired = *annotations[i];
+                if (is_sound(i, faired, area[i])) continue;
+                sound = false;
+                for (const auto& uses : uses_[i])
+                    for (const Use& use : uses) leave(strands_[use.strand]);
+                result[i].note = "its outline would cross itself: it is left as it was";
+            }
+            if (sound) break;
+        }
+        for (std::size_t i = 0; i < annotations.size(); ++i) {
+            Annotation& one = *annotations[i];
+            FairedAnnotation& what = result[i];
+            for (const auto& uses : uses_[i])
+                for (const Use& use : uses) {
+                    const Strand& strand = strands_[use.strand];
+                    what.moved = std::max(what.moved, hausdorff_distance(segments(drawn(strand)), segments(strand.points)));
+                }
+            one.curves = curves_now(i);
+            settle_elements(mesh_, one);
+            if (one.type == AnnotationType::region) {
+                const RegionMeasures measures = measure_region(mesh_, one);
+                what.area_after = measures.area;
+                what.length_after = measures.perimeter;
+            } else {
+                what.length_after = length_of(mesh_, one);
+            }
+        }
+        return result;
+    }
+
+private:
+    std::vector<Places> curves_of(const Annotation& annotation) const {
+        if (is_free(annotation)) return annotation.curves;
+        std::vector<Places> curves;
+        const auto add = [&](const std::vector<Index>& path) {
+            Places& curve = curves.emplace_back();
+            for (const Index v : path) {
+                curve.emplace_back();
+                curve.back().element[0] = v;
+            }
+        };
+        for (const auto& line : annotation.polylines) add(line);
+        if (annotation.type == AnnotationType::region)
+            for (Outline outline : extract_outlines(mesh_, annotation.faces)) {
+                // Runs along the border of the mesh are no part of a free outline.
+                const std::size_t n = outline.size();
+                std::vector<bool> border(n);
+                bool any = false;
+                for (std::size_t i = 0; i < n; ++i) {
+                    border[i] =
+                        mesh_.is_border(mesh_.opposite(find_halfedge(mesh_, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
+                    any = any || border[i];
+                }
+                if (!any) {
+                    outline.push_back(outline.front());
+                    add(outline);
+                    continue;
+                }
+                for (std::size_t i = 0; i < n; ++i) {
+                    if (border[i] || !border[(i + n - 1) % n]) continue;
+                    std::vector<Index> run{outline[i]};
+                    for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
+                    add(run);
+                }
+            }
+        return curves;
+    }
+
+    static bool is_region(const Annotation& annotation) { return annotation.type == AnnotationType::region; }
+
+    std::vector<Point> drawn(const Strand& strand) const {
+        std::vector<Point> points;
+        for (const SurfacePlace& place : strand.after) points.push_back(node_at(mesh_, place).point);
+        return points;
+    }
+
+    /// Outlines meet outlines, and lines meet lines: a line that crosses an outline does not hold it.
+    void find_junctions(const std::vector<Annotation*>& annotations, const std::vector<std::vector<Places>>& curves,
+                        bool regions) {
+        std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
+        std::set<SurfacePlace>& junctions = junctions_[regions ? 1 : 0];
+        for (std::size_t a = 0; a < curves.size(); ++a)
+            for (const Places& curve : curves[a]) {
+                if (is_region(*annotations[a]) != regions) continue;
+                for (std::size_t i = 1; i < curve.size(); ++i) {
+                    neighbours[curve[i - 1]].insert(curve[i]);
+                    neighbours[curve[i]].insert(curve[i - 1]);
+                }
+                if (!curve.empty() && curve.front() != curve.back()) junctions.insert({curve.front(), curve.back()});
+            }
+        for (const auto& [place, others] : neighbours) {
+            const bool border = place.kind == SurfaceNode::Kind::vertex && mesh_.is_border(Vertex(place.element[0]));
+            if (others.size() != 2 || border) junctions.insert(place);
+        }
+    }
+
+    std::vector<Use> strands_of(const Places& curve, bool region) {
+        const std::set<SurfacePlace>& junctions = junctions_[region ? 1 : 0];
+        std::vector<Use> uses;
+        if (curve.size() < 2) return uses;
+        const bool closed = curve.front() == curve.back();
+        Places turned = curve;
+        if (closed) {
+            turned.pop_back();
+            auto start = std::find_if(turned.begin(), turned.end(), [&](const SurfacePlace& p) { return junctions.contains(p); });
+            // A loop starts at its lowest place, whoever it bounds.
+            if (start == turned.end()) start = std::min_element(turned.begin(), turned.end());
+            std::rotate(turned.begin(), start, turned.end());
+            turned.push_back(turned.front());
+        }
+        Places piece{turned.front()};
+        for (std::size_t i = 1; i < turned.size(); ++i) {
+            piece.push_back(turned[i]);
+            if (i + 1 < turned.size() && !junctions.contains(turned[i])) continue;
+            Places key = piece;
+            const Places back(piece.rbegin(), piece.rend());
+            const bool backwards = back < key;
+            if (backwards) key = back;
+            const auto [entry, fresh] = known_[region ? 1 : 0].try_emplace(key, strands_.size());
+            if (fresh) {
+                Strand& strand = strands_.emplace_back();
+                strand.before = key;
+                strand.closed = key.front() == key.back() && !junctions.contains(key.front());
+                for (const SurfacePlace& place : key) strand.points.push_back(node_at(mesh_, place).point);
+                strand.after = key;
+            }
+            uses.push_back({entry->second, backwards});
+            piece = {turned[i]};
+        }
+        return uses;
+    }
+
+    /// Points at equal lengths along the middles of the pieces; ends stay.
+    static std::vector<Point> resampled(const Strand& strand, std::size_t count) {
+        std::vector<Point> middles;
+        const std::vector<Point>& points = strand.points;
+        if (!strand.closed) middles.push_back(points.front());
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) middles.push_back(CGAL::midpoint(points[i], points[i + 1]));
+        middles.push_back(strand.closed ? middles.front() : points.back());
+        std::vector<double> along{0};
+        for (std::size_t i = 1; i < middles.size(); ++i) along.push_back(along.back() + gap(middles[i - 1], middles[i]));
+        std::vector<Point> result;
+        std::size_t at = 0;
+        for (std::size_t k = 0; k <= count; ++k) {
+            const double s = along.back() * static_cast<double>(k) / static_cast<double>(count);
+            while (at + 2 < along.size() && along[at + 1] < s) ++at;
+            const double step = along[at + 1] - along[at];
+            const double t = step > 0 ? std::clamp((s - along[at]) / step, 0.0, 1.0) : 0;
+            result.push_back(middles[at] + t * (middles[at + 1] - middles[at]));
+        }
+        return result;  // of a loop the first again at the end
+    }
+
+    void fair(Strand& strand) const {
+        strand.length = 0;
+        strand.fair.clear();
+        for (std::size_t i = 1; i < strand.points.size(); ++i) strand.length += gap(strand.points[i - 1], strand.points[i]);
+        if (strand.points.size() < (strand.closed ? 7U : 4U) || !(strand.length > 0)) return;
+        const double step = strand.length / static_cast<double>(strand.points.size() - 1);
+        const auto count = static_cast<std::size_t>(std::clamp(std::ceil(2 * strand.length / step), 8.0, 100000.0));
+        const std::vector<Point> start = resampled(strand, count);
+        const std::size_t n = strand.closed ? count : count + 1;
+        const Point origin = start.front();
+        Eigen::MatrixXd given(static_cast<Eigen::Index>(n), 3);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vector d = start[i] - origin;
+            given.row(static_cast<Eigen::Index>(i)) << d.x(), d.y(), d.z();
+        }
+        const auto solved = [&](double weight) {
+            // Second differences times `weight`, and the given places; the ends of an open strand are held.
+            std::vector<Eigen::Triplet<double>> entries;
+            const auto N = static_cast<Eigen::Index>(n);
+            for (Eigen::Index i = 0; i < N; ++i) entries.emplace_back(i, i, 1);
+            for (Eigen::Index i = strand.closed ? 0 : 1; i < (strand.closed ? N : N - 1); ++i) {
+                const Eigen::Index at[3] = {(i + N - 1) % N, i, (i + 1) % N};
+                constexpr double factor[3] = {1, -2, 1};
+                for (int a = 0; a < 3; ++a)
+                    for (int b = 0; b < 3; ++b) entries.emplace_back(at[a], at[b], weight * factor[a] * factor[b]);
+            }
+            if (!strand.closed)
+                for (const Eigen::Index end : {Eigen::Index{0}, N - 1}) entries.emplace_back(end, end, 1e9 * (1 + weight));
+            Eigen::SparseMatrix<double> matrix(N, N);
+            matrix.setFromTriplets(entries.begin(), entries.end());
+            Eigen::MatrixXd right = given;
+            if (!strand.closed) {
+                right.row(0) *= 1 + 1e9 * (1 + weight);
+                right.row(N - 1) *= 1 + 1e9 * (1 + weight);
+            }
+            const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+            const Eigen::MatrixXd found = solver.solve(right);
+            std::vector<Point> points;
+            for (Eigen::Index i = 0; i < N; ++i) points.push_back(origin + Vector(found(i, 0), found(i, 1), found(i, 2)));
+            if (strand.closed) {
+                points.push_back(points.front());
+            } else {
+                points.front() = strand.points.front();
+                points.back() = strand.points.back();
+            }
+            return points;
+        };
+        const Segments before = segments(strand.points);
+        const auto near = [&](const std::vector<Point>& points) {
+            return hausdorff_distance(segments(points), before) <= strand.room * limit_;
+        };
+        double low = -2, high = 7;  // of the logarithm
+        std::vector<Point> best = solved(std::pow(10, low));
+        if (!near(best)) return;
+        for (int round = 0; round < 12; ++round) {
+            const double middle = (low + high) / 2;
+            std::vector<Point> points = solved(std::pow(10, middle));
+            if (near(points)) low = middle, best = std::move(points);
+            else high = middle;
+        }
+        strand.fair = std::move(best);
+    }
+
+    /// Puts what a strand is to be on the surface; one that cannot follow it stays as it was.
+    void draw(Strand& strand) const {
+        if (strand.fair.empty()) return leave(strand);
+        std::vector<SurfaceNode> nodes;
+        strand.aside.clear();
+        const std::size_t n = strand.fair.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            if (strand.closed && i + 1 == n) {
+                nodes.push_back(nodes.front());
+                strand.aside.push_back(strand.aside.front());
+                break;
+            }
+            const SurfaceHit hit = search_.closest(strand.fair[i]);
+            const Vector along = strand.fair[(i + 1) % n] - strand.fair[i == 0 ? (strand.closed ? n - 2 : 0) : i - 1];
+            const Vector left = CGAL::cross_product(search_.normal(hit.face), along);
+            const double size = std::sqrt(left.squared_length());
+            strand.aside.push_back(size > 0 ? left / size : Vector(0, 0, 0));
+            if (!strand.closed && (i == 0 || i + 1 == n))
+                nodes.push_back(node_at(mesh_, i == 0 ? strand.before.front() : strand.before.back()));
+            else nodes.push_back(surface_node(mesh_, hit.face, hit.barycentric));
+        }
+        Places places{place_of(mesh_, nodes.front())};
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+            const double apart = gap(nodes[i].point, nodes[i + 1].point);
+            const Vector up =
+                search_.normal(faces_of(mesh_, nodes[i]).front()) + search_.normal(faces_of(mesh_, nodes[i + 1]).front());
+            const auto line = trace_line(mesh_, nodes[i], nodes[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
+            if (!line) return leave(strand);
+            for (std::size_t k = 1; k < line->nodes.size(); ++k)
+                if (const SurfacePlace place = place_of(mesh_, line->nodes[k]); place != places.back()) places.push_back(place);
+        }
+        if (places.size() < (strand.closed ? 4U : 2U)) return leave(strand);
+        strand.after = std::move(places);
+    }
+
+    static void leave(Strand& strand) {
+        strand.fair.clear();
+        strand.after = strand.before;
+    }
+
+    std::vector<Places> curves_now(std::size_t i) const {
+        std::vector<Places> curves;
+        for (const auto& uses : uses_[i]) {
+            Places& curve = curves.emplace_back();
+            for (const Use& use : uses) {
+                Places part = strands_[use.strand].after;
+                if (use.backwards) std::reverse(part.begin(), part.end());
+                curve.insert(curve.end(), part.begin() + (curve.empty() ? 0 : 1), part.end());
+            }
+        }
+        return curves;
+    }
+
+    /// Shifts strands sideways by what each region lacks. False if there is nothing to shift.
+    bool keep_areas(const std::vector<Annotation*>& annotations, const std::vector<double>& area) {
+        std::vector<std::size_t> movable;
+        std::map<std::size_t, Eigen::Index> column;
+        for (std::size_t s = 0; s < strands_.size(); ++s)
+            if (!strands_[s].fair.empty()) {
+                column[s] = static_cast<Eigen::Index>(movable.size());
+                movable.push_back(s);
+            }
+        if (movable.empty()) return false;
+        std::vector<std::pair<std::size_t, double>> lacks;
+        for (std::size_t i = 0; i < annotations.size(); ++i) {
+            if (annotations[i]->type != AnnotationType::region) continue;
+            Annotation now = *annotations[i];
+            now.curves = curves_now(i);
+            const CurveFilling filling = fill_curves(mesh_, curves_on(mesh_, now));
+            if (filling.conflicts == 0 && std::abs(filling.area(mesh_) - area[i]) < 0.2 * area[i])
+                lacks.emplace_back(i, area[i] - filling.area(mesh_));
+        }
+        if (lacks.empty()) return false;
+        // Each region's area changes by the length of its strands times their shift; the least shifts that do it.
+        Eigen::MatrixXd slopes =
+            Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(lacks.size()), static_cast<Eigen::Index>(movable.size()));
+        Eigen::VectorXd wanted(static_cast<Eigen::Index>(lacks.size()));
+        for (std::size_t r = 0; r < lacks.size(); ++r) {
+            wanted[static_cast<Eigen::Index>(r)] = lacks[r].second;
+            for (const auto& uses : uses_[lacks[r].first])
+                for (const Use& use : uses)
+                    if (const auto at = column.find(use.strand); at != column.end())
+                        slopes(static_cast<Eigen::Index>(r), at->second) +=
+                            (use.backwards ? 1 : -1) * length_now(strands_[use.strand]);
+        }
+        const Eigen::VectorXd shift = slopes.completeOrthogonalDecomposition().solve(wanted);
+        for (std::size_t c = 0; c < movable.size(); ++c) {
+            Strand& strand = strands_[movable[c]];
+            const double by = std::clamp(shift[static_cast<Eigen::Index>(c)], -0.1 * limit_, 0.1 * limit_);
+            const std::size_t n = strand.fair.size();
+            for (std::size_t i = strand.closed ? 0 : 1; i < (strand.closed ? n : n - 1); ++i)
+                strand.fair[i] = strand.fair[i] + by * strand.aside[i];
+            if (strand.closed) strand.fair.back() = strand.fair.front();
+            draw(strand);
+        }
+        return true;
+    }
+
+    double length_now(const Strand& strand) const {
+        double sum = 0;
+        for (std::size_t i = 1; i < strand.fair.size(); ++i) sum += gap(strand.fair[i - 1], strand.fair[i]);
+        return sum;
+    }
+
+    bool is_sound(std::size_t i, Annotation& faired, double area) const {
+        faired.curves = curves_now(i);
+        if (faired.type != AnnotationType::region) return true;
+        const CurveFilling filling = fill_curves(mesh_, curves_on(mesh_, faired));
+        return filling.conflicts == 0 && std::abs(filling.area(mesh_) - area) <= 0.5 * area;
+    }
+
+    const Mesh& mesh_;
+    SurfaceSearch search_;
+    const FairOptions& options_;
+    double limit_ = 0;
+    std::array<std::set<SurfacePlace>, 2> junctions_;  ///< of lines, of outlines
+    std::array<std::map<Places, std::size_t>, 2> known_;
+    std::vector<Strand> strands_;
+    std::vector<std::vector<std::vector<Use>>> uses_;  ///< of each annotation, by curve
+};
+
+}  // namespace
+
+std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set, const std::vector<int>& ids,
+                                            const FairOptions& options) {
+    check_options(options, "annotation smooth");
+    std::vector<Annotation*> annotations;
+    const auto has_curves = [](const Annotation& one) {
+        return one.type != AnnotationType::point && !one.all && (!one.faces.empty() || !one.polylines.empty() || is_free(one));
+    };
+    for (const int id : ids)
+        if (set.find(id) == nullptr)
+            fail_input("annotations", "none has the id " + std::to_string(id), "'annotation list' shows ids");
+    for (Annotation& one : set.annotations)
+        if (has_curves(one) && (ids.empty() || std::find(ids.begin(), ids.end(), one.id) != ids.end()))
+            annotations.push_back(&one);
+    if (annotations.empty()) return {};
+    return Fairing(mesh, options).run(std::move(annotations));
+}
+
+void FairOptions::describe(OptionList& visit) {
+    visit("distance", distance, "how far from where it was a curve may run; 0: three quarters of the mean edge length",
+          Range{0, 1e60}, "unit of the mesh");
+    visit("let-area-change", let_area_change, "do not shift the curves so that each region keeps its area");
+}
+
+}  // namespace ostraka

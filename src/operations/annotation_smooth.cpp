@@ -1,0 +1,49 @@
+// annotation smooth: outlines and lines without the steps of the edges.
+#include "operations.h"
+
+#include "ostraka/annotation/fair_outlines.h"
+#include "ostraka/measure/measure.h"
+
+namespace ostraka {
+
+namespace {
+
+struct AnnotationSmooth final : Operation {
+    void describe(Parameters& p) override {
+        p.input("mesh", Kind::mesh, mesh, "mesh file");
+        p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)");
+        p.output("output", Kind::annotations, output, "annotations to write (.ant.json): their outlines run through the faces");
+        p.options("annotation", names, "ids or tags of those to smooth; without, all").words();
+        options.describe(p.options);
+        p.report.table("annotations", integer("id", "id"), text("tag", "tag"), number("length_before", "length before", "length"),
+                       number("length_after", "after", "length"), number("area_before", "area before", "length^2"),
+                       number("area_after", "after", "length^2"), number("moved", "moved", "length"), text("note", "note"));
+    }
+
+    void run(Context&, Report& report) override {
+        const Mesh& on = mesh->mesh;
+        AnnotationSet set = annotations.on(on);
+        report.set_unit(set.unit);
+        std::vector<int> ids;
+        for (const std::string& name : names) ids.push_back(find_annotation(set, name, annotations.file()).id);
+        report.empty_table("annotations");
+        for (const FairedAnnotation& one : in_file(annotations.file(), [&] { return fair_outlines(on, set, ids, options); }))
+            report.row("annotations")("id", one.id)("tag", set.find(one.id)->tag)("length_before", one.length_before)(
+                "length_after", one.length_after)("area_before", one.area_before)("area_after", one.area_after)(
+                "moved", one.moved)("note", one.note);
+        report.notes(refresh_measures(on, set).notes);
+        output.write(std::move(set), on, mesh.file());
+    }
+
+    MeshInput mesh;
+    AnnotationsInput annotations;
+    AnnotationsOutput output;
+    std::vector<std::string> names;
+    FairOptions options;
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> make_annotation_smooth() { return make<AnnotationSmooth>(); }
+
+}  // namespace ostraka

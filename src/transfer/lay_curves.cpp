@@ -1,0 +1,648 @@
+#include "ostraka/transfer/lay_curves.h"
+
+#include "ostraka/annotation/curves.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/insert_curves.h"
+#include "ostraka/geom/shortest_path.h"
+#include "region_transfer.h"
+#include "scores.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using Places = std::vector<SurfacePlace>;
+
+double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
+
+double typical_edge(const Mesh& mesh) {
+    return std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / std::max<double>(1, static_cast<double>(mesh.number_of_faces())));
+}
+
+/// The vertex normals, interpolated.
+Vector normal_at(const Mesh& mesh, const SurfaceNode& node) {
+    switch (node.kind) {
+        case SurfaceNode::Kind::vertex:
+            return vertex_normal(mesh, Vertex(node.element));
+        case SurfaceNode::Kind::edge: {
+            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
+            return (1 - node.parameter) * vertex_normal(mesh, mesh.source(h)) +
+                   node.parameter * vertex_normal(mesh, mesh.target(h));
+        }
+        default: {
+            const auto corner = corners(mesh, Face(node.element));
+            Vector sum(0, 0, 0);
+            for (std::size_t k = 0; k < 3; ++k) sum = sum + node.barycentric[k] * vertex_normal(mesh, corner[k]);
+            return sum;
+        }
+    }
+}
+
+Vector unit(const Vector& v) {
+    const double length = std::sqrt(v.squared_length());
+    return length > 0 ? v / length : Vector(0, 0, 0);
+}
+
+/// The weights of a node in one of its faces.
+std::array<double, 3> weights_in(const Mesh& mesh, Index face, const SurfaceNode& node) {
+    const auto corner = corners(mesh, Face(face));
+    if (node.kind == SurfaceNode::Kind::face) return node.barycentric;
+    std::array<double, 3> weights{0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (node.kind == SurfaceNode::Kind::vertex) {
+            if (static_cast<Index>(corner[k]) == node.element) weights[k] = 1;
+        } else {
+            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
+            if (corner[k] == mesh.source(h)) weights[k] = 1 - node.parameter;
+            if (corner[k] == mesh.target(h)) weights[k] = node.parameter;
+        }
+    }
+    return weights;
+}
+
+/// A place of the source and where it is on the target.
+struct Mapped {
+    SurfaceNode from;
+    Vector normal{0, 0, 0};  ///< of the source there
+    CorrespondenceKind kind = CorrespondenceKind::none;
+    SurfaceNode to;
+    Vector up{0, 0, 0};  ///< of the target there
+};
+
+class Laying {
+public:
+    Laying(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options)
+        : source_(source),
+          search_(target),
+          target_(target.mesh()),
+          options_(options),
+          edge_(target.typical_edge()),
+          far_(options.max_distance * target.diagonal()),
+          min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)),
+          by_target_normals_(edge_ > typical_edge(source)) {}
+
+    std::vector<Laid> run(const std::vector<const Annotation*>& annotations) {
+        std::vector<Laid> laid(annotations.size());
+        std::vector<std::vector<Places>> drawn(annotations.size());
+        for (std::size_t i = 0; i < annotations.size(); ++i)
+            if (!annotations[i]->all) drawn[i] = places_of(*annotations[i]);
+        for (auto& curves : drawn)
+            for (Places& curve : curves) curve = divided(curve);
+        map_all(drawn);
+        for (std::size_t i = 0; i < annotations.size(); ++i) {
+            begin(*annotations[i], laid[i]);
+            for (const Places& curve : drawn[i]) {
+                Places on_target = trace(*annotations[i], curve, laid[i]);
+                if (!on_target.empty()) laid[i].annotation.curves.push_back(std::move(on_target));
+            }
+        }
+        simplify(laid);
+        parallel_for(
+            laid.size(), [&](std::size_t i) { settle(*annotations[i], laid[i]); }, 1);
+        return laid;
+    }
+
+private:
+    // Curves of the source.
+
+    std::vector<Places> places_of(const Annotation& annotation) const {
+        if (is_free(annotation)) {
+            curves_on(source_, annotation);  // it fits
+            return annotation.curves;
+        }
+        std::vector<Places> curves;
+        const auto add = [&](const std::vector<Index>& path, bool closed) {
+            Places& places = curves.emplace_back();
+            for (const Index v : path) {
+                SurfacePlace place;
+                place.element[0] = v;
+                places.push_back(place);
+            }
+            if (closed) places.push_back(places.front());
+        };
+        for (const Index v : annotation.points) add({v}, false);
+        for (const auto& line : annotation.polylines) add(line, false);
+        if (annotation.type == AnnotationType::region)
+            for (const SourcePath& path : region_paths(source_, annotation.faces)) add(path.vertices, path.closed);
+        return curves;
+    }
+
+    /// With places between neighbours that are farther apart than an edge of the target. Both neighbours' curves get the same.
+    Places divided(const Places& curve) const {
+        Places places;
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            if (i > 0) {
+                const SurfaceNode a = node_at(source_, curve[i - 1]), b = node_at(source_, curve[i]);
+                const double length = distance(a.point, b.point);
+                const int parts = std::clamp(static_cast<int>(std::ceil(length / edge_)), 1, 1000);
+                for (int k = 1; k < parts; ++k) places.push_back(between(curve[i - 1], curve[i], k, parts));
+            }
+            places.push_back(curve[i]);
+        }
+        return places;
+    }
+
+    /// Part k of `parts` on the way from a to b, computed from the lower place on.
+    SurfacePlace between(const SurfacePlace& a, const SurfacePlace& b, int k, int parts) const {
+        if (b < a) return between(b, a, parts - k, parts);
+        const SurfaceNode from = node_at(source_, a), to = node_at(source_, b);
+        const Index face = common_face(source_, from, to);
+        const auto u = weights_in(source_, face, from), v = weights_in(source_, face, to);
+        const double t = static_cast<double>(k) / parts;
+        std::array<double, 3> weights{};
+        for (std::size_t c = 0; c < 3; ++c) weights[c] = (1 - t) * u[c] + t * v[c];
+        return place_of(source_, surface_node(source_, face, weights, 1e-9));
+    }
+
+    // Places.
+
+    void map_all(const std::vector<std::vector<Places>>& drawn) {
+        std::vector<SurfacePlace> all;
+        for (const auto& curves : drawn)
+            for (const Places& curve : curves) all.insert(all.end(), curve.begin(), curve.end());
+        std::sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        std::vector<Mapped> found(all.size());
+        parallel_for(
+            all.size(), [&](std::size_t i) { found[i] = mapped(all[i]); }, 64);
+        for (std::size_t i = 0; i < all.size(); ++i) mapped_.emplace_hint(mapped_.end(), all[i], std::move(found[i]));
+    }
+
+    const Mapped& at(const SurfacePlace& place) {
+        const auto [entry, fresh] = mapped_.try_emplace(place);
+        if (fresh) entry->second = mapped(place);
+        return entry->second;
+    }
+
+    Mapped mapped(const SurfacePlace& place) const {
+        Mapped result;
+        result.from = node_at(source_, place);
+        result.normal = unit(normal_at(source_, result.from));
+        const Point& p = result.from.point;
+        const auto take = [&](CorrespondenceKind kind, Index face, const std::array<double, 3>& weights) {
+            result.kind = kind;
+            result.to = surface_node(target_, face, weights);
+            result.up = unit(normal_at(target_, result.to));
+        };
+        if (result.normal.squared_length() > 0) {
+            if (by_target_normals_) {
+                if (const auto hit = along_target_normal(p, result.normal)) {
+                    take(CorrespondenceKind::ray, hit->face, hit->barycentric);
+                    return result;
+                }
+            } else {
+                for (const double length : {std::min(far_, 2 * edge_), far_})
+                    for (const SurfaceHit& hit : search_.line_hits(p, result.normal, length))
+                        if (search_.normal(hit.face) * result.normal >= min_cosine_) {
+                            take(CorrespondenceKind::ray, hit.face, hit.barycentric);
+                            return result;
+                        }
+            }
+        }
+        const bool oriented = result.normal.squared_length() > 0;
+        if (const auto hit = search_.closest_compatible(p, result.normal, oriented ? min_cosine_ : -1, far_))
+            take(CorrespondenceKind::closest, hit->face, hit->barycentric);
+        return result;
+    }
+
+    /// The place of the target whose interpolated normal runs through p: x(b) + d n(b) = p for the weights b and the distance d,
+    /// by Newton's method, from the nearest place on and over the edges that the weights lead across.
+    std::optional<SurfaceHit> along_target_normal(const Point& p, const Vector& normal) const {
+        const auto start = search_.closest_compatible(p, normal, min_cosine_, far_);
+        if (!start) return std::nullopt;
+        Index face = start->face, came_from = no_index;
+        double d = start->distance * ((p - start->point) * search_.normal(face) < 0 ? -1 : 1);
+        for (int step = 0; step < 24; ++step) {
+            const auto corner = corners(target_, Face(face));
+            std::array<Eigen::Vector3d, 3> x, n;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vector at = target_.point(corner[k]) - p, up = vertex_normal(target_, corner[k]);
+                x[k] = {at.x(), at.y(), at.z()};
+                n[k] = {up.x(), up.y(), up.z()};
+            }
+            Eigen::Vector3d unknown(1.0 / 3, 1.0 / 3, d);  // weights of corners 1 and 2, distance
+            const double size = std::max((x[1] - x[0]).norm(), (x[2] - x[0]).norm());
+            bool solved = false;
+            for (int round = 0; round < 20 && !solved; ++round) {
+                const double u = unknown[0], v = unknown[1], w = unknown[2];
+                const Eigen::Vector3d up = (1 - u - v) * n[0] + u * n[1] + v * n[2];
+                const Eigen::Vector3d off = (1 - u - v) * x[0] + u * x[1] + v * x[2] + w * up;
+                Eigen::Matrix3d slopes;
+                slopes << x[1] - x[0] + w * (n[1] - n[0]), x[2] - x[0] + w * (n[2] - n[0]), up;
+                if (!(std::abs(slopes.determinant()) > 1e-12 * size * size)) return std::nullopt;
+                const Eigen::Vector3d change = slopes.partialPivLu().solve(-off);
+                unknown += change;
+                if (!(unknown.squaredNorm() < 1e12 * (1 + size * size))) return std::nullopt;
+                solved = std::abs(change[0]) + std::abs(change[1]) < 1e-14 && std::abs(change[2]) <= 1e-14 * size;
+            }
+            const std::array<double, 3> weights{1 - unknown[0] - unknown[1], unknown[0], unknown[1]};
+            const auto lowest = static_cast<std::size_t>(std::min_element(weights.begin(), weights.end()) - weights.begin());
+            const Halfedge across = find_halfedge(target_, corner[(lowest + 1) % 3], corner[(lowest + 2) % 3]);
+            const Halfedge beyond = target_.opposite(across);
+            if (weights[lowest] >= -1e-9 ||
+                (!target_.is_border(beyond) && static_cast<Index>(target_.face(beyond)) == came_from)) {
+                if (weights[lowest] < -1e-3) return std::nullopt;
+                SurfaceHit hit;
+                hit.face = face;
+                double sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) sum += hit.barycentric[k] = std::max(0.0, weights[k]);
+                for (double& weight : hit.barycentric) weight /= sum;
+                hit.point = point_at(target_, face, hit.barycentric);
+                hit.distance = distance(hit.point, p);
+                if (hit.distance > far_ || search_.normal(face) * normal < min_cosine_) return std::nullopt;
+                return hit;
+            }
+            if (target_.is_border(beyond)) return std::nullopt;
+            came_from = face;
+            face = target_.face(beyond);
+            d = unknown[2];
+        }
+        return std::nullopt;
+    }
+
+    // Traces.
+
+    /// A curve on the target: the places, and those at which the traces between them cross edges.
+    Places trace(const Annotation& from, const Places& curve, Laid& laid) {
+        const bool closed = curve.size() > 3 && curve.front() == curve.back();
+        std::vector<std::size_t> good = trusted(curve, closed, laid);
+        if (good.empty()) return {};
+        const auto end_place = [&](std::size_t i) { return place_of(target_, at(curve[i]).to); };
+        if (from.type == AnnotationType::point || curve.size() == 1) return {end_place(good.front())};
+        Places places{end_place(good.front())};
+        for (std::size_t k = 0; k + 1 < good.size(); ++k) append(curve, good[k], good[k + 1], laid, places);
+        if (from.type == AnnotationType::region && !closed) lead_to_border(places);
+        if (closed) {
+            if (good.front() != 0) append(curve, good.back(), good.front(), laid, places);
+            if (places.size() < 4 || places.front() != places.back()) return {};
+        }
+        return places.size() < 2 ? Places() : places;
+    }
+
+    /// Which places of a curve to use: from the one nearest to its origin on, those that are not much farther from the last than
+    /// on the source. A closed curve has its first place last again if it can be trusted.
+    std::vector<std::size_t> trusted(const Places& curve, bool closed, Laid& laid) {
+        const std::size_t n = closed ? curve.size() - 1 : curve.size();
+        std::size_t best = n;
+        double nearest = std::numeric_limits<double>::infinity();
+        laid.places += n;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Mapped& one = at(curve[i]);
+            if (one.kind == CorrespondenceKind::ray) ++laid.by_ray;
+            else if (one.kind == CorrespondenceKind::closest) ++laid.by_closest_point;
+            if (one.kind == CorrespondenceKind::none) continue;
+            const double off = distance(one.from.point, one.to.point);
+            if (off < nearest) nearest = off, best = i;
+        }
+        std::vector<bool> use(n, false);
+        if (best == n) {
+            laid.without_place += n;
+            return {};
+        }
+        use[best] = true;
+        const auto spread = [&](int sense, std::size_t steps) {
+            std::size_t last = best, previous = best;
+            double length = 0;
+            for (std::size_t k = 1; k <= steps; ++k) {
+                const std::size_t i = sense > 0 ? (best + k) % n : (best + n - k % n) % n;
+                const Mapped &one = at(curve[i]), &before = at(curve[previous]), &trusted = at(curve[last]);
+                length += distance(one.from.point, before.from.point);
+                previous = i;
+                if (one.kind == CorrespondenceKind::none || distance(one.to.point, trusted.to.point) > 3 * length + 0.5 * edge_)
+                    continue;
+                use[i] = true;
+                last = i;
+                length = 0;
+            }
+        };
+        if (closed) {
+            spread(+1, n - 1);
+        } else {
+            spread(+1, n - 1 - best);
+            spread(-1, best);
+        }
+        std::vector<std::size_t> good;
+        for (std::size_t i = 0; i < n; ++i)
+            if (use[i]) good.push_back(i);
+        laid.without_place += n - good.size();
+        if (closed && use[0]) good.push_back(n);  // the first again
+        return good;
+    }
+
+    void append(const Places& curve, std::size_t i, std::size_t j, Laid& laid, Places& places) {
+        const SurfacePlace &a = curve[i], &b = curve[j];
+        const auto [entry, fresh] = traces_.try_emplace(std::minmax(a, b));
+        if (fresh) {
+            const SurfacePlace &low = entry->first.first, &high = entry->first.second;
+            entry->second.places.push_back(place_of(target_, at(low).to));
+            join(low, high, 0, entry->second);
+        }
+        laid.detours += entry->second.detours;
+        const Places& way = entry->second.places;
+        const bool forward = a == entry->first.first;
+        for (std::size_t k = 1; k < way.size(); ++k) {
+            const SurfacePlace& place = forward ? way[k] : way[way.size() - 1 - k];
+            if (places.back() != place) places.push_back(place);
+        }
+    }
+
+    struct Trace {
+        Places places;
+        std::size_t detours = 0;
+    };
+
+    /// Adds the way from the place of a to that of b: a straight trace; where none arrives, by halves.
+    void join(const SurfacePlace& a, const SurfacePlace& b, int depth, Trace& trace) {
+        const Mapped from = at(a), to = at(b);
+        const double apart = distance(from.to.point, to.to.point);
+        const Vector up = unit(from.up + to.up);
+        if (const auto line = trace_line(target_, from.to, to.to, up, 2 * apart + 1e-9 * search_.diagonal())) {
+            for (std::size_t k = 1; k < line->nodes.size(); ++k) trace.places.push_back(place_of(target_, line->nodes[k]));
+            return;
+        }
+        if (depth < 6 && common_face(source_, from.from, to.from) != no_index) {
+            const SurfacePlace middle = between(a, b, 1, 2);
+            const Mapped& half = at(middle);
+            const double reach = 2 * apart + 0.1 * edge_;
+            if (middle != a && middle != b && half.kind != CorrespondenceKind::none &&
+                distance(half.to.point, from.to.point) < reach && distance(half.to.point, to.to.point) < reach) {
+                join(a, middle, depth + 1, trace);
+                join(middle, b, depth + 1, trace);
+                return;
+            }
+        }
+        ++trace.detours;
+        along_edges(from.to, to.to, trace.places);
+    }
+
+    /// By the corners of their faces and the edges between; a gap between two components stays a gap.
+    void along_edges(const SurfaceNode& a, const SurfaceNode& b, Places& places) {
+        const auto nearest = [&](const SurfaceNode& node) {
+            if (node.kind == SurfaceNode::Kind::vertex) return Vertex(node.element);
+            const auto corner = corners(target_, faces_of(target_, node).front());
+            return *std::min_element(corner.begin(), corner.end(), [&](Vertex v, Vertex w) {
+                return CGAL::squared_distance(target_.point(v), node.point) <
+                       CGAL::squared_distance(target_.point(w), node.point);
+            });
+        };
+        if (!paths_) paths_.emplace(target_);
+        for (const Index v : paths_->find(nearest(a), nearest(b), {})) {
+            SurfacePlace place;
+            place.element[0] = v;
+            if (places.back() != place) places.push_back(place);
+        }
+        if (const SurfacePlace last = place_of(target_, b); places.back() != last) places.push_back(last);
+    }
+
+    /// The ends of an outline that came from the border go to the nearest places of the target's.
+    void lead_to_border(Places& places) {
+        if (border_.empty())
+            for (const Halfedge h : target_.halfedges())
+                if (target_.is_border(h)) border_.push_back(h);
+        if (border_.empty()) return;
+        const auto lead = [&](Places& way) {
+            const SurfaceNode from = node_at(target_, way.back());
+            const auto on_border = [&] {
+                return from.kind == SurfaceNode::Kind::vertex
+                           ? target_.is_border(Vertex(from.element))
+                           : from.kind == SurfaceNode::Kind::edge && target_.is_border(Edge(from.element));
+            };
+            if (on_border()) return;
+            double best = std::numeric_limits<double>::infinity();
+            SurfaceNode goal;
+            for (const Halfedge h : border_) {
+                const Point &a = target_.point(target_.source(h)), &b = target_.point(target_.target(h));
+                const Vector along = b - a;
+                const double t = std::clamp(((from.point - a) * along) / along.squared_length(), 0.0, 1.0);
+                const double off = CGAL::squared_distance(a + t * along, from.point);
+                if (off >= best) continue;
+                best = off;
+                SurfacePlace place;
+                const Index v = target_.source(h), w = target_.target(h);
+                if (t < 1e-6 || t > 1 - 1e-6) {
+                    place.element[0] = t < 0.5 ? v : w;
+                } else {
+                    place.kind = SurfaceNode::Kind::edge;
+                    place.element = {std::min(v, w), std::max(v, w)};
+                    place.weights[0] = v < w ? t : 1 - t;
+                }
+                goal = node_at(target_, place);
+            }
+            const Vector up = unit(normal_at(target_, from) + normal_at(target_, goal));
+            if (const auto line = trace_line(target_, from, goal, up, 4 * std::sqrt(best) + 1e-9 * search_.diagonal()))
+                for (std::size_t k = 1; k < line->nodes.size(); ++k) way.push_back(place_of(target_, line->nodes[k]));
+            else along_edges(from, goal, way);
+        };
+        lead(places);
+        std::reverse(places.begin(), places.end());
+        lead(places);
+        std::reverse(places.begin(), places.end());
+    }
+
+    // What is kept.
+
+    /// Leaves out places inside faces that say next to nothing, the same ones for all curves that share them.
+    void simplify(std::vector<Laid>& laid) const {
+        std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
+        for (const Laid& one : laid)
+            for (const Places& curve : one.annotation.curves) {
+                for (std::size_t i = 1; i < curve.size(); ++i) {
+                    if (curve[i].kind == SurfaceNode::Kind::face) neighbours[curve[i]].insert(curve[i - 1]);
+                    if (curve[i - 1].kind == SurfaceNode::Kind::face) neighbours[curve[i - 1]].insert(curve[i]);
+                }
+            }
+        const auto may_go = [&](const SurfacePlace& place) {
+            return place.kind == SurfaceNode::Kind::face && neighbours.at(place).size() == 2;
+        };
+        for (Laid& one : laid)
+            for (Places& curve : one.annotation.curves) {
+                Places kept;
+                for (std::size_t i = 0; i < curve.size();) {
+                    kept.push_back(curve[i]);
+                    std::size_t end = i + 1;
+                    while (end + 1 < curve.size() && may_go(curve[end])) ++end;
+                    if (end < curve.size() && end > i + 1) keep_needed(curve, i, end, kept);
+                    i = end;
+                }
+                if (kept.size() >= 4 || kept.size() == curve.size() || kept.front() != kept.back()) curve = std::move(kept);
+            }
+    }
+
+    /// Of the places strictly between two of a curve, those that the line needs (Ramer 1972, Douglas and Peucker 1973).
+    void keep_needed(const Places& curve, std::size_t first, std::size_t last, Places& kept) const {
+        Places run(curve.begin() + static_cast<std::ptrdiff_t>(first), curve.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+        const bool turned = run.back() < run.front();
+        if (turned) std::reverse(run.begin(), run.end());
+        std::vector<Point> points;
+        for (const SurfacePlace& place : run) points.push_back(node_at(target_, place).point);
+        std::vector<bool> keep(run.size(), false);
+        std::vector<std::pair<std::size_t, std::size_t>> stack{{0, run.size() - 1}};
+        const double tolerance = 1e-4 * edge_;
+        while (!stack.empty()) {
+            const auto [a, b] = stack.back();
+            stack.pop_back();
+            std::size_t farthest = a;
+            double most = tolerance;
+            for (std::size_t k = a + 1; k < b; ++k)
+                if (const double off = distance_to_segment(points[k], points[a], points[b]); off > most) most = off, farthest = k;
+            if (farthest == a) continue;
+            keep[farthest] = true;
+            stack.emplace_back(a, farthest);
+            stack.emplace_back(farthest, b);
+        }
+        Places between;
+        for (std::size_t k = 1; k + 1 < run.size(); ++k)
+            if (keep[k]) between.push_back(run[k]);
+        if (turned) std::reverse(between.begin(), between.end());
+        kept.insert(kept.end(), between.begin(), between.end());
+    }
+
+    static void begin(const Annotation& from, Laid& laid) {
+        laid.annotation.id = from.id;
+        laid.annotation.tag = from.tag;
+        laid.annotation.colour = from.colour;
+        laid.annotation.type = from.type;
+        laid.annotation.note = from.note;
+        laid.annotation.all = from.all;
+    }
+
+    void settle(const Annotation& from, Laid& laid) const {
+        Annotation& to = laid.annotation;
+        if (from.all) {
+            to.faces.resize(target_.number_of_faces());
+            for (Index f = 0; f < to.faces.size(); ++f) to.faces[f] = f;
+            return;
+        }
+        if (from.type == AnnotationType::region) {
+            to.faces = whole_components(from);
+            if (to.curves.empty() && to.faces.empty()) laid.lost = true;
+            if (to.curves.empty()) return;
+            const CurveFilling filling = fill_curves(target_, curves_on(target_, to));
+            const double expected = area_of(source_, from);
+            if (filling.conflicts > 0 || std::abs(filling.area(target_) - expected) > 0.5 * expected + 0.1 * edge_ * edge_) {
+                untangle(from, expected, laid);
+                return;
+            }
+        }
+        if (to.curves.empty()) laid.lost = true;
+        else settle_elements(target_, to);
+    }
+
+    /// Components of the source that the region covers whole have no outline: a place of each tells the component here.
+    std::vector<Index> whole_components(const Annotation& from) const {
+        if (is_free(from) && from.faces.empty()) return {};
+        std::vector<bool> selected = face_flags(source_, from.faces), seen(source_.number_of_faces(), false);
+        if (is_free(from)) {
+            std::vector<bool> curved(source_.number_of_faces(), false);
+            for (const SurfaceCurve& curve : curves_on(source_, from))
+                for (const Index f : curve.faces) curved[f] = true;
+            for (std::size_t f = 0; f < curved.size(); ++f)
+                if (curved[f]) selected[f] = false;
+        }
+        std::vector<Index> faces;
+        for (const Index first : from.faces) {
+            if (seen[first] || !selected[first]) continue;
+            const std::vector<Face> component = flood_faces(source_, Face(first), seen);
+            const bool whole = std::all_of(component.begin(), component.end(), [&](Face f) -> bool { return selected[f]; });
+            if (!whole) continue;
+            const Face middle = component.front();
+            const auto hit = search_.closest_compatible(centroid(source_, middle), search_normal(middle), min_cosine_, far_);
+            if (!hit) continue;
+            std::vector<bool> flooded(target_.number_of_faces(), false);
+            for (const Face f : flood_faces(target_, Face(hit->face), flooded)) faces.push_back(f);
+        }
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+        return faces;
+    }
+    Vector search_normal(Face f) const { return unit(area_vector(source_, f)); }
+
+    /// Outlines that cross: the region by winding numbers on the target cut along them, its outline read off anew.
+    void untangle(const Annotation& from, double expected, Laid& laid) const {
+        Annotation& to = laid.annotation;
+        laid.untangled = true;
+        const std::vector<Index> components = to.faces;
+        InsertedCurves inserted = insert_curves(target_, curves_on(target_, to));
+        std::vector<Halfedge> edges;
+        for (const auto& path : inserted.paths)
+            for (std::size_t i = 0; i + 1 < path.size(); ++i)
+                if (const Halfedge h = find_halfedge(inserted.mesh, Vertex(path[i]), Vertex(path[i + 1])); h.is_valid())
+                    edges.push_back(h);
+        CutMesh cut;
+        cut.mesh = std::move(inserted.mesh);
+        cut.face_origin = std::move(inserted.face_origin);
+        cut.nodes = std::move(inserted.new_nodes);
+        cut.old_vertices = target_.number_of_vertices();
+        const auto wound = fill_by_winding(cut.mesh, edges, expected);
+        const auto plausible = [&](const std::vector<Index>& faces) {
+            return !faces.empty() && std::abs(area_of(cut.mesh, faces) - expected) <= 0.5 * expected + 0.1 * edge_ * edge_;
+        };
+        if (wound && plausible(flagged(*wound))) {
+            to.faces = flagged(*wound);
+            bring_back(target_, cut, to);
+            return;
+        }
+        // Face by face, from where their places are on the source.
+        to.curves.clear();
+        const SurfaceSearch back(source_);
+        to.faces = flagged(region_by_vote(source_, back, from.faces, target_, options_));
+        laid.lost = to.faces.empty();
+        to.note += std::string(to.note.empty() ? "" : "; ") + "its outline could not be followed: it runs along edges now";
+    }
+
+    const Mesh& source_;
+    const SurfaceSearch& search_;
+    const Mesh& target_;
+    const CorrespondenceOptions& options_;
+    double edge_, far_, min_cosine_;
+    bool by_target_normals_;
+    std::map<SurfacePlace, Mapped> mapped_;
+    std::map<std::pair<SurfacePlace, SurfacePlace>, Trace> traces_;
+    std::optional<PathSearch> paths_;
+    std::vector<Halfedge> border_;
+};
+
+}  // namespace
+
+std::vector<Laid> lay_curves(const Mesh& source, const std::vector<const Annotation*>& annotations, const SurfaceSearch& target,
+                             const CorrespondenceOptions& options) {
+    check_options(options, "correspondence");
+    return Laying(source, target, options).run(annotations);
+}
+
+std::vector<std::string> lay_free_annotations(const Mesh& source, const AnnotationSet& from, const Mesh& target,
+                                              AnnotationSet& to, const CorrespondenceOptions& options) {
+    std::vector<std::string> notes;
+    std::vector<const Annotation*> free;
+    for (const Annotation& annotation : from.annotations)
+        if (is_free(annotation)) free.push_back(&annotation);
+    if (free.empty() || target.number_of_faces() == 0) return notes;
+    const SurfaceSearch search(target);
+    for (Laid& laid : lay_curves(source, free, search, options)) {
+        Annotation* now = to.find(laid.annotation.id);
+        if (laid.lost) {
+            notes.push_back(name_of(laid.annotation) + ": its curves have no place on the new mesh");
+            continue;
+        }
+        if (now == nullptr) continue;
+        now->type = laid.annotation.type;
+        now->points = std::move(laid.annotation.points);
+        now->polylines = std::move(laid.annotation.polylines);
+        now->faces = std::move(laid.annotation.faces);
+        now->curves = std::move(laid.annotation.curves);
+        now->note = std::move(laid.annotation.note);
+    }
+    return notes;
+}
+
+}  // namespace ostraka

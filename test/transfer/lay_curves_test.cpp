@@ -1,0 +1,158 @@
+// Free annotations on other meshes.
+#include "ostraka/transfer/lay_curves.h"
+#include "meshes.h"
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/annotation/curves.h"
+#include "ostraka/annotation/fair_outlines.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/synthetic/make_mesh.h"
+#include "ostraka/transfer/bound_mesh.h"
+#include "ostraka/transfer/transfer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+Mesh made(const std::string& object, std::size_t vertices, std::uint64_t seed) {
+    MakeOptions options;
+    options.vertices = vertices;
+    options.seed = seed;
+    return make_mesh(synthetic_object(object), options).mesh;
+}
+
+/// The mesh parted along a direction into `count` slabs with fair outlines.
+AnnotationSet slabs(const Mesh& mesh, const Vector& direction, int count) {
+    double low = 1e300, high = -1e300;
+    for (const Vertex v : mesh.vertices()) {
+        const double height = (mesh.point(v) - CGAL::ORIGIN) * direction;
+        low = std::min(low, height), high = std::max(high, height);
+    }
+    AnnotationSet set;
+    set.annotations.resize(static_cast<std::size_t>(count));
+    for (const Face f : mesh.faces()) {
+        const double share = ((centroid(mesh, f) - CGAL::ORIGIN) * direction - low) / (high - low);
+        set.annotations[static_cast<std::size_t>(std::clamp(static_cast<int>(count * share), 0, count - 1))].faces.push_back(f);
+    }
+    for (int i = 0; i < count; ++i) {
+        set.annotations[static_cast<std::size_t>(i)].id = i;
+        set.annotations[static_cast<std::size_t>(i)].tag = "slab " + std::to_string(i);
+    }
+    fair_outlines(mesh, set, {});
+    return set;
+}
+
+double area_sum(const Mesh& mesh, const AnnotationSet& set) {
+    double sum = 0;
+    for (const Annotation& one : set.annotations) sum += area_of(mesh, one);
+    return sum;
+}
+
+}  // namespace
+
+TEST(LayCurves, ThereAndBackIsTheSameCurve) {
+    const Mesh coarse = made("teapot", 2500, 1), fine = made("teapot", 20000, 2);
+    const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 4);
+    const SurfaceSearch on_fine(fine), on_coarse(coarse);
+    const TransferResult there = transfer(coarse, set, on_fine);
+    const TransferResult back = transfer(fine, there.annotations, on_coarse);
+    check_annotations(there.annotations, fine, "there");
+    for (const Annotation& one : set.annotations) {
+        ASSERT_TRUE(is_free(one));
+        const Annotation *moved = there.annotations.find(one.id), *again = back.annotations.find(one.id);
+        ASSERT_TRUE(moved != nullptr && again != nullptr && is_free(*moved) && is_free(*again));
+        const RegionMeasures a = measure_region(coarse, one), b = measure_region(coarse, *again);
+        EXPECT_NEAR(b.area / a.area, 1, 2e-4) << one.tag;
+        EXPECT_NEAR(b.perimeter / a.perimeter, 1, 1e-3) << one.tag;
+    }
+    for (const TransferResult* result : {&there, &back})
+        for (const TransferScore& score : result->scores) {
+            EXPECT_EQ(score.outcome, TransferOutcome::kept);
+            ASSERT_TRUE(score.overlap);
+            EXPECT_GT(*score.overlap, 0.99) << score.tag;
+        }
+}
+
+TEST(LayCurves, APartitionStaysOne) {
+    const Mesh coarse = made("statuette", 3000, 1), fine = made("statuette", 12000, 5);
+    const AnnotationSet set = slabs(fine, Vector(0.6, 0.64, 0.48), 5);
+    ASSERT_NEAR(area_sum(fine, set) / surface_area(fine), 1, 1e-9);
+    const SurfaceSearch on_coarse(coarse);
+    const TransferResult there = transfer(fine, set, on_coarse);
+    EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-6);
+    // On the cut mesh no piece of any size is in two regions or in none.
+    const CutMesh cut = cut_along_curves(coarse, there.annotations);
+    std::vector<int> holders(cut.mesh.number_of_faces(), 0);
+    for (const Annotation& one : cut.annotations.annotations)
+        for (const Index f : one.faces) ++holders[f];
+    double wrong = 0;
+    for (const Face f : cut.mesh.faces())
+        if (holders[f] != 1) wrong += face_area(cut.mesh, f);
+    EXPECT_LT(wrong / surface_area(coarse), 1e-6);
+}
+
+TEST(LayCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
+    const Mesh coarse = made("teapot", 1500, 1), fine = made("teapot", 6000, 2);
+    AnnotationSet set;
+    set.annotations.resize(1);
+    set.annotations[0].tag = "top";
+    for (const Face f : coarse.faces())
+        if (centroid(coarse, f).z() > 30) set.annotations[0].faces.push_back(f);
+    const SurfaceSearch on_fine(fine);
+    TransferOptions options;
+    EXPECT_FALSE(is_free(transfer(coarse, set, on_fine, options).annotations.annotations.at(0)));
+    options.outlines = TransferOptions::Outlines::free;
+    const TransferResult free = transfer(coarse, set, on_fine, options);
+    EXPECT_TRUE(is_free(free.annotations.annotations.at(0)));
+    EXPECT_NEAR(free.scores.at(0).target_length / free.scores.at(0).source_length, 1, 0.03);
+    options.outlines = TransferOptions::Outlines::edges;
+    EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));
+}
+
+TEST(LayCurves, FollowsSimplificationAndRefinement) {
+    const Mesh mesh = made("teapot", 6000, 1);
+    const AnnotationSet set = slabs(mesh, Vector(0.3, 0.2, 0.93), 3);
+    MeshFile file;
+    file.mesh = mesh;
+    BoundMesh bound(std::move(file), set);
+    RefineOptions refining;
+    refining.levels = 1;
+    bound.refine(refining);
+    // Cutting faces into four does not change the surface: nor the curves.
+    for (const Annotation& one : bound.annotations->annotations) {
+        const RegionMeasures before = measure_region(mesh, *set.find(one.id)), after = measure_region(bound.mesh, one);
+        EXPECT_NEAR(after.area / before.area, 1, 1e-6);
+        EXPECT_NEAR(after.perimeter / before.perimeter, 1, 1e-4);
+    }
+    SimplifyOptions simplifying;
+    simplifying.vertices = 3000;
+    bound.simplify(simplifying);
+    check_annotations(*bound.annotations, bound.mesh, "simplified");
+    EXPECT_NEAR(area_sum(bound.mesh, *bound.annotations) / surface_area(bound.mesh), 1, 1e-6);
+    for (const Annotation& one : bound.annotations->annotations) {
+        const RegionMeasures before = measure_region(mesh, *set.find(one.id)), after = measure_region(bound.mesh, one);
+        EXPECT_NEAR(after.perimeter / before.perimeter, 1, 0.02);
+    }
+}
+
+TEST(LayCurves, SameToTheBitForAnyNumberOfThreads) {
+    const Mesh coarse = made("statuette", 2000, 1), fine = made("statuette", 8000, 5);
+    const AnnotationSet set = slabs(coarse, Vector(0, 0.6, 0.8), 3);
+    const SurfaceSearch search(fine);
+    const int before = threads();
+    std::vector<std::vector<std::vector<SurfacePlace>>> curves;
+    for (const int count : {1, 2, 3}) {
+        set_threads(count);
+        const TransferResult there = transfer(coarse, set, search);
+        curves.emplace_back();
+        for (const Annotation& one : there.annotations.annotations)
+            for (const auto& curve : one.curves) curves.back().push_back(curve);
+    }
+    set_threads(before);
+    EXPECT_EQ(curves[0], curves[1]);
+    EXPECT_EQ(curves[0], curves[2]);
+}
