@@ -102,7 +102,8 @@ void check_attributes(const Annotation& annotation, const Mesh& mesh, const std:
     }
 }
 
-void check_selection(const Annotation& annotation, const Mesh& mesh, const std::string& where, const std::string& at) {
+void check_selection(const Annotation& annotation, const Mesh& mesh, const std::string& where, const std::string& at,
+                     bool settled) {
     const auto misplaced = [&](const char* member, const char* type) {
         fail(where, at, "an annotation of type " + to_string(annotation.type) + " has " + member,
              std::string("use it with the type ") + type);
@@ -126,15 +127,15 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
         if (i > 0 && annotation.faces[i] <= annotation.faces[i - 1])
             fail(where, at + "/faces/" + to_string(i), "the faces are not in ascending order without repeats", "sort them");
     }
-    if (is_free(annotation)) {
+    if (is_free(annotation) && !settled) {
         if (annotation.all) fail(where, at, "the whole mesh has curves", "drop them or the mark \"all\"");
-        Annotation settled = annotation;
+        Annotation again = annotation;
         try {
-            settle_elements(mesh, settled);
+            settle_elements(mesh, again);
         } catch (const Error& error) {
             fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());
         }
-        if (settled.points != annotation.points || settled.polylines != annotation.polylines || settled.faces != annotation.faces)
+        if (again.points != annotation.points || again.polylines != annotation.polylines || again.faces != annotation.faces)
             throw Error(ErrorKind::failure, where, "at " + at + ": its curves and its elements do not say the same",
                         "give it elements by its curves, or take the curves away");
     }
@@ -147,7 +148,7 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
 
 }  // namespace
 
-void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
+void places::check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled) {
     if (mesh.has_garbage()) fail_work(where, "the mesh has removed elements", "collect the mesh's garbage first");
     if (set.up) {
         const auto& [x, y, z] = *set.up;
@@ -163,9 +164,13 @@ void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::st
         for (const int part : annotation.colour)
             if (part < 0 || part > 255)
                 fail(where, at + "/colour", "the colour part " + to_string(part) + " is not within 0 to 255", "mend it");
-        check_selection(annotation, mesh, where, at);
+        check_selection(annotation, mesh, where, at, settled);
         check_attributes(annotation, mesh, where, at);
     }
+}
+
+void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
+    places::check_set(set, mesh, where, false);
 }
 
 }  // namespace ostraka

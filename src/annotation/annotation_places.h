@@ -14,6 +14,8 @@ void check_vertex(const Mesh& mesh, Index vertex, const std::string& where, cons
 void check_vertices(const Mesh& mesh, const std::vector<Index>& vertices, const std::string& where, const std::string& pointer);
 void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer);
 void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer);
+/// As check_annotations; `settled`: the elements of free annotations were found from their curves just now.
+void check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled);
 }  // namespace places
 
 /// Turns a prototype document (types Area, Line, Point; key color; flat attributes) into the thesis's form; adds to `notes` what

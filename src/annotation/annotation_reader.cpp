@@ -354,7 +354,7 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
     for (const auto& annotation : list_in(document, "annotations"))
         set.annotations.push_back(
             annotation_of(annotation, mesh, where, "/annotations/" + to_string(set.annotations.size()), set.notes));
-    check_annotations(set, mesh, where);
+    places::check_set(set, mesh, where, true);
     return set;
 }
 

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/geom/insert_curves.h"
 
 #include <algorithm>
@@ -233,7 +234,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
     cut.old_vertices = mesh.number_of_vertices();
     cut.more_paths.assign(inserted.paths.begin() + static_cast<std::ptrdiff_t>(first.back()), inserted.paths.end());
     cut.annotations = set;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+    const auto carry = [&](std::size_t i) {
         const Annotation& from = set.annotations[i];
         Annotation& to = cut.annotations.annotations[i];
         to.curves.clear();
@@ -252,7 +253,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
                                                     curves.begin() + static_cast<std::ptrdiff_t>(first[i + 1]));
                 to.faces = faces_on_cut(mesh, from, own, paths, cut);
             }
-            continue;
+            return;
         }
         if (from.type == AnnotationType::region) {
             const std::vector<bool> selected = face_flags(mesh, from.faces);
@@ -276,7 +277,8 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
             }
             to.polylines[k] = std::move(path);
         }
-    }
+    };
+    parallel_for(set.annotations.size(), carry, 1);
     return cut;
 }
 

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
+#include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/polyline_distance.h"
 
 #include <Eigen/Dense>
@@ -35,6 +36,7 @@ struct Strand {
     std::vector<Vector> aside;  ///< at each of these the direction to the left on the surface
     Places after;               ///< on the surface
     double length = 0;
+    double limit = 0;    ///< how far from where it was it may run
     double room = 0.85;  ///< share of the distance that fairing may use: some is left for the shift that keeps areas
 };
 
@@ -46,9 +48,8 @@ struct Use {
 
 class Fairing {
 public:
-    Fairing(const Mesh& mesh, const FairOptions& options) : mesh_(mesh), search_(mesh), options_(options) {
-        limit_ = options.distance > 0 ? options.distance : 0.75 * mean_edge_length(mesh);
-    }
+    Fairing(const Mesh& mesh, const FairOptions& options)
+        : mesh_(mesh), search_(mesh), options_(options), mean_edge_(mean_edge_length(mesh)) {}
 
     std::vector<FairedAnnotation> run(std::vector<Annotation*> annotations) {
         std::vector<std::vector<Places>> curves;
@@ -73,14 +74,16 @@ public:
                 result[i].length_before = length_of(mesh_, one);
             }
         }
+        responses_.resize(annotations.size());
         // An outline that would cross itself is left as it was, with all that shares strands with it.
         for (int round = 0; round < 20; ++round) {
             if (!options_.let_area_change)
-                for (int k = 0; k < 4; ++k)
+                for (int k = 0; k < 12; ++k)
                     if (!keep_areas(annotations, area)) break;
+            for (Response& response : responses_) response.expected = 0;
             bool sound = true;
             for (Strand& strand : strands_) {  // what the shift or the surface took too far starts nearer
-                if (strand.fair.empty() || hausdorff_distance(segments(drawn(strand)), segments(strand.points)) <= limit_)
+                if (strand.fair.empty() || hausdorff_distance(segments(drawn(strand)), segments(strand.points)) <= strand.limit)
                     continue;
                 sound = false;
                 strand.room *= 0.85;
@@ -247,6 +250,8 @@ private:
         strand.fair.clear();
         for (std::size_t i = 1; i < strand.points.size(); ++i) strand.length += gap(strand.points[i - 1], strand.points[i]);
         if (strand.points.size() < (strand.closed ? 7U : 4U) || !(strand.length > 0)) return;
+        const double own_edge = strand.length / static_cast<double>(strand.points.size() - 1);
+        strand.limit = options_.distance > 0 ? options_.distance : std::max(own_edge, mean_edge_);
         const double step = strand.length / static_cast<double>(strand.points.size() - 1);
         const auto count = static_cast<std::size_t>(std::clamp(std::ceil(2 * strand.length / step), 8.0, 100000.0));
         const std::vector<Point> start = resampled(strand, count);
@@ -291,7 +296,7 @@ private:
         };
         const Segments before = segments(strand.points);
         const auto near = [&](const std::vector<Point>& points) {
-            return hausdorff_distance(segments(points), before) <= strand.room * limit_;
+            return hausdorff_distance(segments(points), before) <= strand.room * strand.limit;
         };
         double low = -2, high = 7;  // of the logarithm
         std::vector<Point> best = solved(std::pow(10, low));
@@ -331,7 +336,9 @@ private:
             const double apart = gap(nodes[i].point, nodes[i + 1].point);
             const Vector up =
                 search_.normal(faces_of(mesh_, nodes[i]).front()) + search_.normal(faces_of(mesh_, nodes[i + 1]).front());
-            const auto line = trace_line(mesh_, nodes[i], nodes[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
+            auto line = trace_line(mesh_, nodes[i], nodes[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
+            if (!line) line = geodesic_curve(mesh_, nodes[i], nodes[i + 1]);  // a step over a fold
+            if (line && line->length() > 4 * apart + 1e-9 * search_.diagonal()) line.reset();
             if (!line) return leave(strand);
             for (std::size_t k = 1; k < line->nodes.size(); ++k)
                 if (const SurfacePlace place = place_of(mesh_, line->nodes[k]); place != places.back()) places.push_back(place);
@@ -369,37 +376,47 @@ private:
             }
         if (movable.empty()) return false;
         std::vector<std::pair<std::size_t, double>> lacks;
+        bool kept = true;
         for (std::size_t i = 0; i < annotations.size(); ++i) {
-            if (annotations[i]->type != AnnotationType::region) continue;
+            if (!is_region(*annotations[i])) continue;
             Annotation now = *annotations[i];
             now.curves = curves_now(i);
             const CurveFilling filling = fill_curves(mesh_, curves_on(mesh_, now));
-            if (filling.conflicts == 0 && std::abs(filling.area(mesh_) - area[i]) < 0.2 * area[i])
-                lacks.emplace_back(i, area[i] - filling.area(mesh_));
+            const double lack = area[i] - filling.area(mesh_);
+            if (filling.conflicts > 0 || std::abs(lack) > 0.5 * area[i]) continue;
+            kept = kept && std::abs(lack) <= 1e-6 * area[i];
+            Response& response = responses_[i];
+            // On a bumpy surface a shift changes the area by more than length times shift: as it was seen to.
+            if (response.expected != 0) response.gain = std::clamp((response.lack - lack) / response.expected, 0.3, 4.0);
+            response.lack = lack;
+            lacks.emplace_back(i, lack);
         }
-        if (lacks.empty()) return false;
+        if (kept) return false;
         // Each region's area changes by the length of its strands times their shift; the least shifts that do it.
-        Eigen::MatrixXd slopes =
-            Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(lacks.size()), static_cast<Eigen::Index>(movable.size()));
-        Eigen::VectorXd wanted(static_cast<Eigen::Index>(lacks.size()));
-        for (std::size_t r = 0; r < lacks.size(); ++r) {
-            wanted[static_cast<Eigen::Index>(r)] = lacks[r].second;
-            for (const auto& uses : uses_[lacks[r].first])
+        const auto rows = static_cast<Eigen::Index>(lacks.size());
+        Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(movable.size()));
+        Eigen::VectorXd wanted(rows);
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            const auto& [region, lack] = lacks[static_cast<std::size_t>(r)];
+            wanted[r] = lack / responses_[region].gain;
+            for (const auto& uses : uses_[region])
                 for (const Use& use : uses)
                     if (const auto at = column.find(use.strand); at != column.end())
-                        slopes(static_cast<Eigen::Index>(r), at->second) +=
-                            (use.backwards ? 1 : -1) * length_now(strands_[use.strand]);
+                        slopes(r, at->second) += (use.backwards ? 1 : -1) * length_now(strands_[use.strand]);
         }
-        const Eigen::VectorXd shift = slopes.completeOrthogonalDecomposition().solve(wanted);
+        Eigen::VectorXd shift = slopes.completeOrthogonalDecomposition().solve(wanted);
         for (std::size_t c = 0; c < movable.size(); ++c) {
             Strand& strand = strands_[movable[c]];
-            const double by = std::clamp(shift[static_cast<Eigen::Index>(c)], -0.1 * limit_, 0.1 * limit_);
+            double& by = shift[static_cast<Eigen::Index>(c)];
+            by = std::clamp(by, -0.1 * strand.limit, 0.1 * strand.limit);
             const std::size_t n = strand.fair.size();
             for (std::size_t i = strand.closed ? 0 : 1; i < (strand.closed ? n : n - 1); ++i)
                 strand.fair[i] = strand.fair[i] + by * strand.aside[i];
             if (strand.closed) strand.fair.back() = strand.fair.front();
             draw(strand);
         }
+        const Eigen::VectorXd expected = slopes * shift;
+        for (Eigen::Index r = 0; r < rows; ++r) responses_[lacks[static_cast<std::size_t>(r)].first].expected = expected[r];
         return true;
     }
 
@@ -419,10 +436,15 @@ private:
     const Mesh& mesh_;
     SurfaceSearch search_;
     const FairOptions& options_;
-    double limit_ = 0;
+    double mean_edge_;
     std::array<std::set<SurfacePlace>, 2> junctions_;  ///< of lines, of outlines
     std::array<std::map<Places, std::size_t>, 2> known_;
     std::vector<Strand> strands_;
+    /// What a region's area did when its strands were last shifted.
+    struct Response {
+        double lack = 0, expected = 0, gain = 1;
+    };
+    std::vector<Response> responses_;
     std::vector<std::vector<std::vector<Use>>> uses_;  ///< of each annotation, by curve
 };
 
@@ -446,7 +468,7 @@ std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set
 }
 
 void FairOptions::describe(OptionList& visit) {
-    visit("distance", distance, "how far from where it was a curve may run; 0: three quarters of the mean edge length",
+    visit("distance", distance, "how far from where it was a curve may run; 0: the mean edge length, of the mesh or along it",
           Range{0, 1e60}, "unit of the mesh");
     visit("let-area-change", let_area_change, "do not shift the curves so that each region keeps its area");
 }

@@ -77,22 +77,32 @@ struct DescriptorSearch::Cache {
         return box;
     }
 
-    /// The mesh cut along the curves of the free annotation asked for last, and what is asked of it there.
+    /// The mesh cut along the curves of free annotations, and what is asked of them there.
     struct Cut {
-        Annotation annotation;
+        AnnotationSet given;
         CutMesh object;
         std::unique_ptr<DescriptorSearch> search;
-        [[nodiscard]] const Annotation& plain() const { return object.annotations.annotations.front(); }
+        /// An annotation along the edges of the cut mesh; null if it is not cut along that one.
+        [[nodiscard]] const Annotation* plain(const Annotation& annotation) const {
+            const Annotation* known = given.find(annotation.id);
+            if (known == nullptr || known->curves != annotation.curves || known->faces != annotation.faces) return nullptr;
+            return object.annotations.find(annotation.id);
+        }
     };
     const Cut& cut_of(const Mesh& mesh, const Annotation& annotation) {
-        if (!cut || cut->annotation.curves != annotation.curves || cut->annotation.faces != annotation.faces) {
-            AnnotationSet alone;
-            alone.annotations.push_back(annotation);
-            cut = std::make_unique<Cut>(Cut{annotation, cut_along_curves(mesh, alone), nullptr});
-            cut->search = std::make_unique<DescriptorSearch>(cut->object.mesh);
-        }
+        if (cut && cut->plain(annotation) != nullptr) return *cut;
+        AnnotationSet given;
+        given.annotations = std::move(expected);
+        expected.clear();
+        const Annotation* known = given.find(annotation.id);
+        if (known == nullptr || known->curves != annotation.curves || known->faces != annotation.faces)
+            given.annotations = {annotation};
+        CutMesh object = cut_along_curves(mesh, given);
+        cut = std::make_unique<Cut>(Cut{std::move(given), std::move(object), nullptr});
+        cut->search = std::make_unique<DescriptorSearch>(cut->object.mesh);
         return *cut;
     }
+    std::vector<Annotation> expected;  ///< free ones that will be asked for: cut along all at once
 
 private:
     std::vector<Index> boxed_faces;
@@ -105,6 +115,14 @@ DescriptorSearch::DescriptorSearch(const Mesh& mesh, DescriptorOptions options)
     check_options(options_, "descriptors");
 }
 DescriptorSearch::~DescriptorSearch() = default;
+
+void DescriptorSearch::expect(const AnnotationSet& set) {
+    for (const Annotation& annotation : set.annotations) {
+        if (!is_free(annotation)) continue;
+        cache_->expected.push_back(annotation);
+        cache_->expected.back().attributes.clear();
+    }
+}
 
 const Curvature& DescriptorSearch::curvature() {
     if (!cache_->curvature) cache_->curvature = ostraka::curvature(mesh_, options_.curvature_options);
@@ -127,7 +145,7 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
         const auto known = std::find(region_quantities().begin(), region_quantities().end(), name);
         if (known == region_quantities().end()) return std::nullopt;
         const Cache::Cut& cut = cache_->cut_of(mesh_, annotation);
-        return cut.search->find(cut.plain(), name);
+        return cut.search->find(*cut.plain(annotation), name);
     }
     if (faces.empty()) return std::nullopt;
     if (name == "volume") return number(name, region_solid(mesh_, faces).volume, 3);
@@ -156,7 +174,7 @@ std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, c
     // A free annotation is described on the mesh cut along its curves, with the values of the mesh as it is.
     const Cache::Cut* cut = is_free(annotation) ? &cache_->cut_of(mesh_, annotation) : nullptr;
     const Mesh& mesh = cut == nullptr ? mesh_ : cut->object.mesh;
-    const Annotation& plain = cut == nullptr ? annotation : cut->plain();
+    const Annotation& plain = cut == nullptr ? annotation : *cut->plain(annotation);
     const std::vector<Index> vertices = touched_vertices(mesh, plain);
     if (vertices.empty()) fail_input(who, "has no elements to describe", "select some first");
     const bool region = annotation.type == AnnotationType::region;

@@ -354,6 +354,7 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
     RefreshResult result;
     Evaluator evaluator(mesh);
     DescriptorSearch descriptors(mesh);
+    descriptors.expect(set);
     const auto stays_stale = [&](bool& mark, const Annotation& annotation, const Attribute& attribute, const std::string& why) {
         mark = true;
         ++result.stale;

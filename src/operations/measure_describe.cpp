@@ -28,6 +28,7 @@ struct MeasureDescribe final : Operation {
         if (!object.annotations && chosen.empty())
             report.note("the whole object is described; --annotations FILE describes its parts");
         DescriptorSearch search(mesh, options);
+        search.expect(set);
         report.empty_table("annotations");
         report.empty_table("");
         for (Annotation* annotation : selected(set)) {

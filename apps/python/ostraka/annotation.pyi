@@ -121,6 +121,7 @@ def select(
     tag: Text | None = None,
     id: int | None = None,
     type: Literal["point", "line", "region"] | None = None,
+    outline: Literal["edges", "free"] | None = None,
     colour: int | Sequence[int] | None = None,
     action: Literal["make", "add to", "remove from", "replace", "delete", "retag"] | None = 'make',
     class_: Text | None = None,
@@ -183,6 +184,21 @@ def segment(
 ) -> _SegmentResult:
     """Cut a mesh into parts of like thickness, each an annotation."""
 
+class _SmoothResult(Result):
+    output: Annotations | Path | None
+def smooth(
+    mesh: MeshLike,
+    annotations: AnnotationsLike,
+    output: FileName | bool | None = None,
+    *,
+    force_mesh: bool | None = False,
+    annotation: Text | Sequence[Text] | None = None,
+    distance: float | None = 0.0,
+    let_area_change: bool | None = False,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _SmoothResult:
+    """Outlines and lines without the steps of the edges: fair curves through the faces."""
+
 class _TransferResult(Result):
     output: Annotations | Path | None
     back: Annotations | Path | None
@@ -205,6 +221,7 @@ def transfer(
     vertex: Literal["projection", "source"] | None = 'projection',
     metric: Literal["euclidean", "segment", "combined"] | None = 'euclidean',
     spikes: Literal["prune", "avoid", "keep"] | None = 'prune',
+    outlines: Literal["kept", "free", "edges"] | None = 'kept',
     rounding: Literal["path", "area", "balanced"] | None = 'balanced',
     cover: Literal["overlapping", "enclosing", "enclosed"] | None = 'overlapping',
     refine: bool | None = False,

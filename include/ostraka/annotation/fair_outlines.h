@@ -10,7 +10,7 @@
 namespace ostraka {
 
 struct FairOptions {
-    double distance = 0;  ///< in the mesh's unit; 0: three quarters of the mean edge length
+    double distance = 0;  ///< in the mesh's unit; 0: the mean edge length, of the mesh or along the curve where that is more
     bool let_area_change = false;
 
     void describe(OptionList& visit);

@@ -48,6 +48,9 @@ public:
     DescriptorSearch(const DescriptorSearch&) = delete;
     DescriptorSearch& operator=(const DescriptorSearch&) = delete;
 
+    /// Annotations that will be asked for: free ones share one mesh, cut along the curves of all.
+    void expect(const AnnotationSet& set);
+
     /// One quantity by its name; nothing if the name is not known or has no meaning for this type of annotation. Known are, of
     /// regions: area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid
     /// centroid, box sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian
