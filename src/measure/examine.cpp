@@ -117,7 +117,10 @@ private:
     }
 
     void region(const Annotation& annotation, const std::string& at) {
-        if (is_free(annotation)) return;  // its outlines bound it, or it could not be read
+        if (is_free(annotation)) {
+            if (!(area_of(mesh_, annotation) > 0)) defect(at, "its outlines enclose nothing" + because(annotation));
+            return;
+        }
         if (annotation.faces.empty()) defect(at, "there are no faces" + because(annotation));
         const std::size_t patches = count_patches(mesh_, annotation.faces);
         if (patches > 1) remark(at, "the region has " + to_string(patches) + " separate patches");
