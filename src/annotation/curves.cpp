@@ -1,5 +1,7 @@
 #include "ostraka/annotation/curves.h"
 
+#include "annotation_places.h"
+
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
@@ -321,6 +323,27 @@ std::vector<SurfacePlace> without_needless(const Mesh& mesh, std::vector<Surface
 
 }  // namespace
 
+std::vector<std::vector<Index>> outline_paths(const Mesh& mesh, const std::vector<Index>& faces) {
+    std::vector<std::vector<Index>> paths;
+    for (const Outline& outline : extract_outlines(mesh, faces)) {
+        const std::size_t n = outline.size();
+        std::vector<bool> border(n);
+        for (std::size_t i = 0; i < n; ++i)
+            border[i] = mesh.is_border(mesh.opposite(find_halfedge(mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
+        if (std::none_of(border.begin(), border.end(), [](bool b) { return b; })) {
+            paths.push_back(outline);
+            paths.back().push_back(outline.front());
+            continue;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            if (border[i] || !border[(i + n - 1) % n]) continue;
+            std::vector<Index>& run = paths.emplace_back(1, outline[i]);
+            for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
+        }
+    }
+    return paths;
+}
+
 void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     annotation.curves.clear();
     bool free = false;
@@ -348,26 +371,7 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     } else if (annotation.type == AnnotationType::line) {
         for (const auto& line : annotation.polylines) add(line);
     } else {
-        for (const Outline& outline : extract_outlines(cut.mesh, annotation.faces)) {
-            // Along the border of the mesh there is nothing to say.
-            const std::size_t n = outline.size();
-            std::vector<bool> border(n);
-            for (std::size_t i = 0; i < n; ++i)
-                border[i] = cut.mesh.is_border(
-                    cut.mesh.opposite(find_halfedge(cut.mesh, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
-            if (std::none_of(border.begin(), border.end(), [](bool b) { return b; })) {
-                std::vector<Index> loop = outline;
-                loop.push_back(outline.front());
-                add(loop);
-                continue;
-            }
-            for (std::size_t i = 0; i < n; ++i) {
-                if (border[i] || !border[(i + n - 1) % n]) continue;
-                std::vector<Index> run{outline[i]};
-                for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
-                add(run);
-            }
-        }
+        for (const auto& path : outline_paths(cut.mesh, annotation.faces)) add(path);
         std::vector<Index> old;
         for (const Index f : annotation.faces) old.push_back(cut.face_origin[f]);
         old.erase(std::unique(old.begin(), old.end()), old.end());

@@ -1,5 +1,7 @@
 #include "ostraka/annotation/fair_outlines.h"
 
+#include "annotation_places.h"
+
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/geodesic.h"
@@ -135,28 +137,7 @@ private:
         };
         for (const auto& line : annotation.polylines) add(line);
         if (annotation.type == AnnotationType::region)
-            for (Outline outline : extract_outlines(mesh_, annotation.faces)) {
-                // Runs along the border of the mesh are no part of a free outline.
-                const std::size_t n = outline.size();
-                std::vector<bool> border(n);
-                bool any = false;
-                for (std::size_t i = 0; i < n; ++i) {
-                    border[i] =
-                        mesh_.is_border(mesh_.opposite(find_halfedge(mesh_, Vertex(outline[i]), Vertex(outline[(i + 1) % n]))));
-                    any = any || border[i];
-                }
-                if (!any) {
-                    outline.push_back(outline.front());
-                    add(outline);
-                    continue;
-                }
-                for (std::size_t i = 0; i < n; ++i) {
-                    if (border[i] || !border[(i + n - 1) % n]) continue;
-                    std::vector<Index> run{outline[i]};
-                    for (std::size_t k = i; !border[k % n]; ++k) run.push_back(outline[(k + 1) % n]);
-                    add(run);
-                }
-            }
+            for (const auto& path : outline_paths(mesh_, annotation.faces)) add(path);
         return curves;
     }
 

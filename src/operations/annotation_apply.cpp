@@ -79,9 +79,13 @@ struct AnnotationPictures {
         p.output_option("labels-out", Kind::labels, labels,
                         "write one label a face: the id of the smallest region on it, -1 for none");
     }
-    void write(const Mesh& mesh, const AnnotationSet& set) const {
+    void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
         if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
-        if (labels) write_labels(labels.path(), labels_of(mesh, set));
+        if (!labels) return;
+        const FaceLabels found = face_labels(mesh, set);
+        write_labels(labels.path(), found.of_face);
+        if (found.lost > 0)
+            report.note(number(100 * found.lost, 3) + " % of the area has another label than its face: free outlines cut faces");
     }
 };
 
@@ -118,7 +122,7 @@ struct AnnotationApply final : Operation {
         const AnnotationSet set = is_document(recipe) ? follow(context, file) : from_labels(context, file);
         if (known != nullptr) require_vocabulary(set, *known, recipe ? recipe.file() : mesh.file(), words);
         output.write(set, file.mesh, mesh.file());
-        pictures.write(file.mesh, set);
+        pictures.write(file.mesh, set, report);
         report_annotations(context, report, file.mesh, set);
     }
 
@@ -206,7 +210,7 @@ struct AnnotationRemap final : Operation {
         for (auto& note : lay_free_annotations(source, set, target, moved)) moved.notes.push_back(std::move(note));
         for (const auto& note : refresh_measures(target, moved).notes) moved.notes.push_back(note);
         write_annotations(output.path(), moved, target, after.file(), context.provenance());
-        pictures.write(target, moved);
+        pictures.write(target, moved, report);
         report_annotations(context, report, target, moved);
     }
 
