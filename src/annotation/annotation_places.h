@@ -18,8 +18,8 @@ void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, co
 void check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled);
 }  // namespace places
 
-/// The outlines of faces as paths of vertices: closed ones repeat their first; what runs along the border of the mesh is left out,
-/// and cuts its outline into open paths.
+/// The outlines of faces as paths of vertices: closed ones repeat their first; what runs along the border of the mesh is left
+/// out, and cuts its outline into open paths.
 std::vector<std::vector<Index>> outline_paths(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// Turns a prototype document (types Area, Line, Point; key color; flat attributes) into the thesis's form; adds to `notes` what
