@@ -25,7 +25,12 @@ struct AnnotationSmooth final : Operation {
         AnnotationSet set = annotations.on(on);
         report.set_unit(set.unit);
         std::vector<int> ids;
-        for (const std::string& name : names) ids.push_back(find_annotation(set, name, annotations.file()).id);
+        for (const std::string& name : names) {
+            const Annotation& one = find_annotation(set, name, annotations.file());
+            ids.push_back(one.id);
+            if (one.type == AnnotationType::point || one.all)
+                report.note(name_of(one) + " has no outline and no line: it stays as it is");
+        }
         report.empty_table("annotations");
         for (const FairedAnnotation& one : in_file(annotations.file(), [&] { return fair_outlines(on, set, ids, options); }))
             report.row("annotations")("id", one.id)("tag", set.find(one.id)->tag)("length_before", one.length_before)(
