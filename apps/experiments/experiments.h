@@ -47,6 +47,8 @@ void table_4_1(const Table41Options& options);
 /// Figure 4.6: a region made plane, and what else moves.
 struct Figure46Options {
     std::string mesh, annotations, cage, region, output = "experiments-output/figure-4-6";
+    std::vector<std::string> kinds{"mean-value"};
+    int nodes = 20000;
 };
 void figure_4_6(const Figure46Options& options);
 

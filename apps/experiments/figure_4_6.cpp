@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 
 namespace ostraka::experiments {
 
@@ -23,18 +24,35 @@ struct Case {
     PlaneProblem problem;
     bool cage;
     int iterations;  ///< 0: until nothing moves
+    std::string kind = "mean-value";
 };
 
-const std::vector<Case> cases{{"mesh-2", "mesh, 2 iterations", {"closeness"}, false, 2},
-                              {"cage-2", "cage, 2 iterations", {"closeness"}, true, 2},
-                              {"mesh-converged", "mesh, converged", {"closeness"}, false, 0},
-                              {"cage-converged", "cage, converged", {"closeness"}, true, 0},
-                              {"mesh-strong-2", "plane of weight 100, mesh, 2 iterations", {"closeness", 1, 100}, false, 2},
-                              {"cage-strong-2", "plane of weight 100, cage, 2 iterations", {"closeness", 1, 100}, true, 2},
-                              {"mesh-strong-converged", "plane of weight 100, mesh, converged", {"closeness", 1, 100}, false, 0},
-                              {"cage-strong-converged", "plane of weight 100, cage, converged", {"closeness", 1, 100}, true, 0},
-                              {"mesh-alone-2", "plane alone, mesh, 2 iterations", {"nothing"}, false, 2},
-                              {"cage-alone-2", "plane alone, cage, 2 iterations", {"nothing"}, true, 2}};
+const std::vector<Case> all_cases{
+    {"mesh-2", "mesh, 2 iterations", {"closeness"}, false, 2},
+    {"cage-2", "cage, 2 iterations", {"closeness"}, true, 2},
+    {"mesh-converged", "mesh, converged", {"closeness"}, false, 0},
+    {"cage-converged", "cage, converged", {"closeness"}, true, 0},
+    {"mesh-strong-2", "plane of weight 100, mesh, 2 iterations", {"closeness", 1, 100}, false, 2},
+    {"cage-strong-2", "plane of weight 100, cage, 2 iterations", {"closeness", 1, 100}, true, 2},
+    {"mesh-strong-converged", "plane of weight 100, mesh, converged", {"closeness", 1, 100}, false, 0},
+    {"cage-strong-converged", "plane of weight 100, cage, converged", {"closeness", 1, 100}, true, 0},
+    {"mesh-alone-2", "plane alone, mesh, 2 iterations", {"nothing"}, false, 2},
+    {"cage-alone-2", "plane alone, cage, 2 iterations", {"nothing"}, true, 2}};
+
+/// Through the cage by each kind of coordinates.
+std::vector<Case> cases_of(const std::vector<std::string>& kinds) {
+    std::vector<Case> cases;
+    for (const Case& one : all_cases) {
+        if (!one.cage) cases.push_back(one);
+        for (const std::string& kind : kinds) {
+            if (!one.cage) break;
+            cases.push_back(one);
+            cases.back().kind = kind;
+            if (kinds.size() > 1) cases.back().name += "-" + kind, cases.back().about += ", " + kind;
+        }
+    }
+    return cases;
+}
 
 struct Solved {
     std::vector<double> moved;  ///< each vertex's way
@@ -65,7 +83,11 @@ void figure_4_6(const Figure46Options& options) {
     const AnnotationSet set = read_annotations(options.annotations, mesh);
     const std::vector<Index> region = touched_vertices(mesh, region_of(set, options.region, options.annotations));
     const Points rest = solver_points(mesh), cage_rest = solver_points(cage);
-    const CageWeights weights = compute_coordinates("mean-value", cage, mesh).vertex;
+    const std::vector<Case> cases = cases_of(options.kinds);
+    CoordinateOptions computing;
+    computing.nodes = static_cast<std::uint64_t>(options.nodes);
+    std::map<std::string, CageWeights> weights_of;
+    for (const std::string& kind : options.kinds) weights_of[kind] = compute_coordinates(kind, cage, mesh, computing).vertex;
     const double diagonal = box_diagonal(mesh), flat = flatness(rest, region);
 
     std::vector<Solved> solved;
@@ -73,6 +95,7 @@ void figure_4_6(const Figure46Options& options) {
         Solved result;
         auto constraints = plane_constraints(mesh, rest, region, one.problem);
         Points x = one.cage ? cage_rest : rest;
+        const CageWeights& weights = one.cage ? weights_of.at(one.kind) : weights_of.begin()->second;
         if (one.cage) result.summary = CageSpaceSolver(std::move(constraints), weights, cage_rest).solve(x, solving(one));
         else result.summary = MeshSpaceSolver(std::move(constraints), rest).solve(x, solving(one));
         result.points = one.cage ? ostraka::points_of(weights, x) : x;

@@ -58,6 +58,8 @@ void declare_figure_4_6(CLI::App& command, Figure46Options& options) {
     command.add_option("annotations", options.annotations, "its annotations")->required();
     command.add_option("cage", options.cage, "its cage")->required();
     command.add_option("region", options.region, "tag of the region that is to become plane")->required();
+    command.add_option("--kind", options.kinds, "coordinates of the cage, once for each")->capture_default_str();
+    command.add_option("--nodes", options.nodes, "of the tetrahedra inside the cage")->capture_default_str();
     command.add_option("--output", options.output, "folder to write to")->capture_default_str();
 }
 

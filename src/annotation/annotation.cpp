@@ -18,6 +18,24 @@ AnnotationSet& AnnotationSet::operator=(const AnnotationSet& other) {
     return *this;
 }
 
+bool Information::is_local() const {
+    return (kind == Kind::image || kind == Kind::file) && value.find("://") == std::string::npos && !value.starts_with("data:");
+}
+
+std::string to_string(Information::Kind kind) {
+    switch (kind) {
+        case Information::Kind::text:
+            return "text";
+        case Information::Kind::image:
+            return "image";
+        case Information::Kind::link:
+            return "link";
+        case Information::Kind::file:
+            break;
+    }
+    return "file";
+}
+
 std::string name_of(const Annotation& annotation) {
     return "annotation " + std::to_string(annotation.id) + " ('" + annotation.tag + "')";
 }

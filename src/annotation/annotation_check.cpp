@@ -5,6 +5,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/words.h"
 
 #include <cmath>
 #include <set>
@@ -171,6 +172,26 @@ void places::check_set(const AnnotationSet& set, const Mesh& mesh, const std::st
 
 void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where) {
     places::check_set(set, mesh, where, false);
+}
+
+std::vector<Finding> check_information(const AnnotationSet& set, const Path& folder) {
+    std::vector<Finding> findings;
+    for (std::size_t i = 0; i < set.annotations.size(); ++i)
+        for (std::size_t k = 0; k < set.annotations[i].information.size(); ++k) {
+            const Information& one = set.annotations[i].information[k];
+            if (!one.is_local()) continue;
+            const std::string at = "/annotations/" + std::to_string(i) + "/information/" + std::to_string(k);
+            const Path given(one.value), file = given.is_absolute() ? given : folder / given;
+            const auto add = [&](bool defect, const std::string& what) {
+                findings.push_back({defect, at,
+                                    name_of(set.annotations[i]) + " refers to the " + to_string(one.kind) + " '" +
+                                        printable(one.value, 60) + "', " + what});
+            };
+            if (!file_exists(file)) add(true, "which is not there");
+            else if (one.sha256.empty()) add(false, "whose checksum is not known");
+            else if (sha256_of_file(file) != one.sha256) add(true, "which has changed since (its checksum differs)");
+        }
+    return findings;
 }
 
 }  // namespace ostraka

@@ -240,11 +240,30 @@ bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& w
     return true;
 }
 
+std::vector<Information> information_of(JsonValue::ConstArray list, const std::string& where, const std::string& at,
+                                        std::vector<std::string>& notes) {
+    std::vector<Information> result;
+    for (const JsonValue& object : list) {
+        const std::string here = at + '/' + to_string(result.size());
+        note_unknown(object, {"kind", "value", "title", "sha256"}, here, notes);
+        Information& one = result.emplace_back();
+        const std::string kind = text_in(object, "kind");
+        for (const auto known :
+             {Information::Kind::text, Information::Kind::image, Information::Kind::link, Information::Kind::file})
+            if (ostraka::to_string(known) == kind) one.kind = known;
+        one.value = text_in(object, "value");
+        one.title = text_in(object, "title");
+        one.sha256 = text_in(object, "sha256");
+        if (!one.sha256.empty() && !one.is_local()) fail(where, here, "a checksum of what is no local file", "remove sha256");
+    }
+    return result;
+}
+
 Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at,
                          std::vector<std::string>& notes) {
     note_unknown(object,
                  {"id", "tag", "colour", "type", "points", "polylines", "boundaries", "faces", "seeds", "all", "curves", "note",
-                  "attributes"},
+                  "information", "attributes"},
                  at, notes);
     Annotation annotation;
     annotation.id = object["id"].GetInt();
@@ -255,6 +274,7 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
     const auto rest = [&] {
         annotation.note = text_in(object, "note");
         annotation.attributes = attributes_of(list_in(object, "attributes"), where, at + "/attributes", notes);
+        annotation.information = information_of(list_in(object, "information"), where, at + "/information", notes);
         return annotation;
     };
     const auto require = [&](const char* member) {
@@ -364,6 +384,11 @@ void ReadAnnotationsOptions::describe(OptionList& visit) {
 
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options) {
     return annotations_from_json(read_json(file), mesh, file.string(), options);
+}
+
+std::vector<Information> information_from_json(JsonValue::ConstArray list, const std::string& where, const std::string& pointer) {
+    std::vector<std::string> notes;
+    return information_of(list, where, pointer, notes);
 }
 
 }  // namespace ostraka

@@ -121,6 +121,13 @@ JsonValue json_of(const Annotation& annotation, const RegionParts& parts, JsonAl
         if (!parts.complete && !is_free(annotation)) add_members(object, allocator, "faces", annotation.faces);
     }
     add_given(object, allocator, "note", annotation.note);
+    if (!annotation.information.empty())
+        add_members(object, allocator, "information", json_list(annotation.information, allocator, [&](const Information& one) {
+                        JsonValue entry = json_object(allocator, "kind", to_string(one.kind), "value", one.value);
+                        add_given(entry, allocator, "title", one.title);
+                        add_given(entry, allocator, "sha256", one.sha256);
+                        return entry;
+                    }));
     add_members(object, allocator, "attributes",
                 json_list(annotation.attributes, allocator, [&](const Attribute& one) { return json_of(one, allocator); }));
     return object;

@@ -2,6 +2,7 @@
 #include "axis_methods.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/geom/submesh.h"
 
 // The library orders the edges of its working mesh by their addresses, so that its allocator decides the result. This one hands
 // out ascending addresses, whatever ran before.
@@ -13,7 +14,6 @@
 #pragma pop_macro("CGAL_ALLOCATOR")
 
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Random.h>
 
 #include <queue>
@@ -67,18 +67,9 @@ Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& c
     Mesh part;
     if (try_build_mesh(soup, part).any())
         fail_input("part", "touches itself at a vertex", "remove the faces that hang on by a vertex, or use --method slices");
-    std::vector<Halfedge> holes;
-    std::vector<bool> seen(part.number_of_halfedges(), false);
-    for (const Halfedge first : part.halfedges()) {
-        if (!part.is_border(first) || seen[first]) continue;
-        holes.push_back(first);
-        for (Halfedge h = first; !seen[h]; h = part.next(h)) seen[h] = true;
-    }
-    for (const Halfedge hole : holes) {
-        std::vector<Face> patch;
-        CGAL::Polygon_mesh_processing::triangulate_hole(part, hole, std::back_inserter(patch));
-        if (patch.empty()) fail_input("part", "has an opening that cannot be capped", "close it, or use --method slices");
-    }
+    for (const Halfedge hole : holes_of(part))
+        if (close_hole(part, hole) == 0)
+            fail_input("part", "has an opening that cannot be capped", "close it, or use --method slices");
     return part;
 }
 

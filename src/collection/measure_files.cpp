@@ -104,9 +104,11 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
 }
 
 std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
-                                        const ResultStore& store) {
-    return for_each_object(collection, store, {"measures", definitions.text}, [&](const CollectionObject& object) {
-        return object_measures_to_json(take_measures(object, definitions));
+                                        const ResultStore& store, const TagWords* words, const std::string& words_checksum) {
+    std::vector<std::string> what{"measures", definitions.text};
+    if (words != nullptr) what.push_back("words " + words_checksum);
+    return for_each_object(collection, store, what, [&](const CollectionObject& object) {
+        return object_measures_to_json(take_measures(object, definitions, words));
     });
 }
 

@@ -4,7 +4,6 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/submesh.h"
-#include "ostraka/io/mesh_file.h"
 #include "ostraka/stats/summary.h"
 
 #include <algorithm>
@@ -14,19 +13,19 @@ namespace ostraka {
 
 namespace {
 
-Mesh read_head(const CollectionObject& object, const std::vector<int>& leave_out) {
+Mesh read_head(const CollectionObject& object, const std::vector<int>& leave_out, const ObjectParts& parts) {
     const std::string where = object.mesh.empty() ? object.name : object.mesh.filename().string();
     if (object.mesh.empty()) fail_input(where, "there is no mesh", "heads are compared by their surfaces");
-    MeshFile file = read_mesh(object.mesh);
-    std::vector<bool> keep(file.mesh.number_of_faces(), true);
+    const ObjectPart part = parts.read(object);
+    std::vector<bool> keep(part.mesh.number_of_faces(), true);
     if (!leave_out.empty()) {
-        const auto& labels = file.extras.face_labels;
+        const auto& labels = part.face_labels;
         if (labels.size() != keep.size())
             fail_input(where, "its faces have no labels, by which parts could be left out", "write labels into the PLY file");
         for (std::size_t f = 0; f < keep.size(); ++f)
             keep[f] = std::find(leave_out.begin(), leave_out.end(), labels[f]) == leave_out.end();
     }
-    Mesh mesh = keep_faces(file.mesh, keep, true).mesh;
+    Mesh mesh = keep_faces(part.mesh, keep, true).mesh;
     if (mesh.number_of_faces() == 0) fail_input(where, "no face is left of it", "leave fewer parts out");
     return mesh;
 }
@@ -89,10 +88,11 @@ bool is_elsewhere(const std::vector<ObjectResult>& results) {
 }  // namespace
 
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
-                                      const std::vector<int>& leave_out, const ResultStore& store) {
+                                      const std::vector<int>& leave_out, const ResultStore& store, const ObjectParts& parts) {
     check_options(options, "moulds");
     std::string left_out = "without";
     for (const int label : leave_out) left_out += " " + std::to_string(label);
+    for (const std::string& one : parts.key()) left_out += ", " + one;
     PreparedCollection prepared;
     prepared.options = options;
     double& size = prepared.options.features.size;
@@ -100,7 +100,7 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
         const auto areas =
             for_each_object(collection, store.part("sizes"), {"mould size", left_out}, [&](const CollectionObject& object) {
                 Json result;
-                result.SetDouble(std::sqrt(surface_area(read_head(object, leave_out))));
+                result.SetDouble(std::sqrt(surface_area(read_head(object, leave_out, parts))));
                 return result;
             });
         if (is_elsewhere(areas)) {
@@ -115,7 +115,7 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
     std::vector<std::string> what{"mould features", left_out};
     for (const auto& [name, value] : list_options(prepared.options.features)) what.push_back(name + "=" + value);
     prepared.results = for_each_object(collection, store, what, [&](const CollectionObject& object) {
-        const Mesh mesh = read_head(object, leave_out);
+        const Mesh mesh = read_head(object, leave_out, parts);
         try {
             const PreparedHead head = prepare_head(mesh, prepared.options);
             Json result;
@@ -137,8 +137,9 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
         heads.size(),
         [&](std::size_t k) {
             const std::size_t i = prepared.objects[k];
-            heads[k].emplace(PreparedHead{from_json(prepared.results[i].result),
-                                          AlignSurface(read_head(collection.objects[i], leave_out), options.align.samples)});
+            heads[k].emplace(
+                PreparedHead{from_json(prepared.results[i].result),
+                             AlignSurface(read_head(collection.objects[i], leave_out, parts), options.align.samples)});
         },
         1);
     for (std::size_t k = 0; k < heads.size(); ++k) {

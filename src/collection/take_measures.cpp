@@ -38,8 +38,8 @@ std::pair<std::string, int> length_power(const std::string& unit) {
 /// The files of one object, read when they are needed.
 class Taker {
 public:
-    Taker(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks)
-        : mesh_(mesh), set_(set), landmarks_(landmarks) {}
+    Taker(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks, const TagWords* words)
+        : mesh_(mesh), set_(set), landmarks_(landmarks), words_(words) {}
 
     Taken take(const MeasureDefinition& definition) {
         if (!definition.attribute.empty()) return attribute(definition);
@@ -61,7 +61,10 @@ private:
             if (found != nullptr) throw Missing{"two annotations are called '" + tag + "'"};
             found = &annotation;
         }
-        return found;
+        if (found != nullptr || words_ == nullptr) return found;
+        const std::vector<std::size_t> meant = words_->find(*set_, tag);
+        if (meant.size() > 1) throw Missing{"several annotations are meant by '" + tag + "'"};
+        return meant.empty() ? nullptr : &set_->annotations[meant.front()];
     }
     const Annotation& require(const std::string& tag) const {
         if (set_ == nullptr) throw Missing{"there are no annotations"};
@@ -195,12 +198,13 @@ private:
     const Mesh* mesh_;
     const AnnotationSet* set_;
     const LandmarkSet* landmarks_;
+    const TagWords* words_;
 };
 
 ObjectMeasures take(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks,
-                    const MeasureDefinitions& definitions) {
+                    const MeasureDefinitions& definitions, const TagWords* words) {
     ObjectMeasures result;
-    Taker taker(mesh, set, landmarks);
+    Taker taker(mesh, set, landmarks, words);
     for (const MeasureDefinition& definition : definitions.list) {
         std::optional<double> value;
         int power = 1;
@@ -238,7 +242,7 @@ bool by_landmarks(const LandmarkSet& landmarks, const MeasureDefinitions& defini
 
 }  // namespace
 
-ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions) {
+ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions, const TagWords* words) {
     std::optional<LandmarkSet> landmarks;
     if (!object.landmarks.empty()) landmarks = read_landmarks(object.landmarks, LandmarkFormat::mrk);
     std::optional<MeshFile> file;
@@ -248,7 +252,7 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
         if (!object.annotations.empty()) set = read_annotations(object.annotations, file->mesh);
     }
     ObjectMeasures result =
-        take(file ? &file->mesh : nullptr, set ? &*set : nullptr, landmarks ? &*landmarks : nullptr, definitions);
+        take(file ? &file->mesh : nullptr, set ? &*set : nullptr, landmarks ? &*landmarks : nullptr, definitions, words);
     result.unit = !object.unit.empty() ? object.unit : set && !set->unit.empty() ? set->unit : landmarks ? landmarks->unit : "";
     if (std::none_of(result.values.begin(), result.values.end(), [](const auto& value) { return value.has_value(); }))
         fail_input(object.name, "no measure can be taken: " + result.notes.front(),
@@ -256,8 +260,9 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
     return result;
 }
 
-ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions) {
-    ObjectMeasures result = take(&mesh, &set, nullptr, definitions);
+ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
+                             const TagWords* words) {
+    ObjectMeasures result = take(&mesh, &set, nullptr, definitions, words);
     result.unit = set.unit;
     return result;
 }

@@ -108,12 +108,12 @@ Moments moments(const std::vector<TechniqueSlice>& slices, Value&& value) {
 
 /// Distances of the centres from the straight line x = a + b h, y = c + d h that fits them, and from their mean; relative to the
 /// mean radius.
-struct Straightness {
+struct LineDeviation {
     double line = unknown, upright = unknown;
     std::size_t count = 0;
 };
-Straightness straightness(const std::vector<TechniqueSlice>& slices) {
-    Straightness result;
+LineDeviation line_deviation(const std::vector<TechniqueSlice>& slices) {
+    LineDeviation result;
     result.count = slices.size();
     if (slices.size() < 3) return result;
     const auto n = static_cast<Eigen::Index>(slices.size());
@@ -178,7 +178,7 @@ void describe_technique(TechniqueMeasures& measures) {
     const Moments x = moments(slices, [](const auto&s) { return s.ovality[0]; }),
                   y = moments(slices, [](const auto&s) { return s.ovality[1]; }), length = moments(slices, amplitude);
     add("coherence", length.mean > 0 ? std::hypot(x.mean, y.mean) / length.mean : unknown, length.count);
-    const Straightness straight = straightness(slices);
+    const LineDeviation straight = line_deviation(slices);
     add("straightness", straight.line, straight.count);
     add("upright straightness", straight.upright, straight.count);
     const Moments wall = moments(slices, [](const auto& s) { return s.thickness; });

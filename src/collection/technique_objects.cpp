@@ -1,9 +1,7 @@
 #include "ostraka/collection/technique_objects.h"
 
-#include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
-#include "ostraka/io/mesh_file.h"
 
 #include <cmath>
 #include <numbers>
@@ -19,13 +17,7 @@ struct UpDirection {
     Vector way;
     const char* from;
 };
-UpDirection up_direction(const CollectionObject& object, const Mesh& mesh, const std::optional<std::array<double, 3>>& up) {
-    std::optional<std::array<double, 3>> known;
-    try {
-        if (!object.annotations.empty()) known = read_annotations(object.annotations, mesh).up;
-    } catch (const Error&) {
-        if (!up) throw;  // else nothing is asked of these annotations
-    }
+UpDirection up_direction(const std::optional<std::array<double, 3>>& known, const std::optional<std::array<double, 3>>& up) {
     if (!up) return known ? UpDirection{vector_of(*known), "annotations"} : UpDirection{Vector(0, 0, 1), "assumed"};
     const Vector way = vector_of(*up);
     const bool other =
@@ -37,17 +29,19 @@ UpDirection up_direction(const CollectionObject& object, const Mesh& mesh, const
 }  // namespace
 
 std::vector<ObjectResult> measure_technique(const Collection& collection, const std::optional<std::array<double, 3>>& up,
-                                            const TechniqueOptions& options, const ResultStore& store) {
+                                            const TechniqueOptions& options, const ResultStore& store, const ObjectParts& parts) {
     std::vector<std::string> what{"technique slices 3"};
     if (up)
         for (const double c : *up) what.push_back(digits(c));
     for (const auto& [key, value] : list_options(options)) what.push_back(key + "=" + value);
+    for (const std::string& one : parts.key()) what.push_back(one);
     return for_each_object(collection, store, what, [&](const CollectionObject& object) {
-        if (object.mesh.empty()) fail_input(object.name, "has landmarks but no mesh", "give a mesh, or leave the object out");
-        const MeshFile file = read_mesh(object.mesh);
+        const ObjectPart part = parts.read(object, up);
+        // Annotations that nothing is asked of may be damaged.
+        if (!up && part.annotations_error) std::rethrow_exception(part.annotations_error);
         try {
-            const UpDirection direction = up_direction(object, file.mesh, up);
-            Json kept = technique_to_json(measure_technique(file.mesh, direction.way, options));
+            const UpDirection direction = up_direction(part.up, up);
+            Json kept = technique_to_json(measure_technique(part.mesh, direction.way, options));
             add_member(kept, "upFrom", direction.from, kept.GetAllocator());
             return kept;
         } catch (const Error& error) {

@@ -25,11 +25,33 @@ JsonValue bound_json(const Mesh& mesh, JsonAllocator& allocator) {
                        mesh_checksum(mesh));
 }
 
+JsonValue array_json(const Path& file, std::size_t rows, std::size_t columns, const std::string& checksum,
+                     JsonAllocator& allocator) {
+    return json_object(allocator, "file", file.filename().string(), "rows", rows, "columns", columns, "sha256", checksum);
+}
+
 JsonValue write_array(const Path& file, const WeightMatrix& matrix, JsonAllocator& allocator) {
     const auto rows = static_cast<std::size_t>(matrix.rows()), columns = static_cast<std::size_t>(matrix.cols());
     if (!matrix.allFinite()) throw Error(ErrorKind::failure, file.string(), "a weight is not finite");
     const std::string checksum = write_npy(file, std::span(matrix.data(), rows * columns), {rows, columns});
-    return json_object(allocator, "file", file.filename().string(), "rows", rows, "columns", columns, "sha256", checksum);
+    return array_json(file, rows, columns, checksum, allocator);
+}
+
+/// The three arrays of sparse weights, as members of the header.
+void write_sparse(const Path& weights, const SparseWeights& matrix, Json& document, JsonAllocator& allocator) {
+    const auto count = static_cast<std::size_t>(matrix.nonZeros()), rows = static_cast<std::size_t>(matrix.rows());
+    const std::vector<std::int64_t> columns(matrix.innerIndexPtr(), matrix.innerIndexPtr() + count),
+        begins(matrix.outerIndexPtr(), matrix.outerIndexPtr() + rows + 1);
+    for (std::size_t i = 0; i < count; ++i)
+        if (!std::isfinite(matrix.valuePtr()[i])) throw Error(ErrorKind::failure, weights.string(), "a weight is not finite");
+    const auto place = [&](const Path& file, const std::vector<std::int64_t>& list) {
+        return array_json(file, list.size(), 1, write_npy(file, list, {list.size()}), allocator);
+    };
+    add_members(document, allocator, "vertex",
+                array_json(weights, count, 1, write_npy(weights, std::span(matrix.valuePtr(), count), {count}), allocator));
+    add_members(document, allocator, "sparse",
+                json_object(allocator, "columns", static_cast<std::size_t>(matrix.cols()), "column",
+                            place(sparse_columns_file(weights), columns), "row", place(sparse_rows_file(weights), begins)));
 }
 
 CoordinateHeader::Array array_of(const JsonValue& value) {
@@ -54,6 +76,15 @@ void check_bound(const Path& header, const std::string& what, const CoordinateHe
                    std::string("give that ") + what + ", or " + anew);
 }
 
+/// The bytes of an array, which must be those that the header was written for.
+std::string read_bound(const Path& folder, const CoordinateHeader::Array& array) {
+    const Path file = folder / array.file;
+    std::string bytes = read_file(file);
+    if (sha256(bytes) != array.sha256)
+        fail_input(file.string(), "is another file than its header was written for (its checksum differs)", anew);
+    return bytes;
+}
+
 WeightMatrix read_array(const Path& folder, const CoordinateHeader::Array& array, std::size_t rows, std::size_t columns) {
     const Path file = folder / array.file;
     const std::string bytes = read_file(file), where = file.string();
@@ -70,6 +101,44 @@ WeightMatrix read_array(const Path& folder, const CoordinateHeader::Array& array
         if (!std::isfinite(matrix.data()[i])) fail_input(where, "weight " + std::to_string(i) + " is not finite", anew);
     if (sha256(bytes) != array.sha256)
         fail_input(where, "is another file than its header was written for (its checksum differs)", anew);
+    return matrix;
+}
+
+SparseWeights read_sparse(const Path& folder, const CoordinateHeader& header, std::size_t rows, std::size_t columns) {
+    const auto list = [&](const CoordinateHeader::Array& array, std::size_t count, auto number) {
+        const std::string bytes = read_bound(folder, array), where = (folder / array.file).string();
+        const NpyView view = view_npy(bytes, where);
+        if (view.shape.size() != 1 || view.rows() != count)
+            fail_input(where, "does not hold " + std::to_string(count) + " numbers in a row", anew);
+        std::vector<decltype(number)> values(count);
+        view.copy_to(values.data());
+        return values;
+    };
+    const std::string where = (folder / header.vertex.file).string();
+    if (header.sparse->columns != columns)
+        fail_input(where,
+                   "has weights of " + std::to_string(header.sparse->columns) + " cage vertices, not " + std::to_string(columns),
+                   anew);
+    const std::vector<double> values = list(header.vertex, header.vertex.rows, double{});
+    const std::vector<std::int64_t> column = list(header.sparse->column, values.size(), std::int64_t{});
+    const std::vector<std::int64_t> begin = list(header.sparse->row, rows + 1, std::int64_t{});
+    if (begin.front() != 0 || begin.back() != static_cast<std::int64_t>(values.size()) ||
+        !std::is_sorted(begin.begin(), begin.end()))
+        fail_input((folder / header.sparse->row.file).string(), "its rows do not begin one after the other", anew);
+    SparseWeights matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    matrix.reserve(static_cast<Eigen::Index>(values.size()));
+    for (std::size_t r = 0; r < rows; ++r) {
+        matrix.startVec(static_cast<Eigen::Index>(r));
+        for (auto i = static_cast<std::size_t>(begin[r]); i < static_cast<std::size_t>(begin[r + 1]); ++i) {
+            const bool first = i == static_cast<std::size_t>(begin[r]);
+            if (column[i] < 0 || column[i] >= static_cast<std::int64_t>(columns) || (!first && column[i] <= column[i - 1]))
+                fail_input((folder / header.sparse->column.file).string(),
+                           "the columns of row " + std::to_string(r) + " are not ascending and within the cage", anew);
+            if (!std::isfinite(values[i])) fail_input(where, "weight " + std::to_string(i) + " is not finite", anew);
+            matrix.insertBack(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(column[i])) = values[i];
+        }
+    }
+    matrix.finalize();
     return matrix;
 }
 
@@ -113,6 +182,8 @@ void check_kind(const Path& file, const CoordinateHeader& header) {
 
 Path coordinate_header_file(const Path& weights) { return Path(weights).replace_extension(".coordinates.json"); }
 Path normal_weights_file(const Path& weights) { return Path(weights).replace_extension(".normal.npy"); }
+Path sparse_columns_file(const Path& weights) { return Path(weights).replace_extension(".columns.npy"); }
+Path sparse_rows_file(const Path& weights) { return Path(weights).replace_extension(".rows.npy"); }
 
 void write_coordinates(const Path& weights, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage,
                        const CoordinateCertificate& certificate, const Provenance& provenance) {
@@ -124,8 +195,10 @@ void write_coordinates(const Path& weights, const Coordinates& coordinates, cons
         fail_usage("the coordinates do not fit the mesh and the cage", "give those that they were computed for");
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
-    add_members(document, allocator, "format", "ostraka-coordinates", "version", 1, "kind", coordinates.kind, "vertex",
-                write_array(weights, W, allocator));
+    add_members(document, allocator, "format", "ostraka-coordinates", "version", coordinates.is_sparse() ? 2 : 1, "kind",
+                coordinates.kind);
+    if (coordinates.is_sparse()) write_sparse(weights, coordinates.sparse, document, allocator);
+    else add_members(document, allocator, "vertex", write_array(weights, W, allocator));
     if (coordinates.has_normals())
         add_member(document, "normal", write_array(normal_weights_file(weights), Q, allocator), allocator);
     add_members(document, allocator, "mesh", bound_json(mesh, allocator), "cage", bound_json(cage, allocator), "certificate",
@@ -145,6 +218,11 @@ CoordinateHeader read_coordinate_header(const Path& weights) {
     header.kind = document["kind"].GetString();
     header.vertex = array_of(document["vertex"]);
     if (const JsonValue* normal = find_member(document, "normal")) header.normal = array_of(*normal);
+    if (const JsonValue* sparse = find_member(document, "sparse"))
+        header.sparse = {static_cast<std::size_t>((*sparse)["columns"].GetUint64()), array_of((*sparse)["column"]),
+                         array_of((*sparse)["row"])};
+    if (header.sparse.has_value() != (document["version"].GetInt() == 2))
+        fail_input(file.string(), "sparse weights are those of version 2, and it has the other version", anew);
     header.mesh = bound_of(document["mesh"]);
     header.cage = bound_of(document["cage"]);
     check_kind(file, header);
@@ -156,6 +234,10 @@ CoordinateHeader read_coordinate_header(const Path& weights) {
     };
     check(header.vertex, weights);
     if (header.normal) check(*header.normal, normal_weights_file(weights));
+    if (header.sparse) {
+        check(header.sparse->column, sparse_columns_file(weights));
+        check(header.sparse->row, sparse_rows_file(weights));
+    }
     return header;
 }
 
@@ -166,7 +248,12 @@ Coordinates read_coordinates(const Path& weights, const Mesh& mesh, const Mesh& 
     check_bound(file, "cage", header.cage, cage);
     Coordinates result;
     result.kind = header.kind;
-    result.vertex = read_array(weights.parent_path(), header.vertex, mesh.number_of_vertices(), cage.number_of_vertices());
+    if (header.sparse) {
+        result.sparse = read_sparse(weights.parent_path(), header, mesh.number_of_vertices(), cage.number_of_vertices());
+        result.vertex = result.sparse;
+    } else {
+        result.vertex = read_array(weights.parent_path(), header.vertex, mesh.number_of_vertices(), cage.number_of_vertices());
+    }
     if (header.normal)
         result.normal = read_array(weights.parent_path(), *header.normal, mesh.number_of_vertices(), cage.number_of_faces());
     check_sums(weights, result.vertex);

@@ -16,8 +16,11 @@ namespace {
 std::vector<CoordinateKind>& kinds() {
     static std::vector<CoordinateKind> list{
         {"mean-value", "mean value coordinates (Ju, Schaefer, Warren 2005)", true, false, &coords::mean_value},
-        {"green", "Green coordinates (Lipman, Levin, Cohen-Or 2008), for unconstrained deformation", false, true,
-         &coords::green}};
+        {"green", "Green coordinates (Lipman, Levin, Cohen-Or 2008), for unconstrained deformation", false, true, &coords::green},
+        {"harmonic", "harmonic coordinates (Joshi et al. 2007) on tetrahedra", true, false, &coords::harmonic},
+        {"local", "local barycentric coordinates (Zhang et al. 2014) on tetrahedra", true, false, &coords::local},
+        {"positive-mean-value", "positive mean value coordinates (Lipman et al. 2007)", true, false,
+         &coords::positive_mean_value}};
     return list;
 }
 
@@ -136,7 +139,17 @@ std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cag
     std::vector<Point> result(rows);
     parallel_blocks(rows, 64, [&](std::size_t begin, std::size_t end) {
         const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-        Columns X = coordinates.vertex.middleRows(first, count) * V;
+        Columns X(count, 3);
+        if (coordinates.is_sparse()) {
+            for (Eigen::Index i = 0; i < count; ++i) {
+                Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+                for (SparseWeights::InnerIterator entry(coordinates.sparse, first + i); entry; ++entry)
+                    sum += entry.value() * V.row(entry.col());
+                X.row(i) = sum;
+            }
+        } else {
+            X = coordinates.vertex.middleRows(first, count) * V;
+        }
         if (coordinates.has_normals()) X += coordinates.normal.middleRows(first, count) * N;
         for (std::size_t i = begin; i < end; ++i) {
             const auto row = static_cast<Eigen::Index>(i - begin);
@@ -146,9 +159,18 @@ std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cag
     return result;
 }
 
+double Coordinates::stored_share() const {
+    if (!is_sparse() || vertex.size() == 0) return 1;
+    return static_cast<double>(sparse.nonZeros()) / static_cast<double>(vertex.size());
+}
+
 void CoordinateOptions::describe(OptionList& visit) {
     visit("snap", snap, "distance below which a point counts as lying on the cage", Range{0, 1e-6},
           "share of the cage's diagonal");
+    visit("nodes", nodes, "harmonic, local: about so many nodes of the tetrahedra inside the cage", Range{100, 5e6});
+    visit("drop", drop, "all but mean-value and green: weights below this are left out", Range{0, 0.01});
+    visit("iterations", iterations, "local: steps at most", Range{1, 100000});
+    visit("tolerance", tolerance, "local: end when ten steps lower the total variation by less than this share", Range{0, 0.1});
 }
 
 }  // namespace ostraka

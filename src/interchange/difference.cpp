@@ -86,6 +86,7 @@ private:
             list.back().only_after = a.type == b.type ? count_only_in(after, before) : after.size();
         }
         if (a.note != b.note) change("note", words(a.note), words(b.note));
+        if (a.information != b.information) change("information", words(a.information), words(b.information));
         order(ids_of(a.attributes), ids_of(b.attributes));
         std::map<int, std::pair<const Attribute*, const Attribute*>> pairs;
         for (const Attribute& attribute : a.attributes) pairs[attribute.id].first = &attribute;

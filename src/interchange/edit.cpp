@@ -104,6 +104,8 @@ private:
                                  " now: relations that name it by its old id must follow");
             annotation.id = *edit.id;
         }
+        for (const std::string& value : edit.remove_information) remove_information(annotation, value);
+        for (const Information& one : edit.information) put(annotation, one);
         for (const EntryName& name : edit.remove_attributes) remove_attribute(annotation, name);
         for (const Attribute& attribute : edit.attributes) put(annotation, attribute);
         for (const auto& [name, text] : edit.texts) put(annotation, name, text);
@@ -137,6 +139,22 @@ private:
             fail_input(here_, whose + " has no attribute " + in_words(name), "'annotation list' shows its attributes");
         if (count > 1) fail_input(here_, whose + " has several attributes " + in_words(name), "name the one meant by its id");
         annotation.attributes.erase(std::find_if(annotation.attributes.begin(), annotation.attributes.end(), matches));
+    }
+
+    void remove_information(Annotation& annotation, const std::string& value) const {
+        const auto gone = std::erase_if(annotation.information, [&](const Information& one) { return one.value == value; });
+        if (gone == 0)
+            fail_input(here_,
+                       "annotation " + to_string(annotation.id) + " has no information '" + interchange::words(value) + "'",
+                       "name it by its text, link or file");
+    }
+
+    static void put(Annotation& annotation, const Information& information) {
+        const auto same = std::find_if(annotation.information.begin(), annotation.information.end(), [&](const Information& one) {
+            return one.kind == information.kind && one.value == information.value;
+        });
+        if (same == annotation.information.end()) annotation.information.push_back(information);
+        else *same = information;
     }
 
     static void put(Annotation& annotation, const Attribute& attribute) {
@@ -174,6 +192,7 @@ private:
         if (annotation.type != other.type)
             fail_input(here_, "a " + to_string(other.type) + " cannot become part of a " + to_string(annotation.type),
                        "merge annotations of one type");
+        for (const Information& one : other.information) put(annotation, one);
         if (is_free(annotation) || is_free(other)) {
             join_curves(annotation, other);
         } else {
@@ -305,6 +324,8 @@ std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std
             edit.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
         if (const JsonValue* attributes = find_member(entry, "attributes"))
             edit.attributes = attributes_from_json(*attributes, where, at + "/attributes");
+        edit.information = information_from_json(list_in(entry, "information"), where, at + "/information");
+        for (const auto& value : list_in(entry, "removeInformation")) edit.remove_information.push_back(text_of(value));
         if (const JsonValue* texts = find_member(entry, "texts"))
             for (const auto& text : texts->GetObject()) edit.texts.emplace_back(text_of(text.name), text_of(text.value));
         for (const auto& name : list_in(entry, "merge")) edit.merge.push_back(name_of(name));

@@ -16,7 +16,8 @@ bool same_geometry(const Annotation& a, const Annotation& b) {
 }
 
 bool same(const Annotation& a, const Annotation& b) {
-    return a.id == b.id && a.tag == b.tag && a.colour == b.colour && a.note == b.note && same_geometry(a, b) &&
+    return a.id == b.id && a.tag == b.tag && a.colour == b.colour && a.note == b.note && a.information == b.information &&
+           same_geometry(a, b) &&
            std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
                       [](const Attribute& x, const Attribute& y) { return same(x, y); });
 }
@@ -56,6 +57,14 @@ std::string words(const Attribute& attribute) {
         text += ")";
     }
     return words(text + (stale ? " (stale)" : ""));
+}
+
+std::string words(const std::vector<Information>& list) {
+    std::string text;
+    for (const Information& one : list)
+        text += (text.empty() ? "" : "; ") + to_string(one.kind) + ' ' +
+                (one.title.empty() ? one.value : one.title + ": " + one.value);
+    return words(text);
 }
 
 std::string geometry_words(const Annotation& annotation) {

@@ -13,6 +13,7 @@ bool same(const Annotation& a, const Annotation& b);
 std::string words(const std::string& text);
 std::string words(const std::array<int, 3>& colour);
 std::string words(const std::optional<std::array<double, 3>>& direction);
+std::string words(const std::vector<Information>& list);
 std::string words(const Attribute& attribute);
 std::string geometry_words(const Annotation& annotation);
 std::string words(const Annotation& annotation);

@@ -112,6 +112,7 @@ private:
         merged.tag = field("tag", base.tag, ours.tag, theirs.tag);
         merged.colour = field("colour", base.colour, ours.colour, theirs.colour);
         merged.note = field("note", base.note, ours.note, theirs.note);
+        merged.information = field("information", base.information, ours.information, theirs.information);
         geometry(merged, base, ours, theirs);
         attributes(merged, base, ours, theirs);
         return merged;

@@ -10,6 +10,8 @@ PolygonSoup read_obj(std::string& bytes, const std::string& file);
 PolygonSoup read_off(std::string& bytes, const std::string& file);
 PolygonSoup read_ply(const std::string& bytes, const std::string& file);
 PolygonSoup read_stl(std::string& bytes, const std::string& file);
+PolygonSoup read_medit(std::string& bytes, const std::string& file);
+PolygonSoup read_vtu(const std::string& bytes, const std::string& file);
 
 /// True if the content is that of the format, whatever the file's name.
 bool looks_like_ply(std::string_view bytes);
@@ -31,6 +33,8 @@ Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
 Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
 Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
 Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+Notes write_medit(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
+Notes write_vtu(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
 Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
 
 }  // namespace ostraka::io

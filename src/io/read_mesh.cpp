@@ -34,10 +34,10 @@ std::uint8_t channel_from_unit(double value, std::size_t& bad) {
 
 namespace {
 
-enum class Format { obj, off, ply, stl };
+enum class Format { obj, off, ply, stl, medit, vtu };
 
 std::string name_of(Format format) {
-    constexpr const char* names[] = {"OBJ", "OFF", "PLY", "STL"};
+    constexpr const char* names[] = {"OBJ", "OFF", "PLY", "STL", "Medit's mesh", "VTU"};
     return names[static_cast<int>(format)];
 }
 
@@ -47,8 +47,10 @@ Format format_of_extension(const Path& file) {
     if (ending == ".off") return Format::off;
     if (ending == ".ply") return Format::ply;
     if (ending == ".stl") return Format::stl;
+    if (ending == ".mesh") return Format::medit;
+    if (ending == ".vtu") return Format::vtu;
     throw Error(ErrorKind::usage, file.string(), "has no extension of a mesh file that can be read",
-                "use .obj, .off, .ply or .stl");
+                "use .obj, .off, .ply or .stl, of tetrahedra .mesh or .vtu");
 }
 
 /// The extension's format, unless the content is clearly that of another.
@@ -103,10 +105,12 @@ PolygonSoup read_polygons(const Path& file) {
                    "run: iconv -f " + encoding + " -t UTF-8 " + name + " > " +
                        (file.parent_path() / ("utf8-" + file.filename().string())).string());
     const Format format = format_of_content(named, bytes);
-    PolygonSoup soup = format == Format::obj   ? read_obj(bytes, name)
-                       : format == Format::off ? read_off(bytes, name)
-                       : format == Format::ply ? read_ply(bytes, name)
-                                               : read_stl(bytes, name);
+    PolygonSoup soup = format == Format::obj     ? read_obj(bytes, name)
+                       : format == Format::off   ? read_off(bytes, name)
+                       : format == Format::ply   ? read_ply(bytes, name)
+                       : format == Format::medit ? read_medit(bytes, name)
+                       : format == Format::vtu   ? read_vtu(bytes, name)
+                                                 : read_stl(bytes, name);
     if (soup.points.size() >= no_index) fail_work(name, "has more than four thousand million vertices", "split it");
     if (format != named)
         soup.notes.push_back("named " + extension(file) + " but holds " + name_of(format) + ", and was read as such");

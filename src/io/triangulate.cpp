@@ -11,6 +11,7 @@ MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& triangle_polygo
     result.vertex_colours = std::move(extras.vertex_colours);
     result.vertex_labels = std::move(extras.vertex_labels);
     result.vertex_texture = std::move(extras.vertex_texture);
+    result.tetrahedra = std::move(extras.tetrahedra);
     const auto pick = [](const auto& from, const std::vector<Index>& map, auto& to) {
         if (from.empty()) return;
         to.reserve(map.size());

@@ -22,6 +22,9 @@ void check_extras(const MeshExtras& extras, const WriteOptions& options, std::si
     check(extras.face_colours.size(), triangles, "face_colours");
     check(extras.face_labels.size(), triangles, "face_labels");
     check(extras.corner_texture.size(), 3 * triangles, "corner_texture");
+    for (const auto& tetrahedron : extras.tetrahedra)
+        for (const Index v : tetrahedron)
+            if (v >= vertices) throw std::logic_error("write_mesh: a tetrahedron of a vertex that is not there");
 }
 
 void check_soup(const Path& file, const TriangleSoup& soup) {
@@ -40,10 +43,10 @@ void check_soup(const Path& file, const TriangleSoup& soup) {
 
 void check_mesh_extension(const Path& file) {
     const std::string ending = extension(file);
-    for (const char* known : {".obj", ".ply", ".off", ".stl", ".glb"})
+    for (const char* known : {".obj", ".ply", ".off", ".stl", ".glb", ".mesh", ".vtu"})
         if (ending == known) return;
     throw Error(ErrorKind::usage, file.string(), "has no extension of a mesh file that can be written",
-                "use .ply, .obj, .off, .stl or .glb");
+                "use .ply, .obj, .off, .stl or .glb, of tetrahedra .mesh or .vtu");
 }
 
 std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
@@ -58,6 +61,15 @@ std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& s
         rest.face_values.clear();
         std::vector<std::string> notes = write_triangles(file, soup, extras, rest);
         notes.emplace_back("only PLY holds numbers of vertices and faces: they are left out");
+        return notes;
+    }
+    if (ending == ".mesh") return io::write_medit(file, soup, extras, options);
+    if (ending == ".vtu") return io::write_vtu(file, soup, extras, options);
+    if (!extras.tetrahedra.empty()) {
+        MeshExtras surface = extras;
+        surface.tetrahedra.clear();
+        std::vector<std::string> notes = write_triangles(file, soup, surface, options);
+        notes.push_back(std::to_string(extras.tetrahedra.size()) + " tetrahedra are left out: .mesh and .vtu hold them");
         return notes;
     }
     if (ending == ".obj") return io::write_obj(file, soup, extras, options);

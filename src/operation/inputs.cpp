@@ -66,7 +66,7 @@ T taken(const Slot& slot, std::size_t i, const T& object) {
 
 std::vector<std::string> endings_of(Kind kind) {
     static const std::map<Kind, std::vector<std::string>> endings{
-        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb"}},
+        {Kind::mesh, {".ply", ".obj", ".off", ".stl", ".glb", ".mesh", ".vtu"}},
         {Kind::cage, {".ply", ".obj", ".off", ".stl", ".glb"}},
         {Kind::annotations, {".ant.json", ".ant"}},
         {Kind::graph, {".graph.json"}},

@@ -2,6 +2,7 @@
 #include "operations.h"
 
 #include "ostraka/measure/examine.h"
+#include "ostraka/relation/part_of.h"
 #include "ostraka/relation/rules.h"
 
 namespace ostraka {
@@ -47,7 +48,9 @@ struct AnnotationCheck final : Operation {
             for (const auto& note : set->notes) findings.push_back({false, "", note});
             const auto add = [&](std::vector<Finding> more) { findings.insert(findings.end(), more.begin(), more.end()); };
             add(examine(on, *set));
+            if (!given) add(check_information(*set, Path(annotations.file()).parent_path()));
             if (known_words != nullptr) add(check_against_vocabulary(*set, *known_words, words));
+            if (known_words != nullptr) add(check_parts(on, *set, *known_words));
             if (kept_rules != nullptr) hold_against(*kept_rules, known_words, on, *set, findings);
         }
         report.findings(findings);

@@ -51,6 +51,11 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         p.options("id", id, "new id");
         p.options("remove-attribute", remove_attributes, "id or name of an attribute to remove; may be given more than once");
         p.options("attribute", attributes, "NAME=TEXT: a semantic attribute, new or changed; may be given more than once");
+        p.options(
+            "information", information,
+            "KIND=VALUE, KIND one of text, image, link, file: what the annotation refers to; of a file beside the output the "
+            "checksum is kept; may be given more than once");
+        p.options("remove-information", remove_information, "text, link or file to remove; may be given more than once");
         p.options("set-class", object_class, "class of the object, of the whole file; '' for none");
         p.options("set-unit", unit,
                   "unit of the coordinates, of the whole file (any text, such as mm); no number changes; '' for none");
@@ -83,6 +88,9 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         // A tag may be a number as well.
         if (!list && !edits.empty() && edits[0].annotation.id && edited.find(*edits[0].annotation.id) == nullptr)
             edits[0].annotation.id.reset();
+        for (AnnotationEdit& edit : edits)
+            for (Information& one : edit.information)
+                if (one.is_local() && one.sha256.empty()) one.sha256 = sha256_of_file(beside_output(one.value));
         std::vector<std::string> notes = edit_annotations(on, edited, edits, list ? list.file() : "flags");
         if (object_class) edited.object_class = *object_class;
         if (up) edited.up = direction();
@@ -94,6 +102,26 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         report("annotations", edited.annotations.size());
         add_differences(report, "changes", differences(before, edited), "nothing changed");
         output.write(std::move(edited), on, mesh.file());
+    }
+
+    /// "image=photo.jpg"
+    static Information referred(const std::string& text) {
+        const std::size_t equals = text.find('=');
+        Information one;
+        bool known = false;
+        for (const auto kind :
+             {Information::Kind::text, Information::Kind::image, Information::Kind::link, Information::Kind::file})
+            if (equals != std::string::npos && to_string(kind) == text.substr(0, equals)) one.kind = kind, known = true;
+        if (!known || equals + 1 == text.size())
+            fail_usage("the information '" + printable(text, 60) + "' is not KIND=VALUE",
+                       "KIND is text, image, link or file: image=photo.jpg");
+        one.value = text.substr(equals + 1);
+        return one;
+    }
+    /// Files are named relative to the annotations that name them.
+    [[nodiscard]] Path beside_output(const std::string& value) const {
+        const Path file(value);
+        return file.is_absolute() || output.file().empty() ? file : Path(output.file()).parent_path() / file;
     }
 
     [[nodiscard]] std::optional<std::array<double, 3>> direction() const {
@@ -116,6 +144,8 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
                 fail_usage("the attribute '" + text + "' is not NAME=TEXT", "for measures and descriptors use --edits FILE");
             edit.texts.emplace_back(text.substr(0, equals), text.substr(equals + 1));
         }
+        for (const auto& text : information) edit.information.push_back(referred(text));
+        edit.remove_information = remove_information;
         edit.duplicate = duplicate;
         edit.split = split;
         edit.remove = remove;
@@ -127,7 +157,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
     std::string annotation, colour;
     std::optional<std::string> tag, note, object_class, unit, up;
     std::optional<int> id;
-    std::vector<std::string> attributes, remove_attributes, merge;
+    std::vector<std::string> attributes, remove_attributes, merge, information, remove_information;
     bool duplicate = false, split = false, remove = false;
 };
 

@@ -25,11 +25,16 @@ struct CageCoordinates final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "closed mesh around it (polygons are cut into triangles)");
         p.output("output", Kind::coordinates, output, "weights to write (.npy; a .coordinates.json goes beside it)");
-        p.options("kind", kind, "mean-value, or green (strictly inside; without constraints only)", Choices(coordinate_kinds()));
+        p.options("kind", kind,
+                  "mean-value; local, harmonic or positive-mean-value (inside, none negative); green (strictly inside; without "
+                  "constraints "
+                  "only)",
+                  Choices(coordinate_kinds()));
         options.describe(p.options);
         p.report.values(text("kind", "coordinates"), integer("points", "points"), integer("cageVertices", "cage vertices"),
-                        integer("cageFaces", "cage faces"), any("certificate"), number("amplification"), integer("outside"),
-                        integer("crossed"), integer("cageIntersections"), texts("objections"), boolean("holds", "verdict"));
+                        integer("cageFaces", "cage faces"), any("certificate"), number("storedShare"), number("amplification"),
+                        integer("outside"), integer("crossed"), integer("cageIntersections"), texts("objections"),
+                        boolean("holds", "verdict"));
         p.report.people_table("", {"property", "value", "meaning"});
     }
 
@@ -68,6 +73,8 @@ struct CageCoordinates final : Operation {
         row("negative sum", number(c.negative_sum), "largest of a point");
         row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_max) + " most",
             "weights that carry 95 % at a point");
+        if (coordinates.is_sparse()) row("stored", share(coordinates.stored_share()), "of the weights; the others are zero");
+        report("storedShare", coordinates.stored_share());
         const double factor = amplification(coordinates);
         row("amplification", number(factor, 3), "a point moves at most so many times as far as the cage");
         report("amplification", factor)("outside", cage.outside.size())("crossed", cage.crossing.size())(

@@ -48,7 +48,7 @@ struct Deform final : Operation {
                        number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
                        text("text"), any("deviations", "how well"), number("residual.mean"), number("residual.median"),
                        number("residual.min"), number("residual.max"), number("residual.greatest distance"),
-                       integer("residual.constraints"));
+                       integer("residual.constraints"), number("cost.before"), number("cost.after", "cost"));
         p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
         p.report.table("moved", integer("id", "id"), text("tag", "moved, though the edit did not ask it to"),
                        number("share", "mean, % of the diagonal"));
@@ -112,6 +112,8 @@ struct Deform final : Operation {
             report.notes(refresh_measures(shaped, set).notes);
             annotations_out.write(std::move(set), shaped, output.file());
         }
+        if (!subject.object->extras.tetrahedra.empty() && subject.coordinates == nullptr)
+            report.note("the vertices within the tetrahedra stay where they are: deform through a cage, which moves them along");
         output.write(shaped, subject.object->extras);
         if (states) {
             const auto followed = follow_edit(steps, space, where);
@@ -279,6 +281,8 @@ struct Deform final : Operation {
         row("residual.mean", constraint.mean)("residual.median", constraint.median)("residual.min", constraint.minimum)(
             "residual.max", constraint.maximum)("residual.greatest distance", constraint.distance)("residual.constraints",
                                                                                                    constraint.low_level);
+        if (constraint.used && !constraint.hard)
+            row("cost.before", constraint.cost_before)("cost.after", constraint.cost, number(constraint.cost, 3));
     }
 
     /// What fights with what.

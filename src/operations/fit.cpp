@@ -10,6 +10,7 @@
 #include "ostraka/shape_classes/member_file.h"
 
 #include <algorithm>
+#include <deque>
 #include <set>
 
 namespace ostraka {
@@ -36,6 +37,7 @@ struct Fit final : Operation {
             "members that look so where one does; thresholds that are not told are those of its members");
         p.options("fresh", fresh, "search poses anew, whatever an earlier fit in the folder found").unrecorded();
         p.options("placed", placed, "also write each fragment where it lies: NAME.placed.ply");
+        vocabulary.describe(p, as_template_words);
         options.describe(p.options);
         reading.describe(p.options);
         for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
@@ -111,8 +113,13 @@ struct Fit final : Operation {
                                                                options_text(reading));
             context.notes(files.file(k), one.notes);
             fragments.push_back(&one.fragment);
+            if (vocabulary) {
+                renamed.push_back(one.fragment);
+                vocabulary.words().rename_like(renamed.back().annotations, *known->annotations);
+                fragments.back() = &renamed.back();
+            }
             names.fragments.push_back(one.fragment.name);
-            stated.push_back(assembly ? stated_matches(*assembly, one.fragment, *known->annotations, assembly.file())
+            stated.push_back(assembly ? stated_matches(*assembly, *fragments.back(), *known->annotations, assembly.file())
                                       : std::vector<StatedMatch>());
             if (one.fragment.facets.empty()) continue;
             std::array<double, 3> area{};
@@ -251,6 +258,8 @@ struct Fit final : Operation {
     FragmentFileOptions reading;
     std::map<std::string, const Option*> thresholds;  ///< options that a class has a say in
 
+    VocabularyOption vocabulary;
+    std::deque<Fragment> renamed;  ///< fragments with tags of the template
     std::vector<const Fragment*> fragments;
     AssemblyNames names;
     std::vector<UsedThreshold> used;

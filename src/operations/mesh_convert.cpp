@@ -7,8 +7,9 @@ namespace {
 
 struct MeshConvert final : Operation {
     void describe(Parameters& p) override {
-        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
-        p.output("output", Kind::mesh, output.with_encoding(), "mesh to write: .ply, .obj, .off, .stl, .glb");
+        p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; of tetrahedra .mesh, .vtu");
+        p.output("output", Kind::mesh, output.with_encoding(),
+                 "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
         p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle the polygon it was cut from");
         p.options("binary", binary, "write PLY and STL as bytes (the default)");
         for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));

@@ -6,6 +6,7 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/words.h"
+#include "ostraka/vocabulary/tag_words.h"
 
 namespace ostraka {
 
@@ -55,6 +56,23 @@ public:
 private:
     std::string text_;
 };
+
+/// --vocabulary: by which tags are compared.
+class VocabularyOption {
+public:
+    void describe(Parameters& p, const std::string& help) {
+        p.input_option("vocabulary", Kind::vocabulary, file_, "vocabulary (.vocabulary.json, .ttl, .rdf) " + help);
+    }
+    explicit operator bool() const { return static_cast<bool>(file_); }
+    [[nodiscard]] TagWords words() const { return file_ ? TagWords(&file_.load<Vocabulary>(read_vocabulary)) : TagWords(); }
+    /// Empty where none is given.
+    [[nodiscard]] std::string checksum() const { return file_ ? sha256_of_file(file_.path()) : std::string(); }
+
+private:
+    FileInput file_;
+};
+inline constexpr const char* as_template_words =
+    "by which tags of objects are those of the template: of one concept in any language, or narrower";
 
 /// The annotation of this id, or of this tag if exactly one has it. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);

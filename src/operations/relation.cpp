@@ -3,6 +3,7 @@
 
 #include "ostraka/relation/geometric.h"
 #include "ostraka/relation/layout.h"
+#include "ostraka/relation/part_of.h"
 #include "ostraka/report/bracket_graph.h"
 #include "ostraka/semantic/deform.h"
 
@@ -93,6 +94,9 @@ struct RelationExtract final : RelationOperation {
             if (type.geometric) told.names.push_back(type.name);
         told.check = [](const std::string& name) { static_cast<void>(geometric_types({name})); };
         p.options("type", types, "type to look for, once for each; all without it", std::move(told)).words();
+        p.input_option(
+            "vocabulary", Kind::vocabulary, vocabulary,
+            "vocabulary (.vocabulary.json, .ttl, .rdf): annotations in what they are parts of by it are related as 'part of'");
         tolerances.describe(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
@@ -108,6 +112,10 @@ struct RelationExtract final : RelationOperation {
             const auto known = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.id == id; });
             report.note("relationship " + std::to_string(id) + " (" + known->type + ") is stated already");
         }
+        if (vocabulary)
+            for (Relationship& part :
+                 part_relationships(found.order, set(), vocabulary.load<Vocabulary>(read_vocabulary), free_id(found.graph)))
+                if (find_twin(found.graph, part) == nullptr) found.graph.relationships.push_back(std::move(part));
         if (!found.not_looked_for.empty())
             report.note("not looked for, as the annotations do not say what is up: " + joined(found.not_looked_for) +
                         " ('ostraka annotation edit --set-up x,y,z' says it)");
@@ -128,6 +136,7 @@ struct RelationExtract final : RelationOperation {
 
     std::vector<std::string> types;
     RelationOptions tolerances;
+    FileInput vocabulary;
 };
 
 struct RelationAdd final : RelationOperation {
@@ -330,6 +339,74 @@ struct RelationRemove final : RelationOperation {
     std::vector<int> ids;
 };
 
+struct RelationEdit final : RelationOperation {
+    void describe(Parameters& p) override {
+        describe_inputs(p);
+        describe_graph(p);
+        describe_output(p);
+        p.options("id", id, "id of the relationship, as 'relation list' shows it", Range{0, 2147483647}).required();
+        p.options("weight", weight, "its weight as a constraint; 0 leaves it out", Range{0, 1e300});
+        p.options("range", range, "MIN,MAX: minValue and maxValue of the constraint");
+        p.options("parameters", parameters, "JSON object whose members replace those of the constraint; null takes one away");
+        p.options("constraint", constraint, "whether deformations keep it", Choices{"unchanged", "yes", "no"});
+        describe_relationships(p.report);
+    }
+
+    void check() const override {
+        if (!weight && range.empty() && parameters.empty() && constraint == Constrains::unchanged)
+            fail_usage("nothing is changed", "give --weight, --range, --parameters or --constraint");
+        if (!range.empty()) {
+            const std::vector<double> ends = numbers_of<double>(range, "--range");
+            if (ends.size() != 2 || !(ends[0] <= ends[1]))
+                fail_usage("--range is '" + printable(range, 60) + "'", "give two numbers, the smaller first: 1.5,2");
+        }
+        if (!parameters.empty() && !parse_json(parameters, "--parameters").IsObject())
+            fail_usage("--parameters is no JSON object", "write {\"hard\": true}, for example");
+    }
+
+    void run(Context&, Report& report) override {
+        RelationGraph relations = read_relations();
+        const auto found = std::find_if(relations.relationships.begin(), relations.relationships.end(),
+                                        [&](const Relationship& one) { return one.id == id; });
+        if (found == relations.relationships.end())
+            fail_input(graph.file(), "has no relationship " + std::to_string(id), "'ostraka relation list' shows them");
+        Relationship changed = *found;
+        if (weight) changed.weight = *weight;
+        if (constraint != Constrains::unchanged) changed.is_constraint = constraint == Constrains::yes;
+        if (!range.empty() || !parameters.empty()) {
+            if (constraint != Constrains::no) changed.is_constraint = true;
+            Json object = changed.constraint.empty() ? parse_json("{}", "the constraint")
+                                                     : parse_json(changed.constraint, "the constraint");
+            const auto set_member = [&](const std::string& name, JsonValue value) {
+                object.RemoveMember(name.c_str());
+                if (!value.IsNull()) add_member(object, name, std::move(value), object.GetAllocator());
+            };
+            if (!parameters.empty())
+                for (const Json given = parse_json(parameters, "--parameters"); const auto& member : given.GetObject())
+                    set_member(member.name.GetString(), JsonValue(member.value, object.GetAllocator()));
+            if (!range.empty()) {
+                const std::vector<double> ends = numbers_of<double>(range, "--range");
+                set_member("minValue", JsonValue(ends[0]));
+                set_member("maxValue", JsonValue(ends[1]));
+            }
+            changed.constraint = object.MemberCount() == 0 ? std::string() : to_compact_text(object);
+        }
+        // It is the person's who changed it: another extraction keeps it as it is.
+        changed.origin = "stated";
+        *found = changed;
+        check_graph(relations, set(), output.file());
+        if (changed.is_constraint) check_constraint(mesh->mesh, set(), changed, output.file());
+        output.write(std::move(relations), set());
+        report_result(report, std::vector<Relationship>{changed});
+    }
+
+    enum class Constrains { unchanged, yes, no };
+    int id = -1;
+    std::optional<double> weight;
+    std::string range, parameters;
+    Constrains constraint = Constrains::unchanged;
+};
+
 struct RelationList final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
@@ -428,6 +505,7 @@ struct RelationExport final : RelationOperation {
 std::unique_ptr<Operation> make_relation_extract() { return make<RelationExtract>(); }
 std::unique_ptr<Operation> make_relation_add() { return make<RelationAdd>(); }
 std::unique_ptr<Operation> make_relation_remove() { return make<RelationRemove>(); }
+std::unique_ptr<Operation> make_relation_edit() { return make<RelationEdit>(); }
 std::unique_ptr<Operation> make_relation_list() { return make<RelationList>(); }
 std::unique_ptr<Operation> make_relation_check() { return make<RelationCheckAll>(); }
 std::unique_ptr<Operation> make_relation_export() { return make<RelationExport>(); }

@@ -19,6 +19,8 @@ void StudyFiles::describe(Parameters& p, bool labels, const std::string& collect
     p.report.values(integer("part.objects"), integer("part.failed"));
     if (!labels) return;
     p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
+    p.options("own-truth", own_truth_,
+              "the known answers are in truth.csv of the collection's folder, where 'study make' writes them");
     p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
     p.report.values(integer("truth.labelled"), integer("truth.objects"), integer("truth.kinds"));
 }
@@ -28,7 +30,8 @@ void StudyFiles::check() const {
     const Path &from = collection.sources.front().file, &to = output.sources.front().file;
     if (!from.empty() && !to.empty() && same_place(to, is_folder(from) ? from : from.parent_path()))
         fail_usage("--output is the folder of the collection", "name another one, so that results are not taken for objects");
-    if (!truth_ && !truth_column_.empty()) fail_usage("--truth-column without --truth", "name the table as well");
+    if (truth_ && own_truth_) fail_usage("--truth and --own-truth", "give one of them");
+    if (!truth_ && !own_truth_ && !truth_column_.empty()) fail_usage("--truth-column without --truth", "name the table as well");
 }
 
 Collection StudyFiles::read(Context& context, bool all) const {
@@ -36,6 +39,11 @@ Collection StudyFiles::read(Context& context, bool all) const {
     context.record([&] {
         result = read_collection(collection.path(), all ? Share() : share_from_text(shard_));
         if (truth_) set_labels(result, read_labels(truth_.path(), truth_column_), truth_.file());
+        if (own_truth_) {
+            const Path table = collection.path() / "truth.csv";
+            set_labels(result, read_labels(table, truth_column_), table.string());
+            context.record_input("truth.csv", sha256_of_file(table));
+        }
     });
     output.open();
     for (const auto& object : result.objects)

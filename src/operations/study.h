@@ -3,7 +3,7 @@
 
 #include "operations.h"
 
-#include "ostraka/collection/objects.h"
+#include "ostraka/collection/object_part.h"
 
 namespace ostraka {
 
@@ -39,6 +39,7 @@ private:
     enum class PlotFormat { svg, pdf, png };
     FileInput truth_;
     std::string truth_column_, shard_;
+    bool own_truth_ = false;
     PlotFormat plots_ = PlotFormat::svg;
 };
 
@@ -47,6 +48,25 @@ struct StudyOperation : Operation {
     void check() const override { files.check(); }
 
     StudyFiles files;
+};
+
+/// Which part of the objects a study looks at.
+class StudyPart {
+public:
+    void describe(Parameters& p) {
+        options_.describe(p.options);
+        vocabulary_.describe(p, "by which tags are compared with the names of parts");
+    }
+    void check() const {
+        static_cast<void>(ObjectParts(options_));
+        if (vocabulary_ && options_.annotations.empty() && options_.without.empty())
+            fail_usage("--vocabulary is given without --annotation and --without", "name a part, or leave it away");
+    }
+    [[nodiscard]] ObjectParts parts() const { return ObjectParts(options_, vocabulary_.words(), vocabulary_.checksum()); }
+
+private:
+    PartOptions options_;
+    VocabularyOption vocabulary_;
 };
 
 /// The table result.failed: the objects that failed or were left out, also as notes. Returns how many.

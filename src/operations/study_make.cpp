@@ -1,6 +1,8 @@
 // study make: collections whose answers are known.
 #include "operations.h"
 
+#include "ostraka/annotation/colouring.h"
+#include "ostraka/annotation/label_file.h"
 #include "ostraka/collection/objects.h"
 #include "ostraka/collection/statuette_annotations.h"
 #include "ostraka/core/csv.h"
@@ -169,6 +171,9 @@ struct StudyMakeMoulds final : StudyMake {
             MeshExtras extras;
             extras.face_labels = std::move(casts[i].face_labels);
             write(plan[i].name, casts[i].mesh, extras, provenance);
+            if (cast.body)
+                write_annotations(folder.in(plan[i].name + ".ant.json"), annotate_head(casts[i], extras.face_labels),
+                                  casts[i].mesh, plan[i].name + ".ply", provenance);
             casts[i].mesh = {};
         });
         std::string truth = csv_row({"name", "label", "hair", "beard", "missing piece", "wear", "shrinkage", "seed"});
@@ -182,9 +187,28 @@ struct StudyMakeMoulds final : StudyMake {
 
         const std::vector<std::string> parts = head_part_names();
         report("objects", plan.size())("parts", parts);
-        report.line(std::to_string(plan.size()) + " heads in " + printable(folder.path().string()) +
-                    ", their moulds in truth.csv");
+        report.line(std::to_string(plan.size()) + (cast.body ? " statuettes with heads in " : " heads in ") +
+                    printable(folder.path().string()) + ", their moulds in truth.csv");
         for (std::size_t part = 0; part < parts.size(); ++part) report.row("", {part, parts[part]});
+    }
+
+    /// Its parts, and "head" for all of them but the body and the neck's stump.
+    static AnnotationSet annotate_head(const HeadCast& made, const std::vector<std::int32_t>& labels) {
+        std::map<std::int32_t, std::string> names;
+        const std::vector<std::string> parts = head_part_names();
+        for (std::size_t part = 0; part < parts.size(); ++part) names[static_cast<std::int32_t>(part)] = parts[part];
+        AnnotationSet set = regions_from_labels(made.mesh, labels, names);
+        set.object_class = "statuette";
+        set.unit = "mm";
+        set.up = made.up;
+        Annotation head;
+        head.id = static_cast<int>(parts.size());
+        head.tag = "head";
+        for (std::size_t f = 0; f < labels.size(); ++f)
+            if (labels[f] < static_cast<std::int32_t>(HeadPart::stump)) head.faces.push_back(static_cast<Index>(f));
+        head.colour = fresh_colour(made.mesh, set, head);
+        set.annotations.push_back(std::move(head));
+        return set;
     }
 
     MouldPopulationOptions population;

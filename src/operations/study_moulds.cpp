@@ -17,6 +17,7 @@ namespace {
 struct StudyMoulds final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
+        part.describe(p);
         p.options("similarity", similarity, "what the groups are found by", Choices(mould_similarities()));
         p.options("leave-out", leave_out, "labels of faces that are left out, such as beards").words();
         p.options("choices", choices, "write a table of the groups by every similarity, method and epsilon as well");
@@ -31,9 +32,15 @@ struct StudyMoulds final : StudyOperation {
                        number("relativeSize"), text("label"));
     }
 
+    void check() const override {
+        StudyOperation::check();
+        part.check();
+    }
+
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context, true);
-        const PreparedCollection prepared = prepare_collection(collection, compare, leave_out, files.store("features"));
+        const PreparedCollection prepared =
+            prepare_collection(collection, compare, leave_out, files.store("features"), part.parts());
         if (!prepared.waits_for.empty()) {
             report.line("part " + files.shard() + ": its " + prepared.waits_for +
                         " are done; once all parts have theirs, run them again for what depends on all");
@@ -268,6 +275,7 @@ struct StudyMoulds final : StudyOperation {
     std::string similarity = "combined";
     std::vector<int> leave_out;
     bool choices = false;
+    StudyPart part;
     CompareOptions compare;
     GroupOptions group;
     StabilityOptions stability;

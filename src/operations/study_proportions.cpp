@@ -107,6 +107,7 @@ Plot variation_plot(const ProportionStudy& study, const std::string& title) {
 struct StudyProportions final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, false, "folder of meshes, a list of objects (.study.json), or a table of measures (.csv)");
+        vocabulary.describe(p, "by which tags are compared with the names in --measures");
         p.input_option("measures", Kind::text, measures, "the measures to take on every object (.measures.json)");
         p.input_option("template-mesh", Kind::mesh, mesh, "mesh of the template that proportions are proposed for");
         p.input_option("template-annotations", Kind::annotations, annotations, "its annotations");
@@ -152,7 +153,9 @@ struct StudyProportions final : StudyOperation {
             report.empty_table("failed");
         } else {
             const Collection collection = files.read(context);
-            const std::vector<ObjectResult> taken = take_measures(collection, definitions(), files.store());
+            const TagWords words = vocabulary.words();
+            const std::vector<ObjectResult> taken =
+                take_measures(collection, definitions(), files.store(), vocabulary ? &words : nullptr, vocabulary.checksum());
             if (files.ends_with_part(report, taken)) return;
             failures = report_failures(report, collection, taken);
             table = measure_table(collection, taken, definitions(), notes, files.collection.file());
@@ -272,6 +275,7 @@ struct StudyProportions final : StudyOperation {
     GraphInput graph_in;
     GraphOutput graph;
     AnnotationsOutput annotations_out;
+    VocabularyOption vocabulary;
     ProportionOptions options;
     ProposalOptions proposals;
 };

@@ -14,6 +14,7 @@ namespace {
 struct StudyOfTechnique final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
+        part.describe(p);
         up.describe(p, "upward direction of all objects; else as their annotations say, else 0,0,1");
         slices.describe(p.options);
         options.describe(p.options);
@@ -32,9 +33,14 @@ struct StudyOfTechnique final : StudyOperation {
                        integer("slices.tooOpen"), integer("slices.empty"));
     }
 
+    void check() const override {
+        StudyOperation::check();
+        part.check();
+    }
+
     void run(Context& context, Report& report) override {
         const Collection collection = files.read(context);
-        const auto measured = measure_technique(collection, up.value(), slices, files.store());
+        const auto measured = measure_technique(collection, up.value(), slices, files.store(), part.parts());
         if (files.ends_with_part(report, measured)) return;
         report.notes(notes_on_directions(collection, measured));
         const std::vector<TechniqueObject> objects = technique_objects(collection, measured);
@@ -193,6 +199,7 @@ struct StudyOfTechnique final : StudyOperation {
     }
 
     DirectionOption up;
+    StudyPart part;
     TechniqueOptions slices;
     TechniqueStudyOptions options;
 };

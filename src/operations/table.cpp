@@ -7,12 +7,12 @@ namespace ostraka {
 
 // clang-format off
 std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repair(), make_mesh_simplify(),
-    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_make();
+    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_make();
 std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
     make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(), make_annotation_smooth(),
     make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
     make_annotation_edit(), make_annotation_diff(), make_annotation_merge(), make_annotation_infer();
-std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_list(),
+std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_edit(), make_relation_list(),
     make_relation_check(), make_relation_export();
 std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_measure_refresh(), make_measure_map(),
     make_measure_clay();
@@ -33,6 +33,7 @@ constexpr OperationEntry entries[]{
     {"mesh simplify", "fewer vertices, with annotations, labels and colours carried along", make_mesh_simplify},
     {"mesh refine", "more vertices, with annotations, labels and colours carried along", make_mesh_refine},
     {"mesh remesh", "a new mesh of the same surface, independent of the old one", make_mesh_remesh},
+    {"mesh extract", "cut annotated parts out of an object, with what is annotated on them", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment whose pose on the whole is known", make_mesh_break},
     {"mesh make", "make a closed mesh of an object whose parts are known exactly", make_mesh_make},
     {"annotation apply", "annotate a mesh by a recipe or from labels", make_annotation_apply},
@@ -55,6 +56,7 @@ constexpr OperationEntry entries[]{
     {"relation extract", "find relationships among annotations", make_relation_extract},
     {"relation add", "state a relationship", make_relation_add},
     {"relation remove", "take relationships out of a graph", make_relation_remove},
+    {"relation edit", "change weight, range and parameters of a relationship in place", make_relation_edit},
     {"relation list", "the relationships of a graph", make_relation_list},
     {"relation check", "tell which relationships hold on a mesh; exit code 3 if one fails", make_relation_check},
     {"relation export", "draw a graph, or write it for Graphviz", make_relation_export},
@@ -80,7 +82,7 @@ constexpr OperationEntry entries[]{
     {"cage weights", "coordinates of a mesh in a cage, with a certificate", make_cage_weights},
     {"cage influence", "colour a mesh, or its cage, by who moves what", make_cage_influence},
     {"study make proportions", "statuettes with annotations some of whose proportions are fixed, and the measures that find them", make_study_make_proportions},
-    {"study make moulds", "heads of figurines cast from a few moulds, each worn, pressed and scanned on its own", make_study_make_moulds},
+    {"study make moulds", "heads of figurines cast from a few moulds, each worn, pressed and scanned on its own", make_study_make_moulds, 2},
     {"study make technique", "statuettes thrown on the wheel and built by hand, with their annotations", make_study_make_technique},
     {"study landmarks", "lay the landmarks of a collection over each other (generalised Procrustes analysis): mean shape, sizes, principal components", make_study_landmarks},
     {"study proportions", "which ratios of measures are fixed over a collection (or a table of measures, .csv); exit code 3 if none is", make_study_proportions},

@@ -15,6 +15,7 @@ struct TemplateClassify final : Operation {
         p.input("files", Kind::shape_class, files,
                 "classes (.class.json), then a mesh file for each object (of landmarks for classes of landmarks)")
             .many();
+        vocabulary.describe(p, as_template_words);
         p.output_option("report", Kind::report, answer, "write the whole answer as JSON (doc/schema/classification.schema.json)");
         options.describe(p.options);
         p.report.schema = "classification";
@@ -111,15 +112,19 @@ struct TemplateClassify final : Operation {
     }
 
     [[nodiscard]] std::vector<ClassAnswer> ask_meshes(std::size_t i) const {
-        const WholeObject& object = files.load<WholeObject>(read_member, i);
+        const WholeObject& read = files.load<WholeObject>(read_member, i);
         return in_file(files.file(i), [&] {
-            const WholeShape whole = measure_whole_shape(object.mesh);
+            const WholeShape whole = measure_whole_shape(read.mesh);
             std::vector<ClassAnswer> list;
             for (std::size_t k = 0; k < classes.size(); ++k) {
                 LearnOptions how;
                 how.fit = options.fit;
                 how.correspondence = options.correspondence;
                 how.modes.sizes = classes[k].sizes;
+                std::optional<WholeObject> renamed;
+                if (vocabulary && known[k]->package.annotations)
+                    vocabulary.words().rename_like(renamed.emplace(read).annotations, *known[k]->package.annotations);
+                const WholeObject& object = renamed ? *renamed : read;
                 list.push_back(compare_with(classes[k], learn_member(known[k]->known(), object, how, &whole), options));
             }
             return list;
@@ -174,6 +179,7 @@ struct TemplateClassify final : Operation {
 
     FileInput files;
     JsonOutput answer;
+    VocabularyOption vocabulary;
     ClassifyOptions options;
     std::vector<const ClassWithTemplate*> known;
     std::vector<ShapeClass> classes;  ///< those known, with thresholds moderated by each other

@@ -29,6 +29,7 @@ struct TemplateLearn final : Operation {
             .with_annotations_beside();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; made if it is missing").flag();
         p.options("name", name, "of the class; else as the template says");
+        vocabulary.describe(p, as_template_words);
         p.options("given", given, "the same as --correspondence given");
         options.describe(p.options);
         p.report.values(text("class"), integer("members"), text("archetype"), number("meanSize", "", "length"),
@@ -73,7 +74,11 @@ struct TemplateLearn final : Operation {
         const auto laid_onto = [&](const FileInput& files) {
             std::vector<LearntMember> list;
             for (std::size_t i = 0; i < files.size(); ++i, progress.advance()) {
-                const WholeObject& object = files.load<WholeObject>(read_member, i);
+                const WholeObject& read = files.load<WholeObject>(read_member, i);
+                std::optional<WholeObject> renamed;
+                if (vocabulary && package.annotations)
+                    vocabulary.words().rename_like(renamed.emplace(read).annotations, *package.annotations);
+                const WholeObject& object = renamed ? *renamed : read;
                 list.push_back(in_file(files.file(i), [&] { return learn_member(class_template(package), object, options); }));
             }
             return list;
@@ -157,6 +162,7 @@ struct TemplateLearn final : Operation {
     FolderOutput output;
     std::string name;
     bool given = false;
+    VocabularyOption vocabulary;
     LearnOptions options;
 };
 

@@ -5,6 +5,8 @@
 #include "ostraka/shape_classes/member_file.h"
 #include "ostraka/shape_classes/propagate.h"
 
+#include <deque>
+
 namespace ostraka {
 
 namespace {
@@ -15,6 +17,7 @@ struct TemplatePropagate final : Operation {
         p.input("members", Kind::mesh, members, "a mesh file for each member; NAME.ant.json beside it are its annotations")
             .many()
             .with_annotations_beside();
+        vocabulary.describe(p, as_template_words);
         p.output("output", Kind::folder, output,
                  "folder for NAME.ant.json, NAME.fitted.ply and NAME.fitted.ant.json; made if it is missing")
             .flag();
@@ -46,7 +49,14 @@ struct TemplatePropagate final : Operation {
         if (!known->annotations || known->annotations->annotations.empty())
             fail_input(known.file(), "has no annotations", "pack them: there is nothing to propagate");
         std::vector<const WholeObject*> objects;
-        for (std::size_t i = 0; i < members.size(); ++i) objects.push_back(&members.load<WholeObject>(read_member, i));
+        std::deque<WholeObject> renamed;
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            objects.push_back(&members.load<WholeObject>(read_member, i));
+            if (!vocabulary) continue;
+            renamed.push_back(*objects.back());
+            vocabulary.words().rename_like(renamed.back().annotations, *known->annotations);
+            objects.back() = &renamed.back();
+        }
         output.open(0, false);  // other members may have theirs there
         for (const WholeObject* member : objects)
             for (const char* ending : {".ant.json", ".fitted.ply", ".fitted.ant.json"})
@@ -89,6 +99,7 @@ struct TemplatePropagate final : Operation {
     TemplateInput known;
     FileInput members;
     FolderOutput output;
+    VocabularyOption vocabulary;
     bool given = false;
     PropagateOptions options;
 };

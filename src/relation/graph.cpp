@@ -65,6 +65,9 @@ const std::vector<RelationType>& relation_types() {
                                  "keep shape",
                                  "keep measure",
                                  "same measure",
+                                 "same length",
+                                 "keep direction",
+                                 "keep position",
                                  "structural continuity",
                                  "proportion"})
             list.push_back({name, 1, 0, std::nullopt});

@@ -53,7 +53,7 @@ struct Outcome {
     bool solved = false;
     struct Residuals {
         std::vector<double> of_low_level;
-        double distance = 0;
+        double distance = 0, cost = 0, cost_before = 0;
     };
     std::vector<Residuals> residuals;  ///< of each constraint
     std::vector<std::string> texts;    ///< what is to be said of each
@@ -409,6 +409,8 @@ private:
             for (const auto& constraint : statements_[i].lower(edited, axes ? finished : last)) {
                 residuals.of_low_level.push_back(constraint->normalised_residual(finished.points));
                 residuals.distance = std::max(residuals.distance, constraint->greatest_distance(finished.points));
+                residuals.cost += constraint->weight() * constraint->squared_distance(finished.points);
+                residuals.cost_before += constraint->weight() * constraint->squared_distance(edited.points);
             }
         }
     }
@@ -439,6 +441,7 @@ private:
             auto list = outcome.residuals[i].of_low_level;
             std::sort(list.begin(), list.end());
             report.distance = outcome.residuals[i].distance;
+            if (!report.hard) report.cost = outcome.residuals[i].cost, report.cost_before = outcome.residuals[i].cost_before;
             if (report.hard && options_.space == DeformOptions::Space::cage && report.verdict != Verdict::holds)
                 report.text += (report.text.empty() ? "" : "; ") + std::string("off by ") + std::to_string(report.distance) +
                                (space_.set.unit.empty() ? "" : " ") + space_.set.unit +

@@ -68,6 +68,11 @@ private:
             }
             const JsonValue* threshold = find_member(select, "threshold");
             const JsonValue* scope = find_member(select, "scope");
+            if (threshold != nullptr && threshold->IsString() && std::string(threshold->GetString()) == "per-point") {
+                const std::vector<Index> found = strongest(*space_.coordinates, vertices);
+                chosen.insert(found.begin(), found.end());
+                return;
+            }
             const bool here = scope != nullptr && std::string(scope->GetString()) == "selection";
             // As in the thesis, figure 5.11, or less where the cage is so dense that a vertex of the part would have no handle.
             if (threshold == nullptr)
@@ -235,6 +240,18 @@ std::vector<Index> influential(const Coordinates& coordinates, const std::vector
     for (Index j = 0; j < influence.size(); ++j)
         if (influence[j] >= threshold) list.push_back(j);
     return list;
+}
+
+std::vector<Index> strongest(const Coordinates& coordinates, const std::vector<Index>& rows, double share) {
+    const WeightMatrix& weights = coordinates.vertex;
+    std::vector<bool> chosen(static_cast<std::size_t>(weights.cols()), false);
+    for (const Index row : rows) {
+        const auto of_row = weights.row(static_cast<Eigen::Index>(row));
+        const double least = share * of_row.maxCoeff();
+        for (Eigen::Index j = 0; j < weights.cols(); ++j)
+            if (of_row[j] >= least && of_row[j] > 0) chosen[static_cast<std::size_t>(j)] = true;
+    }
+    return flagged(chosen);
 }
 
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation) { return touched_vertices(mesh, annotation); }

@@ -142,11 +142,14 @@ public:
     /// The measure that `name` names by id or name in the annotation; the only one if it is left out.
     [[nodiscard]] const Measure& measure(const char* name, const Annotation& annotation) const {
         const JsonValue* value = given(name);
+        // "equal attributes" names its attribute as the relation does.
+        const std::string& stated = relationship_.parameters.attribute;
         const Measure* found = nullptr;
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type != AttributeType::measure) continue;
-            const bool here = value == nullptr || (value->IsInt() && value->GetInt() == attribute.id) ||
-                              (value->IsString() && attribute.name == value->GetString());
+            const bool here = value == nullptr ? stated.empty() || attribute.name == stated
+                                               : (value->IsInt() && value->GetInt() == attribute.id) ||
+                                                     (value->IsString() && attribute.name == value->GetString());
             if (!here) continue;
             if (found != nullptr)
                 fail("annotation " + std::to_string(annotation.id) + " has several measures that " + name + " may mean",
@@ -194,7 +197,7 @@ using ReaderPtr = std::shared_ptr<const Reader>;  ///< what statements keep
 /// Verdict of deviations against their tolerances.
 Measured verdict_of(std::vector<Deviation> deviations);
 
-// One function a type: shapes.cpp, axes.cpp, measures.cpp, places.cpp, low_level.cpp.
+// One function a type, or several: shapes.cpp, axis_constraints.cpp, measures.cpp, places.cpp, parts_kept.cpp, low_level.cpp.
 Statement keep_shape(const ReaderPtr&, const RelationOptions&);
 Statement same_level(const ReaderPtr&, const RelationOptions&);
 Statement co_axiality(const ReaderPtr&, const RelationOptions&);
@@ -207,6 +210,13 @@ Statement co_planarity(const ReaderPtr&, const RelationOptions&);
 Statement co_linearity(const ReaderPtr&, const RelationOptions&);
 Statement mirror_symmetry(const ReaderPtr&, const RelationOptions&);
 Statement adjacency(const ReaderPtr&, const RelationOptions&);
+Statement selections_kept(const ReaderPtr&, const RelationOptions&);
+Statement support(const ReaderPtr&, const RelationOptions&);
+Statement contact(const ReaderPtr&, const RelationOptions&);
+Statement part_similarity(const ReaderPtr&, const RelationOptions&);
+Statement same_length(const ReaderPtr&, const RelationOptions&);
+Statement keep_direction(const ReaderPtr&, const RelationOptions&);
+Statement keep_position(const ReaderPtr&, const RelationOptions&);
 /// The kind of the solver whose name the type is ("edge strain"); nullptr if there is none.
 const ConstraintKind* low_level_kind(const std::string& type);
 Statement low_level(const ReaderPtr&, const RelationOptions&);

@@ -13,11 +13,14 @@ namespace {
 using Understanding = Statement (*)(const ReaderPtr&, const RelationOptions&);
 const std::map<std::string, Understanding>& table() {
     static const std::map<std::string, Understanding> rows{
-        {"keep shape", keep_shape},     {"same level", same_level},         {"co-axiality", co_axiality},
-        {"parallel axes", axis_angle},  {"perpendicular axes", axis_angle}, {"structural continuity", structural_continuity},
-        {"proportion", proportion},     {"keep measure", keep_measure},     {"same measure", same_measure},
-        {"co-planarity", co_planarity}, {"co-linearity", co_linearity},     {"mirror symmetry", mirror_symmetry},
-        {"adjacency", adjacency},
+        {"keep shape", keep_shape},         {"same level", same_level},         {"co-axiality", co_axiality},
+        {"parallel axes", axis_angle},      {"perpendicular axes", axis_angle}, {"structural continuity", structural_continuity},
+        {"proportion", proportion},         {"keep measure", keep_measure},     {"same measure", same_measure},
+        {"co-planarity", co_planarity},     {"co-linearity", co_linearity},     {"mirror symmetry", mirror_symmetry},
+        {"adjacency", adjacency},           {"containment", selections_kept},   {"equal selections", selections_kept},
+        {"horizontal support", support},    {"side contact", contact},          {"part similarity", part_similarity},
+        {"equal attributes", same_measure}, {"same length", same_length},       {"keep direction", keep_direction},
+        {"keep position", keep_position},
     };
     return rows;
 }

@@ -1,7 +1,7 @@
 // Rows of B over the unknowns of a sparse system, and the matrices made of them.
 #pragma once
 
-#include "cholesky.h"
+#include "ostraka/core/cholesky.h"
 #include "ostraka/solver/constraint.h"
 
 #include <span>

@@ -13,7 +13,6 @@ namespace ostraka {
 
 namespace {
 
-using solver::LowerTriangle;
 using solver::RowMatrix;
 
 double diagonal_of(const Points& points) {
@@ -35,7 +34,7 @@ struct MeshSpaceSolver::State {
     RowMatrix columns;         ///< B^T of all rows
     RowMatrix moving_columns;  ///< B^T of the rows whose projection changes
     bool has_pattern = false, has_factor = false, has_constants = false;
-    solver::SparseCholesky cholesky;
+    SparseCholesky cholesky;
     solver::Floating floating;
     std::vector<char> idle;
     double pin = 0, regularisation = 0, symbolic_seconds = 0;

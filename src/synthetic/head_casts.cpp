@@ -16,7 +16,18 @@ using Eigen::Vector3d;
 
 namespace {
 
-enum Stream : std::uint64_t { hand_stream = 1, pressure_stream, wear_stream, noise_stream, break_stream, pose_stream };
+enum Stream : std::uint64_t {
+    hand_stream = 1,
+    pressure_stream,
+    wear_stream,
+    noise_stream,
+    break_stream,
+    pose_stream,
+    body_stream
+};
+
+/// Of the surface of a head, mm^2.
+constexpr double head_area = 4300;
 
 HandWork draw_hand_work(const CastOptions& options, bool beard) {
     Random draw(options.seed, hand_stream);
@@ -34,6 +45,10 @@ HandWork draw_hand_work(const CastOptions& options, bool beard) {
     const auto dents = options.dents > 0 ? draw.below(static_cast<std::uint64_t>(options.dents) + 1) : 0;
     for (std::uint64_t i = 0; i < dents; ++i)
         work.dents.push_back({draw.uniform(-8, 8), draw.uniform(5, 33), draw.uniform(1, 2.5), draw.uniform(0.15, 0.5)});
+    if (options.body) {
+        Random body(options.seed, body_stream);
+        work.body = {body.uniform(70, 110), body.uniform(16, 22), body.uniform(11, 15), body.uniform(13, 18)};
+    }
     return work;
 }
 
@@ -111,9 +126,10 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
     cast.beard = broken.uniform() < options.beard;
     cast.chunk = broken.uniform() < options.chunk;
     MakeOptions make;
-    make.vertices = options.vertices;
+    const HandWork work = draw_hand_work(options, cast.beard);
+    make.vertices = static_cast<std::uint64_t>(static_cast<double>(options.vertices) * (1 + work.body.area() / head_area));
     make.seed = options.seed;
-    SyntheticMesh made = meshed(*head_object(shape, draw_hand_work(options, cast.beard)), make);
+    SyntheticMesh made = meshed(*head_object(shape, work), make);
     Mesh& mesh = made.mesh;
 
     Random wear(options.seed, wear_stream), pressure(options.seed, pressure_stream), noise(options.seed, noise_stream);
@@ -129,7 +145,7 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
                           broken.uniform(8, 36));
     const double reach = broken.uniform(4.5, 7);
     for (const Face face : mesh.faces()) {
-        if (made.face_labels[face] == static_cast<std::int32_t>(HeadPart::stump)) keep[face] = false;
+        if (!options.body && made.face_labels[face] == static_cast<std::int32_t>(HeadPart::stump)) keep[face] = false;
         if (cast.chunk && (eigen(centroid(mesh, face)) - struck).norm() < reach) keep[face] = false;
     }
     SubMesh rest = keep_faces(mesh, keep, true);
@@ -143,6 +159,8 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
         rotation = Eigen::Quaterniond(pose.normal(), pose.normal(), pose.normal(), pose.normal()).normalized().toRotationMatrix();
         translation = 3 * head_height * Vector3d(pose.uniform(), pose.uniform(), pose.uniform());
     }
+    const Vector3d up = rotation.col(2);
+    cast.up = {up.x(), up.y(), up.z()};
     for (const Vertex v : cast.mesh.vertices())
         cast.mesh.point(v) = point_of((1 - cast.shrinkage) * (rotation * eigen(cast.mesh.point(v))) + translation);
     return cast;
@@ -203,6 +221,7 @@ void CastOptions::describe(OptionList& visit) {
     visit("beard", beard, "share of the casts that bear a beard added by hand", Range{0, 1});
     visit("chunk", chunk, "share of the casts that miss a piece of the face", Range{0, 1});
     visit("dents", dents, "small dents in the front, up to", Range{0, 20});
+    visit("body", body, "whole statuettes: each head on a body of its own, which tells nothing of the mould");
     visit("keep-pose", keep_pose, "leave heads upright, looking along x, instead of turned and moved at random", Anything{});
     visit("vertices", vertices, "number of vertices of the whole head", Range{1500, 1e6});
     visit("cast-seed", seed, "draws all of it, and the mesh", Range{0, 9007199254740992.0});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace ostraka {
 
@@ -25,7 +26,7 @@ public:
           object_(shapes::start_object("head", "head of a figurine", "face, hair, ears, neck", 0, 1500, 2.6)) {}
 
     std::unique_ptr<const SyntheticObject> build() {
-        const std::array<std::array<std::uint8_t, 3>, 12> colours{{{205, 160, 120},
+        const std::array<std::array<std::uint8_t, 3>, 13> colours{{{205, 160, 120},
                                                                    {220, 175, 130},
                                                                    {150, 170, 190},
                                                                    {190, 110, 90},
@@ -36,7 +37,8 @@ public:
                                                                    {80, 60, 50},
                                                                    {170, 160, 150},
                                                                    {200, 150, 115},
-                                                                   {140, 140, 140}}};
+                                                                   {140, 140, 140},
+                                                                   {185, 135, 100}}};
         const auto names = head_part_names();
         for (std::size_t i = 0; i < names.size(); ++i) shapes::add_part(*object_, names[i], colours[i]);
         bare_head();
@@ -50,6 +52,7 @@ public:
         if (w_.beard) beard();
         dents();
         bumps();
+        if (w_.body.height > 0) body();
         cuts();
         object_->finish();
         return std::move(object_);
@@ -266,18 +269,35 @@ private:
         }
     }
 
+    void body() {
+        const auto& b = w_.body;
+        const double foot = -b.height;
+        const std::vector<Eigen::Vector2d> profile{{0, foot},
+                                                   {0.8 * b.base, foot},
+                                                   {b.base, foot + 0.03 * b.height},
+                                                   {0.5 * (b.base + b.radius), foot + 0.15 * b.height},
+                                                   {b.radius, foot + 0.4 * b.height},
+                                                   {b.shoulder, -0.3 * b.height},
+                                                   {0.85 * b.shoulder, -0.18 * b.height},
+                                                   {8.5, -8},
+                                                   {4, -4},
+                                                   {0, -2}};
+        add(make_revolved(at({-4, 0, 0}), profile), HeadPart::body, 1);
+    }
+
     void cuts() {
         for (std::size_t part = 0; part < object_->parts.size(); ++part) {
             const int from = static_cast<int>(part);
-            if (from == label(HeadPart::back) || from == label(HeadPart::stump)) continue;
+            if (from == label(HeadPart::back) || from == label(HeadPart::stump) || from == label(HeadPart::body)) continue;
             const HandWork w = w_;
             object_->cuts.push_back({from, label(HeadPart::back), [w](const Vector3d& p) {
                                          return p.x() - w.cut_back - w.cut_tilt * (p.z() - 20) - w.cut_turn * p.y();
                                      }});
         }
         for (std::size_t part = 0; part < object_->parts.size(); ++part)
-            object_->cuts.push_back(
-                {static_cast<int>(part), label(HeadPart::stump), [](const Vector3d& p) { return p.z() + 4 + 0.15 * p.x(); }});
+            if (static_cast<int>(part) != label(HeadPart::body))
+                object_->cuts.push_back(
+                    {static_cast<int>(part), label(HeadPart::stump), [](const Vector3d& p) { return p.z() + 4 + 0.15 * p.x(); }});
     }
 
     const HeadShape& s_;
@@ -289,8 +309,10 @@ private:
 }  // namespace
 
 std::vector<std::string> head_part_names() {
-    return {"face", "nose", "eyes", "mouth", "chin", "hair", "ears", "hat", "beard", "back", "neck", "stump"};
+    return {"face", "nose", "eyes", "mouth", "chin", "hair", "ears", "hat", "beard", "back", "neck", "stump", "body"};
 }
+
+double HandWork::Body::area() const { return height > 0 ? 2 * std::numbers::pi * radius * height + 4 * base * base : 0; }
 
 HeadShape head_archetype(const ArchetypeOptions& options) {
     check_options(options, "head");

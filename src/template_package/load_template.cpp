@@ -146,7 +146,12 @@ private:
     }
 
     std::string read_coordinates(const PackagedFile& part) {
-        const std::vector<std::size_t> shape = shape_of_matrix(part.file);
+        // The places of sparse weights belong to the header of the weights, which is read with these.
+        if (part.name.ends_with(".columns.npy") || part.name.ends_with(".rows.npy")) {
+            static_cast<void>(read_npy_integers(part.file));
+            return "places of sparse weights";
+        }
+        const std::vector<std::size_t> shape = shape_of(part.file);
         if (result_.mesh && shape[0] != result_.mesh->mesh.number_of_vertices())
             defect(part.name, "the coordinates have " + to_string(shape[0]) + " rows, the mesh " +
                                   to_string(result_.mesh->mesh.number_of_vertices()) + " vertices");
@@ -178,6 +183,14 @@ private:
         for (const auto& cage : result_.cages)
             if (cage) known = true, found = found || header.cage.sha256 == mesh_checksum(*cage);
         if (known && !found) defect(part.name, "its header says that it was computed for another cage");
+    }
+
+    /// Of sparse weights as their header has it.
+    static std::vector<std::size_t> shape_of(const Path& file) {
+        if (file_exists(coordinate_header_file(file)))
+            if (const CoordinateHeader header = read_coordinate_header(file); header.sparse)
+                return {header.mesh.vertices, header.sparse->columns};
+        return shape_of_matrix(file);
     }
 
     static std::vector<std::size_t> shape_of_matrix(const Path& file) {

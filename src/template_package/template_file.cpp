@@ -1,4 +1,5 @@
 // *.template.json
+#include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/inside.h"
 #include "ostraka/core/json_build.h"
@@ -116,7 +117,14 @@ TemplateFile copy_template(const TemplateFile& file, const Path& folder, const s
                        "rename one of them");
         const Path place = folder / part.name;
         const std::string bytes = read_file(part.file);
-        if (!same_place(place, part.file)) write_file(place, bytes);
+        if (!same_place(place, part.file)) {
+            write_file(place, bytes);
+            // Coordinates are read with their header, sparse ones with their places as well.
+            if (extension(part.file) == ".npy")
+                for (const Path& companion :
+                     {coordinate_header_file(part.file), sparse_columns_file(part.file), sparse_rows_file(part.file)})
+                    if (file_exists(companion)) write_file(folder / companion.filename().string(), read_file(companion));
+        }
         part.sha256 = sha256(bytes);
         part.file = place;
     }

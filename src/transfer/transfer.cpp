@@ -135,6 +135,7 @@ private:
         to.type = score.source_type = from.type;
         to.all = from.all;
         to.note = from.note;
+        to.information = from.information;
         std::set<Index> vertices(from.points.begin(), from.points.end());
         for (const SourcePath& vertex_path : vertex_paths_[index_of(score)])
             vertices.insert(vertex_path.vertices.begin(), vertex_path.vertices.end());

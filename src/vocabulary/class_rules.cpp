@@ -1,6 +1,7 @@
 #include "ostraka/vocabulary/class_rules.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/vocabulary/tag_words.h"
 #include "ostraka/vocabulary/text_match.h"
 
 #include "words.h"
@@ -136,16 +137,10 @@ private:
             if (subject.type && annotation.type != *subject.type) continue;
             const bool same = subject.tag == "*" ? true
                               : wanted           ? concepts_[i] && search_->is_a(*concepts_[i], *wanted)
-                                                 : same_tag(annotation.tag, subject.tag);
+                                                 : letters_.means(annotation.tag, subject.tag);
             if (same) list.push_back(&annotation);
         }
         return list;
-    }
-
-    /// Without a vocabulary: by the letters, a number at the end of the annotation's tag aside.
-    static bool same_tag(const std::string& tag, const std::string& wanted) {
-        const std::string text = folded(tag), other = folded(wanted);
-        return text == other || without_number(text) == other;
     }
 
     void count(const CountRule& rule) {
@@ -250,6 +245,7 @@ private:
     std::string where_, at_;
     std::optional<VocabularySearch> search_;
     std::vector<std::optional<std::size_t>> concepts_;
+    TagWords letters_;  ///< where there is no vocabulary
     std::map<int, std::set<int>> contained_;
     const ClassRule* rule_ = nullptr;
 };

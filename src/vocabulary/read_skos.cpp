@@ -58,6 +58,7 @@ public:
         join_narrower();
         for (Concept& entry : vocabulary_.concepts) {
             sort(entry.broader);
+            sort(entry.part_of);
             sort(entry.others);
             for (auto& [language, labels] : entry.alternatives) sort(labels);
         }
@@ -227,6 +228,13 @@ private:
                 ++outside_;
             }
             if (property == skos::core + "narrower" && value.kind == Kind::uri && ids_.contains(value.value)) return;
+            if (property == skos::thesaurus + "broaderPartitive" && value.kind == Kind::uri)
+                if (const auto found = ids_.find(value.value); found != ids_.end()) {
+                    entry.part_of.push_back(found->second);
+                    return;
+                }
+            if (property == skos::thesaurus + "narrowerPartitive" && value.kind == Kind::uri && ids_.contains(value.value))
+                return;
             keep(entry.others, property, value);
         });
         entry.attributes = attributes_of(term);
@@ -237,6 +245,10 @@ private:
             for (const RdfTerm& other : graph_.values(term, skos::core + "narrower"))
                 if (const auto found = index_.find(other.value); found != index_.end() && other.kind == Kind::uri)
                     vocabulary_.concepts[found->second].broader.push_back(ids_.at(term.value));
+        for (const RdfTerm& term : concepts_)
+            for (const RdfTerm& other : graph_.values(term, skos::thesaurus + "narrowerPartitive"))
+                if (const auto found = index_.find(other.value); found != index_.end() && other.kind == Kind::uri)
+                    vocabulary_.concepts[found->second].part_of.push_back(ids_.at(term.value));
     }
 
     /// What the file calls it: its first label, or its URI.

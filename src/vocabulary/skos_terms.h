@@ -13,6 +13,8 @@ inline const std::string rdfs = "http://www.w3.org/2000/01/rdf-schema#";
 inline const std::string xsd = "http://www.w3.org/2001/XMLSchema#";
 inline const std::string core = "http://www.w3.org/2004/02/skos/core#";
 inline const std::string xl = "http://www.w3.org/2008/05/skos-xl#";
+/// ISO 25964: wholes and parts (broaderPartitive, narrowerPartitive).
+inline const std::string thesaurus = "http://purl.org/iso25964/skos-thes#";
 inline const std::string dcterms = "http://purl.org/dc/terms/";
 /// Ours: attributes that a concept may carry, and rules.
 inline const std::string own = "urn:ostraka:ns#";

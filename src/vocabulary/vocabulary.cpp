@@ -111,14 +111,23 @@ private:
 
     void broader(std::size_t i) const {
         const Concept& entry = vocabulary_.concepts[i];
+        named(i, entry.broader, "broader", "narrower than");
+        named(i, entry.part_of, "partOf", "a part of");
+        if (std::find(entry.part_of.begin(), entry.part_of.end(), entry.id) != entry.part_of.end())
+            fail("/concepts/" + to_string(i) + "/partOf", "'" + entry.id + "' is said to be a part of itself", "remove it");
+    }
+
+    /// Ids of other concepts in a member of one.
+    void named(std::size_t i, const std::vector<std::string>& ids, const std::string& member, const std::string& said) const {
+        const Concept& entry = vocabulary_.concepts[i];
         std::set<std::string> seen;
-        for (const std::string& id : entry.broader) {
-            const std::string at = "/concepts/" + to_string(i) + "/broader";
+        for (const std::string& id : ids) {
+            const std::string at = "/concepts/" + to_string(i) + "/" + member;
             if (!seen.insert(id).second) fail(at, "'" + id + "' stands twice", "keep one of the two");
             if (ids_.contains(id)) continue;
             std::vector<std::string> known;
             for (const Concept& other : vocabulary_.concepts) known.push_back(other.id);
-            fail(at, "'" + entry.id + "' is said to be narrower than '" + id + "', which is no concept's id",
+            fail(at, "'" + entry.id + "' is said to be " + said + " '" + id + "', which is no concept's id",
                  "add that concept or mend the id" + did_you_mean(near_misses(id, known)));
         }
     }
@@ -244,6 +253,7 @@ VocabularySearch::VocabularySearch(const Vocabulary& vocabulary) : vocabulary_(v
     };
     for (const AllowedAttribute& attribute : vocabulary.attributes) common_.try_emplace(folded(attribute.name), &attribute);
     broader_.resize(count);
+    part_of_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Concept& entry = vocabulary.concepts[i];
         add(entry.id, i);
@@ -251,6 +261,7 @@ VocabularySearch::VocabularySearch(const Vocabulary& vocabulary) : vocabulary_(v
         for (const auto& [language, labels] : entry.alternatives)
             for (const auto& label : labels) add(label, i);
         for (const auto& id : entry.broader) broader_[i].push_back(ids_.at(id));
+        for (const auto& id : entry.part_of) part_of_[i].push_back(ids_.at(id));
     }
 }
 
@@ -279,6 +290,22 @@ std::vector<std::size_t> VocabularySearch::lineage(std::size_t concept_index) co
         for (const std::size_t next : broader_[line[k]])
             if (seen.insert(next).second) line.push_back(next);
     return line;
+}
+
+std::vector<std::vector<std::size_t>> VocabularySearch::wholes_of(std::size_t concept_index) const {
+    std::vector<std::vector<std::size_t>> levels;
+    std::set<std::size_t> seen{concept_index};
+    std::vector<std::size_t> front{concept_index};
+    while (!front.empty()) {
+        std::vector<std::size_t> next;
+        for (const std::size_t part : front)
+            for (const std::size_t kind : lineage(part))
+                for (const std::size_t whole : part_of_[kind])
+                    if (seen.insert(whole).second) next.push_back(whole);
+        if (!next.empty()) levels.push_back(next);
+        front = std::move(next);
+    }
+    return levels;
 }
 
 bool VocabularySearch::is_a(std::size_t concept_index, std::size_t other) const {

@@ -87,6 +87,8 @@ Concept concept_of(const JsonValue& object, const std::string& where, const std:
     for (auto& [language, labels] : result.alternatives) labels = canonical(std::move(labels));
     result.broader = names_in(object, "broader");
     std::sort(result.broader.begin(), result.broader.end());
+    result.part_of = names_in(object, "partOf");
+    std::sort(result.part_of.begin(), result.part_of.end());
     result.definition = labels_of(object, "definition");
     result.attributes = attributes_of(object);
     result.others = statements_of(object, where, at);
@@ -208,6 +210,7 @@ private:
         for (const auto& [language, others] : entry.alternatives) add_members(alternatives, allocator_, language, others);
         add_given(object, allocator_, "alternatives", std::move(alternatives));
         names(object, "broader", entry.broader);
+        names(object, "partOf", entry.part_of);
         labels(object, "definition", entry.definition);
         attributes(object, entry.attributes);
         statements(object, entry.others);

@@ -45,6 +45,7 @@ public:
                 for (const auto& label : alternatives) add(term, skos::core + "altLabel", {Kind::text, label, language, {}});
             labels(term, skos::core + "definition", entry.definition);
             for (const auto& id : entry.broader) add(term, skos::core + "broader", terms.at(id));
+            for (const auto& id : entry.part_of) add(term, skos::thesaurus + "broaderPartitive", terms.at(id));
             if (entry.broader.empty()) add(term, skos::core + "topConceptOf", scheme_);
             position(term, i);
             attributes(term, entry.attributes);

@@ -288,7 +288,7 @@ def weights(settings):
 OPERATIONS = {"annotation transfer": transfer, "cage weights": weights}
 NAMES = {"annotation transfer": {"source", "annotations", "target", "output"}, "cage weights": {"mesh", "cage", "output"}}
 CHOICES = {  # words that an option takes, the supported one first
-    "kind": ["mean-value", "green"],
+    "kind": ["mean-value", "green", "harmonic", "local", "positive-mean-value"],
     "rounding": ["balanced", "path", "area"],
     "cover": ["overlapping", "enclosing", "enclosed"],
 }

@@ -27,6 +27,8 @@ def files_named(words):
 
 def flip_sign(file):
     weights = np.load(file)
+    if weights.ndim < 2:  # sparse weights: the kit says of them only that they are there
+        return
     weights[0, np.abs(weights[0]).argmax()] *= -1
     np.save(file, weights)
 

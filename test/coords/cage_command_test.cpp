@@ -147,7 +147,7 @@ TEST_F(CageCommand, BadInput) {
     write_mesh(far, build_mesh(test::moved(test::octahedron_sphere(1), 1, {3, 0, 0})));
     refused("weights " + ball + " " + open + " " + weights, 1, "is open");
     refused("weights " + ball + " " + far + " " + weights + " --kind green", 1, "strictly inside");
-    refused("weights " + ball + " " + box + " " + weights + " --kind harmonic", 2, "harmonic");
+    refused("weights " + ball + " " + box + " " + weights + " --kind no-such-kind", 2, "no-such-kind");
     refused("weights " + ball + " " + box + " " + (scratch / "w.txt").string(), 2, ".npy");
     refused("weights " + ball + " " + (scratch / "none.ply").string() + " " + weights, 1, "none.ply");
     refused("weights " + ball + " " + box + " " + (scratch / "no" / "w.npy").string(), 1, "folder");

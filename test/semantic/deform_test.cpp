@@ -73,7 +73,7 @@ TEST(Deform, ContradictionsAreToldAndLeaveNoHoles) {
     // Upright and level planes at once, through one pair of flowers, both hard.
     graph.relationships.push_back(constraint(0, "keep shape", {5}, R"({"hard": true})"));
     graph.relationships.push_back(constraint(1, "same level", {5, 6}, R"({"hard": true, "direction": [1, 0, 0]})"));
-    graph.relationships.push_back(constraint(2, "part similarity", {5, 6}, "{}"));
+    graph.relationships.push_back(constraint(2, "of my own", {5, 6}, "{}"));
     DeformOptions options;
     options.rounds = 5;
     options.conflicts = 0;

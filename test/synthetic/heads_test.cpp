@@ -126,6 +126,34 @@ TEST(Heads, APlanDealsHeadsEvenlyAndNamesTellNothing) {
     EXPECT_FALSE(in_turn);
 }
 
+TEST(Heads, StandOnBodiesOfTheirOwn) {
+    CastOptions options = quick(3);
+    options.keep_pose = false;
+    const HeadCast head = cast_head(archetype(2), options);
+    options.body = true;
+    const HeadCast whole = cast_head(archetype(2), options);
+    EXPECT_TRUE(CGAL::is_closed(whole.mesh));
+    const auto area_where = [](const HeadCast& cast, const std::function<bool(HeadPart)>& holds) {
+        double sum = 0;
+        for (const Face f : cast.mesh.faces())
+            if (holds(static_cast<HeadPart>(cast.face_labels[f]))) sum += face_area(cast.mesh, f);
+        return sum;
+    };
+    const auto of_head = [](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; };
+    EXPECT_NEAR(area_where(whole, of_head) / area_where(head, of_head), 1, 0.05);
+    EXPECT_GT(area_where(whole, [](HeadPart part) { return part == HeadPart::body; }), area_where(head, of_head));
+    // Up goes from the body to the head.
+    const Vector up(whole.up[0], whole.up[1], whole.up[2]);
+    double low = 1e300, high = -1e300;  // of the body's faces, of the head's
+    for (const Face f : whole.mesh.faces()) {
+        const double height = up * (centroid(whole.mesh, f) - CGAL::ORIGIN);
+        if (of_head(static_cast<HeadPart>(whole.face_labels[f]))) high = std::max(high, height);
+        else low = std::min(low, height);
+    }
+    EXPECT_GT(high - low, 100);
+    EXPECT_NEAR(up.squared_length(), 1, 1e-9);
+}
+
 TEST(Heads, RefusesWhatCannotBeMade) {
     CastOptions options = quick(1);
     options.vertices = 100;

@@ -56,6 +56,19 @@ struct Attribute {
     std::string origin{};   ///< semantic: how the word came about where no person stated it, e.g. the rule and its inputs
 };
 
+/// What an annotation refers to besides its tag (section 2.2.1): words, a link, or a file, with its checksum when that is a local
+/// one.
+struct Information {
+    enum class Kind { text, image, link, file } kind = Kind::text;
+    std::string value;   ///< the text, or where the image, link or file is: a URL, or a path relative to the annotation file
+    std::string title;   ///< what people read for it; may be empty
+    std::string sha256;  ///< of the bytes of a local image or file; empty where it is not known
+    bool operator==(const Information&) const = default;
+    /// An image or a file that is no URL.
+    [[nodiscard]] bool is_local() const;
+};
+std::string to_string(Information::Kind kind);
+
 enum class AnnotationType { point, line, region };
 
 /// The colour of what tells no part from another: the whole object.
@@ -76,6 +89,7 @@ struct Annotation {
     std::vector<std::vector<SurfacePlace>> curves;
     bool all = false;  ///< a region that is the whole mesh: `faces` lists every face
     std::vector<Attribute> attributes;
+    std::vector<Information> information;
     std::string note;  ///< what a transfer or a simplification had to do to it, if anything
 };
 

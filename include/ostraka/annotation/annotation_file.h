@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
+#include "ostraka/core/finding.h"
 #include "ostraka/core/options.h"
 #include "ostraka/core/provenance.h"
 
@@ -35,5 +36,12 @@ std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::st
 /// Checks a set in memory as reading checks a file: ids, colours, indices, edges, pins. Throws Error (input); `where` is named
 /// first.
 void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where);
+
+/// As an annotation file holds it. Throws Error (input) for a checksum of what is no local file.
+std::vector<Information> information_from_json(JsonValue::ConstArray list, const std::string& where, const std::string& pointer);
+
+/// Local files that annotations refer to, relative to `folder`: defects where one is missing or its bytes are not those that the
+/// checksum is of; remarks where none is known.
+std::vector<Finding> check_information(const AnnotationSet& set, const Path& folder);
 
 }  // namespace ostraka

@@ -4,6 +4,7 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/collection/measure_table.h"
 #include "ostraka/collection/objects.h"
+#include "ostraka/vocabulary/tag_words.h"
 
 #include <array>
 #include <optional>
@@ -57,12 +58,15 @@ struct ObjectMeasures {
 };
 
 /// Takes the measures of an object from its files; the mesh is read only where a measure needs it. A measure that cannot be taken
-/// (no such annotation, no path, no direction) is missing, with a note. Throws Error (input) if a file that is needed cannot be
-/// read, or if no measure at all can be taken.
-ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions);
+/// (no such annotation, no path, no direction) is missing, with a note. Annotations are those of the tag; with `words`, where
+/// none has it to the letter, those whose tag means it. Throws Error (input) if a file that is needed cannot be read, or if no
+/// measure at all can be taken.
+ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefinitions& definitions,
+                             const TagWords* words = nullptr);
 
 /// The same on a mesh with annotations in memory.
-ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions);
+ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
+                             const TagWords* words = nullptr);
 
 Json object_measures_to_json(const ObjectMeasures& measures);
 ObjectMeasures object_measures_from_json(const JsonValue& value);
@@ -74,7 +78,8 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
 
 /// The measures of every object of a collection, as JSON; results are kept in the store.
 std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
-                                        const ResultStore& store = ResultStore());
+                                        const ResultStore& store = ResultStore(), const TagWords* words = nullptr,
+                                        const std::string& words_checksum = {});
 /// Their table. What the same note says of several objects is one note. Throws Error (input) where not one object could be
 /// measured; `where` is what the collection was read from.
 MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& taken,

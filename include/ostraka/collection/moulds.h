@@ -1,7 +1,7 @@
 // Which heads come from one mould: similarities of all pairs, and groups.
 #pragma once
 
-#include "ostraka/collection/objects.h"
+#include "ostraka/collection/object_part.h"
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/options.h"
 #include "ostraka/registration/align.h"
@@ -60,13 +60,14 @@ struct PreparedCollection {
     std::string waits_for;              ///< "sizes" or "features" of other shares that are not there yet: no heads
 };
 
-/// Reads the meshes, without the faces that bear one of the labels `leave_out` (of what is left, the largest piece), and finds
-/// their features. Without a size in the options it is the median of the square roots of the areas, to the nearest power of 1.1,
-/// so that another head seldom changes it. Features are kept in `store`, sizes in its part "sizes". With a store of a
-/// share, the sizes of the share are made first; its features once all sizes are there, and heads once all features are. Throws
-/// as `for_each_object`.
+/// Reads the meshes, or the parts of them that are meant, without the faces that bear one of the labels `leave_out` (of what is
+/// left, the largest piece), and finds their features. Without a size in the options it is the median of the square roots of the
+/// areas, to the nearest power of 1.1, so that another head seldom changes it. Features are kept in `store`, sizes in its part
+/// "sizes". With a store of a share, the sizes of the share are made first; its features once all sizes are there, and heads once
+/// all features are. Throws as `for_each_object`.
 PreparedCollection prepare_collection(const Collection& collection, const CompareOptions& options,
-                                      const std::vector<int>& leave_out, const ResultStore& store);
+                                      const std::vector<int>& leave_out, const ResultStore& store,
+                                      const ObjectParts& parts = ObjectParts());
 
 /// "matches", "consistent", "registration", "combined".
 std::vector<std::string> mould_similarities();

@@ -9,9 +9,12 @@
 namespace ostraka {
 
 /// "weights.npy" has the header "weights.coordinates.json" and, for Green coordinates, its normal weights in
-/// "weights.normal.npy", in the same folder.
+/// "weights.normal.npy", in the same folder. Of sparse coordinates it holds the stored weights, row by row; their columns are in
+/// "weights.columns.npy", and where each row begins among them in "weights.rows.npy" (compressed sparse rows).
 Path coordinate_header_file(const Path& weights);
 Path normal_weights_file(const Path& weights);
+Path sparse_columns_file(const Path& weights);
+Path sparse_rows_file(const Path& weights);
 
 /// What a header says (doc/schema/coordinates.schema.json).
 struct CoordinateHeader {
@@ -23,6 +26,12 @@ struct CoordinateHeader {
     };
     Array vertex;
     std::optional<Array> normal;
+    /// Of sparse weights, whose array then has one column.
+    struct Sparse {
+        std::size_t columns = 0;  ///< of the matrix
+        Array column, row;        ///< of each weight; where each row begins, and the end
+    };
+    std::optional<Sparse> sparse;
     struct Bound {
         std::size_t vertices = 0, faces = 0;
         std::string sha256;  ///< mesh_checksum
@@ -30,8 +39,8 @@ struct CoordinateHeader {
     Bound mesh, cage;
 };
 
-/// Writes the arrays (float64, C order) and the header, each atomically. Throws Error (usage) unless the file ends in .npy and
-/// the coordinates fit mesh and cage, Error (failure) where a weight is not finite.
+/// Writes the arrays (float64, of places int64, C order) and the header, each atomically. Throws Error (usage) unless the file
+/// ends in .npy and the coordinates fit mesh and cage, Error (failure) where a weight is not finite.
 void write_coordinates(const Path& weights, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage,
                        const CoordinateCertificate& certificate, const Provenance& provenance);
 

@@ -6,6 +6,7 @@
 #include "ostraka/core/options.h"
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include <functional>
 #include <string>
@@ -16,16 +17,29 @@ namespace ostraka {
 /// A row for each point; rows are contiguous.
 using WeightMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// The same, of which only what is not zero is stored, row by row.
+using SparseWeights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
 struct Coordinates {
-    std::string kind;     ///< "mean-value", "green" ...
-    WeightMatrix vertex;  ///< points x cage vertices, columns in the order of the cage's vertices
-    WeightMatrix normal;  ///< points x cage faces, in units of length; 0 x 0 for kinds without a normal term
+    std::string kind;           ///< "mean-value", "green" ...
+    WeightMatrix vertex;        ///< points x cage vertices, columns in the order of the cage's vertices
+    WeightMatrix normal;        ///< points x cage faces, in units of length; 0 x 0 for kinds without a normal term
+    SparseWeights sparse = {};  ///< `vertex` again, of kinds most of whose weights are zero; 0 x 0 for others
     [[nodiscard]] bool has_normals() const { return normal.size() > 0; }
+    [[nodiscard]] bool is_sparse() const { return sparse.rows() > 0; }
+    /// The share of the weights that are stored: 1 where all are.
+    [[nodiscard]] double stored_share() const;
 };
 
 struct CoordinateOptions {
     /// A point nearer to a vertex, an edge or a face of the cage than this share of the cage's diagonal counts as lying on it.
     double snap = 4e-15;
+    /// Of kinds on tetrahedra inside the cage: about how many nodes these have, and which weights are left out.
+    std::uint64_t nodes = 20000;
+    double drop = 1e-4;
+    /// Of local coordinates: steps at most, and the share by which the total variation falls in ten steps that ends them.
+    int iterations = 300;
+    double tolerance = 1e-4;
 
     void describe(OptionList& visit);
 };
@@ -40,7 +54,7 @@ struct CoordinateKind {
 
 /// Adds a kind to those that names can be given of, or replaces the one of that name. Not while others compute.
 void add_coordinate_kind(CoordinateKind kind);
-/// The kinds there are: "mean-value" and "green", and those that were added.
+/// The kinds there are: "mean-value", "green", "harmonic", "local" and "positive-mean-value", and those that were added.
 std::vector<std::string> coordinate_kinds();
 /// Throws Error (usage) that lists the kinds if there is none of that name.
 const CoordinateKind& coordinate_kind(const std::string& name);
@@ -53,6 +67,14 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 /// mean-value: Ju, Schaefer and Warren, Mean value coordinates for closed triangular meshes, 2005, in vector form; for points
 /// inside, outside and on the cage. On a face, edge or vertex they are the linear interpolation there.
 /// green: Lipman, Levin and Cohen-Or, Green coordinates, 2008; for points strictly inside; the cage is oriented outward.
+/// The others are for points inside and on a cage that does not cross itself. Their weights are sparse, and in every row none is
+/// negative, they sum to one and give the point, to rounding: rows are projected to that after all else.
+/// harmonic: Joshi, Meyer, DeRose, Green and Sanocki, Harmonic coordinates for character articulation, 2007; by linear finite
+/// elements on tetrahedra inside the cage.
+/// local: Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu, Local barycentric coordinates, 2014; on the same tetrahedra, each
+/// gradient weighted by its distance from the cage vertex within the cage.
+/// positive-mean-value: Lipman, Kopf, Cohen-Or and Levin, GPU-assisted positive mean value coordinates, 2007: mean value
+/// coordinates of what each point sees of the cage, by evenly spread rays.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
 /// As above, for the vertices of a mesh.

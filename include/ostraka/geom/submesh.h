@@ -48,4 +48,10 @@ FacePieces face_pieces(const Mesh& mesh, Counts&& counts, Joins&& joins) {
 /// marked. Throws Error (usage) if the marks are not one a face.
 SubMesh keep_faces(const Mesh& mesh, const std::vector<bool>& keep, bool largest_only = false);
 
+/// The border halfedge of lowest index of each hole.
+std::vector<Halfedge> holes_of(const Mesh& mesh);
+/// Closes the hole at a border halfedge by triangles between its vertices, of minimum dihedral angle and area (Liepa 2003); gives
+/// their number. 0, and the mesh as it was, where there is no such triangulation.
+std::size_t close_hole(Mesh& mesh, Halfedge border);
+
 }  // namespace ostraka

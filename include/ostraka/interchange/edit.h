@@ -20,6 +20,8 @@ struct AnnotationEdit {
     std::optional<std::string> tag, note;
     std::optional<std::array<int, 3>> colour;
     std::optional<int> id;
+    std::vector<Information> information;         ///< each replaces the one of its kind and value, or comes last
+    std::vector<std::string> remove_information;  ///< by their values
     std::vector<EntryName> remove_attributes;
     std::vector<Attribute> attributes;  ///< each replaces the one with its id, or comes last; its pins are indices of the mesh
     std::vector<std::pair<std::string, std::string>>

@@ -21,6 +21,9 @@ struct MeshExtras {
     std::vector<std::int32_t> face_labels;
     std::vector<std::array<float, 2>> vertex_texture;  ///< texture coordinates per vertex
     std::vector<std::array<float, 2>> corner_texture;  ///< or per polygon corner, in the order of the corners
+    /// Of a tetrahedral mesh: the vertices of each tetrahedron. The triangles are then its surface, and vertices within stand
+    /// alone.
+    std::vector<std::array<Index, 4>> tetrahedra = {};
 };
 
 /// A file as it stands: syntax checked, indices in range, coordinates finite; nothing promised of the topology.
@@ -34,7 +37,8 @@ struct PolygonSoup {
     [[nodiscard]] std::size_t polygon_count() const { return polygon_begin.size() - 1; }
 };
 
-/// Reads OBJ, PLY (ascii, both binary orders), OFF, STL (ascii, binary) by extension, falling back on content where the
+/// Reads OBJ, PLY (ascii, both binary orders), OFF, STL (ascii, binary), Medit's .mesh and VTK's .vtu (both as text; of
+/// tetrahedra the surface, outward) by extension, falling back on content where the
 /// extension lies. STL vertices are numbered by first appearance after exact merging. Throws Error (input) naming file,
 /// line or byte, and remedy. Memory is bounded by a small multiple of the file's size, whatever its header claims.
 PolygonSoup read_polygons(const Path& file);
@@ -77,9 +81,9 @@ struct WriteOptions {
     std::vector<FaceValues> face_values{};  ///< further properties of the faces, of PLY
 };
 
-/// Writes OBJ, PLY, OFF, STL or GLB by extension, atomically. Coordinates as shortest round-trip text or float64
-/// (float32 in STL and GLB). Returns notes on what the format cannot hold. Throws Error (usage) for an unknown extension
-/// (before writing), Error (failure) if the file cannot be written.
+/// Writes OBJ, PLY, OFF, STL, GLB, .mesh or .vtu (these with tetrahedra) by extension, atomically. Coordinates as shortest
+/// round-trip text or float64 (float32 in STL and GLB). Returns notes on what the format cannot hold. Throws Error (usage) for an
+/// unknown extension (before writing), Error (failure) if the file cannot be written.
 std::vector<std::string> write_mesh(const Path& file, const Mesh& mesh, const MeshExtras& extras = {},
                                     const WriteOptions& options = {});
 

@@ -32,6 +32,9 @@ double influence_threshold(const WeightMatrix& weights, const std::string& rule,
 /// Cage vertices with a weight of at least `threshold` on one of the mesh vertices, ascending.
 std::vector<Index> influential(const Coordinates& coordinates, const std::vector<Index>& rows, double threshold);
 
+/// For each of the mesh vertices its own threshold: the cage vertices with at least `share` of its largest weight, ascending.
+std::vector<Index> strongest(const Coordinates& coordinates, const std::vector<Index>& rows, double share = 0.999999);
+
 /// Vertices of an annotation's selection, ascending.
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation);
 

@@ -5,6 +5,8 @@
 #include "ostraka/synthetic/heads.h"
 #include "ostraka/synthetic/make_mesh.h"
 
+#include <array>
+
 namespace ostraka {
 
 /// Height of a head without hat and neck, mm: what shares of the head's height refer to.
@@ -18,6 +20,7 @@ struct CastOptions {
     double beard = 0;      ///< share of the casts that bear one
     double chunk = 0;      ///< share of the casts that miss a piece
     int dents = 0;         ///< on the front, up to
+    bool body = false;     ///< the head stands on a body of its own, and nothing is broken off
     bool keep_pose = false;
     std::uint64_t vertices = 10000;
     std::uint64_t seed = 1;
@@ -27,10 +30,11 @@ struct CastOptions {
 
 /// A cast, and what was drawn for it.
 struct HeadCast {
-    Mesh mesh;                              ///< closed but for the neck, where it was broken off, and a missing piece
+    Mesh mesh;  ///< closed but for the neck, where it was broken off from its body, and a missing piece
     std::vector<std::int32_t> face_labels;  ///< as head_part_names()
     double wear = 0, shrinkage = 0;         ///< as drawn
     bool beard = false, chunk = false;
+    std::array<double, 3> up{0, 0, 1};  ///< in its pose
 };
 
 /// One cast. Its front is the archetype's; its back, its beard and its dents are made anew for every cast. Order of what befalls

@@ -12,7 +12,7 @@
 namespace ostraka {
 
 /// The labels of a head's parts.
-enum class HeadPart { face, nose, eyes, mouth, chin, hair, ears, hat, beard, back, neck, stump };
+enum class HeadPart { face, nose, eyes, mouth, chin, hair, ears, hat, beard, back, neck, stump, body };
 std::vector<std::string> head_part_names();
 
 /// Proportions of a head 44 mm high, x forward, y to its left, z up, in mm.
@@ -62,6 +62,12 @@ struct HandWork {
     std::vector<Dent> dents;            ///< on the front
     double cut_back = 0;                ///< x of the plane, mm, behind which all is `back`; negative is behind the ears
     double cut_tilt = 0, cut_turn = 0;  ///< slopes of that plane
+    /// The body that the head stands on, a flared tube; height 0: none.
+    struct Body {
+        double height = 0, base = 18, radius = 13, shoulder = 15;
+        /// Of its surface, roughly.
+        [[nodiscard]] double area() const;
+    } body;
 };
 
 /// The solid: parts as head_part_names(). The front is the archetype's, the rest as the hand work says.

@@ -51,6 +51,7 @@ struct Concept {
     Labels labels;
     std::map<std::string, std::vector<std::string>> alternatives;  ///< further labels by language
     std::vector<std::string> broader;                              ///< ids
+    std::vector<std::string> part_of;                              ///< ids of concepts that it is a part of
     Labels definition;
     std::vector<AllowedAttribute> attributes;
     std::vector<ForeignStatement> others;
@@ -125,6 +126,9 @@ public:
     [[nodiscard]] bool is_a(std::size_t concept_index, std::size_t other) const;
     /// The concept and all broader ones, nearest first.
     [[nodiscard]] std::vector<std::size_t> lineage(std::size_t concept_index) const;
+    /// The concepts that it is a part of, by its own statement or that of a broader concept, then those that these are parts of;
+    /// by levels, nearest first.
+    [[nodiscard]] std::vector<std::vector<std::size_t>> wholes_of(std::size_t concept_index) const;
     /// What the concept may carry: its own attributes, those of broader ones, those of every concept; where one name stands
     /// twice, the nearer.
     [[nodiscard]] std::vector<const AllowedAttribute*> attributes_of(std::size_t concept_index) const;
@@ -146,7 +150,7 @@ private:
     std::unordered_map<std::string, const AllowedAttribute*> common_;   ///< folded names of what every concept may carry
     /// By concept, the attributes of folded names and labels.
     mutable std::unordered_map<std::size_t, std::unordered_map<std::string, const AllowedAttribute*>> attributes_;
-    std::vector<std::vector<std::size_t>> broader_;
+    std::vector<std::vector<std::size_t>> broader_, part_of_;
 };
 
 /// The word of an attribute's list that a text means, by name or label; nullptr if none.

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace ostraka::solver {
+namespace ostraka {
 
 /// Column-major, lower triangle and diagonal only, indices in order within a column.
 using LowerTriangle = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
@@ -29,4 +29,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace ostraka::solver
+}  // namespace ostraka

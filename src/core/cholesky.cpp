@@ -1,4 +1,4 @@
-#include "cholesky.h"
+#include "ostraka/core/cholesky.h"
 
 #include "ostraka/core/error.h"
 
@@ -11,7 +11,7 @@
 #include <mutex>
 #include <string>
 
-namespace ostraka::solver {
+namespace ostraka {
 
 namespace {
 
@@ -195,4 +195,4 @@ void SparseCholesky::solve(Eigen::MatrixXd& columns) {
     std::copy_n(static_cast<const double*>(state_->solution->x), columns.size(), columns.data());
 }
 
-}  // namespace ostraka::solver
+}  // namespace ostraka

@@ -1,0 +1,84 @@
+#include "ostraka/annotation/part.h"
+
+#include "ostraka/annotation/colouring.h"
+#include "ostraka/annotation/remap.h"
+#include "ostraka/core/error.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// Flags the faces of these regions.
+void mark(const AnnotationSet& set, const std::vector<std::size_t>& regions, bool value, std::vector<bool>& keep) {
+    for (const std::size_t i : regions) {
+        const Annotation& one = set.annotations.at(i);
+        if (one.type != AnnotationType::region)
+            fail_input(name_of(one), "is a " + to_string(one.type) + ", which holds no surface", "name a region");
+        for (const Index f : one.faces) keep[f] = value;
+    }
+}
+
+/// Whether two faces met at this border of the piece on the whole.
+bool was_cut(const Mesh& whole, const CutPart& part, Halfedge border) {
+    const Vertex from(part.vertices[part.mesh.source(border)]), to(part.vertices[part.mesh.target(border)]);
+    const Halfedge before = whole.halfedge(from, to);
+    return before != Mesh::null_halfedge() && !whole.is_border(before) && !whole.is_border(whole.opposite(before));
+}
+
+void close_cuts(CutPart& part, const std::vector<Halfedge>& cuts) {
+    const std::size_t before = part.mesh.number_of_faces();
+    for (const Halfedge border : cuts)
+        if (close_hole(part.mesh, border) > 0) ++part.closed;
+    const std::size_t after = part.mesh.number_of_faces();
+    part.faces.resize(after, no_index);
+    for (Annotation& one : part.annotations.annotations)
+        if (one.all) {
+            one.faces.resize(after);
+            std::iota(one.faces.begin(), one.faces.end(), Index{0});
+        }
+    if (after == before) return;
+    Annotation cap;
+    cap.id = free_id(part.annotations);
+    cap.tag = "cut";
+    for (std::size_t f = before; f < after; ++f) cap.faces.push_back(static_cast<Index>(f));
+    cap.colour = fresh_colour(part.mesh, part.annotations, cap);
+    part.annotations.annotations.push_back(std::move(cap));
+}
+
+}  // namespace
+
+CutPart cut_out_part(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::size_t>& regions,
+                     const std::vector<std::size_t>& left_out, bool close) {
+    CutPart part;
+    if (any_free(set)) part.whole.emplace(cut_along_curves(mesh, set));
+    const Mesh& whole = part.whole ? part.whole->mesh : mesh;
+    const AnnotationSet& on_whole = part.whole ? part.whole->annotations : set;
+    std::vector<bool> keep(whole.number_of_faces(), regions.empty());
+    mark(on_whole, regions, true, keep);
+    mark(on_whole, left_out, false, keep);
+    SubMesh piece = keep_faces(whole, keep);
+    if (piece.faces.empty())
+        fail_input("annotations", "nothing is left of the part", left_out.empty() ? "name another one" : "leave fewer parts out");
+    part.mesh = std::move(piece.mesh);
+    part.vertices = std::move(piece.vertices);
+    part.faces = std::move(piece.faces);
+    part.annotations = annotations_of_piece(whole, on_whole, part.mesh, part.vertices, part.faces);
+    std::vector<Halfedge> cuts;
+    for (const Halfedge hole : holes_of(part.mesh)) {
+        bool cut = false;
+        for (Halfedge h = hole;;) {
+            cut = cut || was_cut(whole, part, h);
+            h = part.mesh.next(h);
+            if (cut || h == hole) break;
+        }
+        if (cut) cuts.push_back(hole);
+    }
+    part.cuts = cuts.size();
+    if (close) close_cuts(part, cuts);
+    return part;
+}
+
+}  // namespace ostraka

@@ -1,0 +1,169 @@
+#include "bounded_rows.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::coords {
+
+using Eigen::Matrix4d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+namespace {
+
+/// Points nearer than this share of the diagonal lie on the cage: the nearest point is not known better.
+constexpr double min_snap = 1e-13;
+
+struct DualState {
+    Vector4d residual;
+    Matrix4d hessian;
+    double value = 0;
+};
+
+Vector4d row_of(const Vector3d& corner, const Vector3d& place) {
+    const Vector3d d = corner - place;
+    return {1, d.x(), d.y(), d.z()};
+}
+
+DualState dual_at(std::span<const double> weights, std::span<const Vector3d> corners, const Vector3d& place, const Vector4d& mu) {
+    DualState state;
+    state.residual = Vector4d(-1, 0, 0, 0);
+    state.hessian.setZero();
+    state.value = -mu[0];
+    for (std::size_t j = 0; j < weights.size(); ++j) {
+        const Vector4d a = row_of(corners[j], place);
+        const double w = weights[j] + a.dot(mu);
+        if (w <= 0) continue;
+        state.residual += w * a;
+        state.hessian += a * a.transpose();
+        state.value += 0.5 * w * w;
+    }
+    return state;
+}
+
+}  // namespace
+
+bool project_row(std::span<double> weights, std::span<const Vector3d> corners, const Vector3d& place) {
+    constexpr int most = 60;
+    constexpr double close = 4e-15, enough = 1e-12;
+    Vector4d mu = Vector4d::Zero();
+    DualState state = dual_at(weights, corners, place, mu);
+    double error = state.residual.lpNorm<Eigen::Infinity>();
+    for (int step = 0; step < most && error > close; ++step) {
+        const double damping = 1e-15 * (1 + state.hessian.trace());
+        const Vector4d way = -(state.hessian + damping * Matrix4d::Identity()).ldlt().solve(state.residual);
+        if (!way.allFinite()) break;
+        const double slope = state.residual.dot(way);
+        bool better = false;
+        for (double length = 1; length > 1e-6; length *= 0.5) {
+            const Vector4d next = mu + length * way;
+            DualState there = dual_at(weights, corners, place, next);
+            const double rest = there.residual.lpNorm<Eigen::Infinity>();
+            // Near the end the value has no digits left to tell by.
+            if (there.value <= state.value + 1e-4 * length * slope || rest < 0.5 * error) {
+                better = rest < error || there.value < state.value;
+                mu = next, state = std::move(there), error = rest;
+                break;
+            }
+        }
+        if (!better) break;
+    }
+    if (!(error < enough)) return false;
+    for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = std::max(0.0, weights[j] + row_of(corners[j], place).dot(mu));
+    return true;
+}
+
+namespace {
+
+/// One row: the estimate without what is small, projected; where that cannot keep the promises, with more of it.
+void settle(std::span<const double> estimate, const std::vector<Vector3d>& corners, const Vector3d& place, double drop,
+            std::vector<std::pair<int, double>>& row) {
+    std::vector<double> weights;
+    std::vector<Vector3d> kept;
+    std::vector<int> columns;
+    for (const double least : {drop, 0.1 * drop, 1e-12, -1.0}) {
+        weights.clear(), kept.clear(), columns.clear();
+        for (std::size_t j = 0; j < estimate.size(); ++j)
+            if (estimate[j] > least || least < 0) {
+                weights.push_back(std::max(estimate[j], 0.0)), kept.push_back(corners[j]);
+                columns.push_back(static_cast<int>(j));
+            }
+        if (project_row(weights, kept, place)) break;
+        if (least >= 0) continue;
+        fail_input("cage", "a point has no weights that are not negative: it lies outside of the cage's convex hull",
+                   "give a cage that the mesh lies in");
+    }
+    for (std::size_t k = 0; k < columns.size(); ++k)
+        if (weights[k] > 0) row.emplace_back(columns[k], weights[k]);
+}
+
+}  // namespace
+
+Coordinates bounded_coordinates(const UnitCage& cage, const std::vector<Point>& points, double snap, double drop,
+                                const std::string& kind, const std::function<void(const std::vector<std::size_t>&)>& prepare,
+                                const std::function<void(std::size_t, const Vector3d&, std::span<double>)>& estimate) {
+    const SurfaceSearch search(cage.mesh);
+    std::vector<SurfaceHit> nearest(points.size());
+    std::vector<char> outside(points.size(), 0), on_cage(points.size(), 0);
+    parallel_for(points.size(), [&](std::size_t i) {
+        const Point p = point_of(cage.unit(points[i]));
+        nearest[i] = search.closest(p);
+        on_cage[i] = nearest[i].distance <= std::max(snap, min_snap);
+        outside[i] = !on_cage[i] && !search.inside(p);
+    });
+    std::string list;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (outside[i] && ++count <= 10) list += (list.empty() ? "" : ", ") + std::to_string(i);
+    if (count > 0)
+        fail_input("cage", std::to_string(count) + " points are not inside it: " + list + (count > 10 ? " ..." : ""),
+                   kind + " coordinates are defined inside the cage; give a larger one, or use mean-value coordinates");
+    std::vector<std::size_t> within;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (!on_cage[i]) within.push_back(i);
+    if (!within.empty()) prepare(within);
+
+    const std::size_t columns = cage.corners.size();
+    std::vector<std::vector<std::pair<int, double>>> rows(points.size());
+    parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> row(columns);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (on_cage[i]) {
+                const auto corner = corners(cage.mesh, Face(nearest[i].face));
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (nearest[i].barycentric[k] > 0)
+                        rows[i].emplace_back(static_cast<int>(corner[k].idx()), nearest[i].barycentric[k]);
+                std::sort(rows[i].begin(), rows[i].end());
+                continue;
+            }
+            std::fill(row.begin(), row.end(), 0.0);
+            const Vector3d place = cage.unit(points[i]);
+            estimate(i, place, row);
+            settle(row, cage.corners, place, drop, rows[i]);
+        }
+    });
+    Coordinates result;
+    result.vertex = WeightMatrix::Zero(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(columns));
+    result.sparse.resize(result.vertex.rows(), result.vertex.cols());
+    std::size_t entries = 0;
+    for (const auto& row : rows) entries += row.size();
+    result.sparse.reserve(static_cast<Eigen::Index>(entries));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto r = static_cast<Eigen::Index>(i);
+        result.sparse.startVec(r);
+        for (const auto& [column, weight] : rows[i]) {
+            result.sparse.insertBack(r, column) = weight;
+            result.vertex(r, column) = weight;
+        }
+    }
+    result.sparse.finalize();
+    return result;
+}
+
+}  // namespace ostraka::coords

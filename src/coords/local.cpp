@@ -1,0 +1,354 @@
+// Local barycentric coordinates (Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu 2014): of all weights that are not negative,
+// sum to one, give their point and are linear on the cage, those of minimum total variation.
+#include "interior_weights.h"
+#include "kinds.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+
+namespace ostraka::coords {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// Corners that may have a weight at a node: those of largest harmonic weight.
+constexpr std::size_t max_candidates = 32;
+
+/// One cage vertex: where its weights may be other than zero, and what the iteration knows of them.
+struct Column {
+    std::vector<Index> nodes;               ///< within the cage, ascending
+    std::vector<double> w, z, y, last;      ///< the weight, its copy that keeps the promises, their scaled dual
+    std::vector<Index> cells;               ///< that touch one of the nodes
+    std::vector<std::array<int, 4>> place;  ///< of their corners in `nodes`; -1: fixed
+    std::vector<Vector3d> fixed;            ///< gradient of the fixed corners
+    std::vector<Vector3d> x, u;             ///< the gradient's copy, and its dual
+    std::vector<double> variation;          ///< factor of the gradient's length
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor;
+    std::vector<double> coupling;  ///< of the nodes with fixed values
+    double change = 0, gap = 0;    ///< sums of squares: of the copies' last step, and of what they are off
+    double total = 0;              ///< weighted variation
+};
+
+/// Lengths of shortest ways along the edges of the tetrahedra from a node; over the largest.
+std::vector<double> distances_from(const std::vector<std::vector<std::pair<Index, double>>>& edges, Index start) {
+    std::vector<double> distance(edges.size(), std::numeric_limits<double>::infinity());
+    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
+    queue.emplace(distance[start] = 0, start);
+    while (!queue.empty()) {
+        const auto [at, v] = queue.top();
+        queue.pop();
+        if (at > distance[v]) continue;
+        for (const auto& [other, length] : edges[v])
+            if (at + length < distance[other]) queue.emplace(distance[other] = at + length, other);
+    }
+    double largest = 0;
+    for (const double d : distance)
+        if (std::isfinite(d)) largest = std::max(largest, d);
+    for (double& d : distance) d = largest > 0 ? std::min(d / largest, 1.0) : 0;
+    return distance;
+}
+
+std::vector<std::vector<std::pair<Index, double>>> edges_of(const CageInterior& inside) {
+    std::vector<std::vector<std::pair<Index, double>>> edges(inside.nodes().size());
+    for (const auto& cell : inside.cells())
+        for (const Index a : cell)
+            for (const Index b : cell)
+                if (a != b) edges[a].emplace_back(b, (inside.nodes()[a] - inside.nodes()[b]).norm());
+    for (auto& list : edges) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    return edges;
+}
+
+/// Rows of an interior node: which columns it has a weight in, and where.
+struct NodeRow {
+    std::vector<Index> column;
+    std::vector<std::size_t> at;
+};
+
+class LocalWeights {
+public:
+    LocalWeights(const CageInterior& inside, const UnitCage& cage)
+        : inside_(inside), cage_(cage), gradients_(gradients_of(inside)), weights_(harmonic_weights(inside, cage)) {
+        choose_candidates();
+        set_up();
+    }
+
+    /// Alternating directions (Boyd et al. 2011), until the total variation falls by less than a share of itself in ten steps.
+    void iterate(int most, double tolerance) {
+        constexpr int round = 10;
+        Progress progress("local coordinates", static_cast<std::size_t>(most));
+        double before = std::numeric_limits<double>::infinity();
+        for (int step = 1; step <= most; ++step) {
+            parallel_for(
+                columns_.size(), [&](std::size_t i) { update_column(columns_[i]); }, 1);
+            parallel_for(
+                inner_.size(), [&](std::size_t k) { update_node(k); }, 64);
+            progress.advance();
+            if (step % round != 0) continue;
+            double gap = 0, change = 0, variation = 0;
+            for (const Column& column : columns_) gap += column.gap, change += column.change, variation += column.total;
+            if (std::abs(before - variation) <= tolerance * variation) break;
+            before = variation;
+            // Both fall at one rate where the penalty is right (Boyd et al., 3.4.1).
+            if (step > most / 2) continue;
+            if (gap > 100 * change) scale_penalty(2);
+            else if (change > 100 * gap) scale_penalty(0.5);
+        }
+        // The weights vary smoothly, their copies keep the promises.
+        parallel_for(
+            inner_.size(), [&](std::size_t k) { settle_node(k); }, 64);
+        for (std::size_t c = 0; c < columns_.size(); ++c)
+            for (std::size_t k = 0; k < columns_[c].nodes.size(); ++k)
+                weights_(static_cast<Eigen::Index>(columns_[c].nodes[k]), static_cast<Eigen::Index>(c)) = columns_[c].z[k];
+    }
+    [[nodiscard]] const WeightMatrix& weights() const { return weights_; }
+
+private:
+    static double square(double x) { return x * x; }
+
+    /// Of each node the corners of largest harmonic weight, from which its place can be had.
+    void choose_candidates() {
+        columns_ = std::vector<Column>(cage_.corners.size());
+        for (Index v = 0; v < inside_.nodes().size(); ++v)
+            if (inside_.is_within(v)) inner_.push_back(v);
+        rows_.resize(inner_.size());
+        std::vector<std::vector<double>> start(inner_.size());
+        parallel_for(
+            inner_.size(),
+            [&](std::size_t k) {
+                const double* row = weights_.row(static_cast<Eigen::Index>(inner_[k])).data();
+                std::vector<Index> order(cage_.corners.size());
+                std::iota(order.begin(), order.end(), Index{0});
+                for (std::size_t count = max_candidates;; count *= 2) {
+                    count = std::min(count, order.size());
+                    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                                      [&](Index a, Index b) { return row[a] != row[b] ? row[a] > row[b] : a < b; });
+                    rows_[k].column.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+                    std::sort(rows_[k].column.begin(), rows_[k].column.end());
+                    start[k].clear();
+                    std::vector<Vector3d> corners;
+                    for (const Index c : rows_[k].column) {
+                        start[k].push_back(std::max(row[c], 0.0));
+                        corners.push_back(cage_.corners[c]);
+                    }
+                    if (project_row(start[k], corners, inside_.nodes()[inner_[k]]) || count == order.size()) break;
+                }
+            },
+            64);
+        for (std::size_t k = 0; k < inner_.size(); ++k)
+            for (std::size_t j = 0; j < rows_[k].column.size(); ++j) {
+                Column& column = columns_[rows_[k].column[j]];
+                rows_[k].at.push_back(column.nodes.size());
+                column.nodes.push_back(inner_[k]);
+                column.z.push_back(start[k][j]);
+            }
+        for (const Index v : inner_) weights_.row(static_cast<Eigen::Index>(v)).setZero();
+    }
+
+    void set_up() {
+        std::vector<std::vector<Index>> cells_of(inside_.nodes().size());
+        for (Index t = 0; t < inside_.cells().size(); ++t)
+            for (const Index v : inside_.cells()[t]) cells_of[v].push_back(t);
+        const auto edges = edges_of(inside_);
+        mass_.assign(inside_.nodes().size(), 0);
+        double edge = 0;
+        std::size_t edge_count = 0;
+        for (std::size_t t = 0; t < inside_.cells().size(); ++t)
+            for (const Index v : inside_.cells()[t]) mass_[v] += gradients_.volume[t] / 4;
+        for (const auto& list : edges)
+            for (const auto& [other, length] : list) edge += length, ++edge_count;
+        edge /= static_cast<double>(std::max<std::size_t>(edge_count, 1));
+        stiffness_ = 1 / square(3 * edge);
+        // A weight falls from one to zero over about an edge of the cage.
+        double reach = 0;
+        for (const Edge e : cage_.mesh.edges())
+            reach += (cage_.corners[cage_.mesh.vertex(e, 0)] - cage_.corners[cage_.mesh.vertex(e, 1)]).norm();
+        reach /= static_cast<double>(cage_.mesh.number_of_edges());
+        step_ = 0.1 / reach;
+        parallel_for(
+            columns_.size(), [&](std::size_t i) { set_up_column(i, cells_of, edges); }, 1);
+    }
+
+    /// The node of the tetrahedra that lies at a corner of the cage.
+    [[nodiscard]] Index node_at(std::size_t corner) const {
+        Index best = 0;
+        double minimum = std::numeric_limits<double>::infinity();
+        for (Index v = 0; v < inside_.nodes().size(); ++v)
+            if (const double d = (inside_.nodes()[v] - cage_.corners[corner]).squaredNorm(); d < minimum) minimum = d, best = v;
+        return best;
+    }
+
+    void set_up_column(std::size_t i, const std::vector<std::vector<Index>>& cells_of,
+                       const std::vector<std::vector<std::pair<Index, double>>>& edges) {
+        Column& column = columns_[i];
+        const std::size_t n = column.nodes.size();
+        column.w = column.z;
+        column.y.assign(n, 0);
+        column.last = column.z;
+        if (n == 0) return;
+        const std::vector<double> distance = distances_from(edges, node_at(i));
+        const auto place_of = [&](Index v) {
+            const auto found = std::lower_bound(column.nodes.begin(), column.nodes.end(), v);
+            return found != column.nodes.end() && *found == v ? static_cast<int>(found - column.nodes.begin()) : -1;
+        };
+        for (const Index v : column.nodes) column.cells.insert(column.cells.end(), cells_of[v].begin(), cells_of[v].end());
+        std::sort(column.cells.begin(), column.cells.end());
+        column.cells.erase(std::unique(column.cells.begin(), column.cells.end()), column.cells.end());
+        column.coupling.assign(n, 0);
+        std::vector<Eigen::Triplet<double>> entries;
+        for (const Index t : column.cells) {
+            const auto& cell = inside_.cells()[t];
+            const auto& gradient = gradients_.of_corner[t];
+            std::array<int, 4> place{};
+            Vector3d fixed = Vector3d::Zero();
+            double away = 0;
+            for (std::size_t k = 0; k < 4; ++k) {
+                place[k] = place_of(cell[k]);
+                away += distance[cell[k]] / 4;
+                if (place[k] < 0)
+                    fixed += weights_(static_cast<Eigen::Index>(cell[k]), static_cast<Eigen::Index>(i)) * gradient[k];
+            }
+            for (std::size_t a = 0; a < 4; ++a) {
+                if (place[a] < 0) continue;
+                column.coupling[static_cast<std::size_t>(place[a])] += gradients_.volume[t] * gradient[a].dot(fixed);
+                for (std::size_t b = 0; b < 4; ++b)
+                    if (place[b] >= 0 && place[a] >= place[b])
+                        entries.emplace_back(place[a], place[b], gradients_.volume[t] * gradient[a].dot(gradient[b]));
+            }
+            column.place.push_back(place);
+            column.fixed.push_back(fixed);
+            column.variation.push_back(away);
+        }
+        for (std::size_t k = 0; k < n; ++k)
+            entries.emplace_back(static_cast<int>(k), static_cast<int>(k), stiffness_ * mass_[column.nodes[k]]);
+        Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        column.factor.compute(matrix);
+        if (column.factor.info() != Eigen::Success)
+            throw Error(ErrorKind::failure, "cage", "local coordinates cannot be solved for on the tetrahedra inside it",
+                        "ask for fewer or more of them, or use mean-value coordinates");
+        column.u.assign(column.cells.size(), Vector3d::Zero());
+        for (std::size_t c = 0; c < column.cells.size(); ++c) column.x.push_back(gradient_in(column, c));
+    }
+
+    [[nodiscard]] Vector3d gradient_in(const Column& column, std::size_t c) const {
+        Vector3d g = column.fixed[c];
+        for (std::size_t k = 0; k < 4; ++k)
+            if (column.place[c][k] >= 0)
+                g += column.w[static_cast<std::size_t>(column.place[c][k])] * gradients_.of_corner[column.cells[c]][k];
+        return g;
+    }
+
+    void update_column(Column& column) const {
+        const std::size_t n = column.nodes.size();
+        if (n == 0) return;
+        column.gap = column.change = column.total = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            column.gap += square(column.w[k] - column.z[k]);
+            column.change += square(column.z[k] - column.last[k]);
+        }
+        column.last = column.z;
+        Eigen::VectorXd right(static_cast<Eigen::Index>(n));
+        for (std::size_t k = 0; k < n; ++k)
+            right[static_cast<Eigen::Index>(k)] =
+                stiffness_ * mass_[column.nodes[k]] * (column.z[k] - column.y[k]) - column.coupling[k];
+        for (std::size_t c = 0; c < column.cells.size(); ++c) {
+            const Vector3d wanted = gradients_.volume[column.cells[c]] * (column.x[c] - column.u[c]);
+            for (std::size_t k = 0; k < 4; ++k)
+                if (column.place[c][k] >= 0) right[column.place[c][k]] += gradients_.of_corner[column.cells[c]][k].dot(wanted);
+        }
+        const Eigen::VectorXd solved = column.factor.solve(right);
+        std::copy(solved.data(), solved.data() + solved.size(), column.w.begin());
+        for (std::size_t c = 0; c < column.cells.size(); ++c) {
+            const Vector3d own = gradient_in(column, c), g = own + column.u[c];
+            column.total += column.variation[c] * gradients_.volume[column.cells[c]] * own.norm();
+            const double length = g.norm(), least = step_ * column.variation[c];
+            column.x[c] = length > least ? Vector3d((1 - least / length) * g) : Vector3d(Vector3d::Zero());
+            column.u[c] = g - column.x[c];
+        }
+    }
+
+    void update_node(std::size_t k) {
+        const NodeRow& row = rows_[k];
+        std::vector<double> wanted(row.column.size());
+        for (std::size_t j = 0; j < wanted.size(); ++j) {
+            const Column& column = columns_[row.column[j]];
+            wanted[j] = column.w[row.at[j]] + column.y[row.at[j]];
+        }
+        const std::vector<double> kept = nearest_kept(k, wanted);
+        for (std::size_t j = 0; j < wanted.size(); ++j) {
+            Column& column = columns_[row.column[j]];
+            column.z[row.at[j]] = kept[j];
+            column.y[row.at[j]] = wanted[j] - kept[j];
+        }
+    }
+
+    void settle_node(std::size_t k) {
+        const NodeRow& row = rows_[k];
+        std::vector<double> wanted(row.column.size());
+        for (std::size_t j = 0; j < wanted.size(); ++j) wanted[j] = columns_[row.column[j]].w[row.at[j]];
+        const std::vector<double> kept = nearest_kept(k, wanted);
+        for (std::size_t j = 0; j < kept.size(); ++j) columns_[row.column[j]].z[row.at[j]] = kept[j];
+    }
+
+    /// The nearest weights of a node that keep the promises; those it has where none are found.
+    [[nodiscard]] std::vector<double> nearest_kept(std::size_t k, std::vector<double> weights) const {
+        const NodeRow& row = rows_[k];
+        std::vector<Vector3d> corners(row.column.size());
+        for (std::size_t j = 0; j < corners.size(); ++j) corners[j] = cage_.corners[row.column[j]];
+        if (!project_row(weights, corners, inside_.nodes()[inner_[k]]))
+            for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = columns_[row.column[j]].z[row.at[j]];
+        return weights;
+    }
+
+    /// The penalty times a factor: duals are scaled by it, and so is what a step shrinks gradients by.
+    void scale_penalty(double factor) {
+        step_ /= factor;
+        for (Column& column : columns_) {
+            for (double& y : column.y) y /= factor;
+            for (Vector3d& u : column.u) u /= factor;
+        }
+    }
+
+    const CageInterior& inside_;
+    const UnitCage& cage_;
+    CellGradients gradients_;
+    WeightMatrix weights_;
+    std::vector<Column> columns_;
+    std::vector<Index> inner_;
+    std::vector<NodeRow> rows_;
+    std::vector<double> mass_;
+    double stiffness_ = 1;  ///< of the copies against that of the gradients: one over a squared length
+    double step_ = 1;       ///< one over the penalty
+};
+
+}  // namespace
+
+Coordinates local(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
+    const UnitCage cage(mesh);
+    std::unique_ptr<CageInterior> inside;
+    WeightMatrix weights;
+    return bounded_coordinates(
+        cage, points, options.snap, options.drop, "local",
+        [&](const std::vector<std::size_t>&) {
+            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, "local");
+            LocalWeights minimiser(*inside, cage);
+            minimiser.iterate(options.iterations, options.tolerance);
+            weights = minimiser.weights();
+        },
+        [&](std::size_t, const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+}
+
+}  // namespace ostraka::coords

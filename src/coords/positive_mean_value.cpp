@@ -1,0 +1,105 @@
+// Positive mean value coordinates (Lipman, Kopf, Cohen-Or and Levin 2007): what a point does not see has no weight.
+#include "interior_weights.h"
+#include "kinds.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka::coords {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr int rays = 1024;
+
+/// Evenly spread over the sphere: a spiral of the golden angle.
+std::vector<Vector3d> spread_directions() {
+    std::vector<Vector3d> list;
+    const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+    for (int i = 0; i < rays; ++i) {
+        const double z = 1 - (2 * i + 1) / static_cast<double>(rays), r = std::sqrt(1 - z * z), angle = golden * i;
+        list.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+    return list;
+}
+
+/// A face of the cage as rays see it.
+struct SeenFace {
+    Vector3d a, u, v;
+    std::array<Index, 3> corner{};
+};
+
+/// Weights of one node from what each ray meets first.
+void look_around(const std::vector<SeenFace>& faces, const std::vector<Vector3d>& directions, const Vector3d& place, double* row,
+                 std::size_t size) {
+    for (const Vector3d& d : directions) {
+        double nearest = std::numeric_limits<double>::infinity(), s = 0, t = 0;
+        const SeenFace* hit = nullptr;
+        for (const SeenFace& one : faces) {
+            // Moeller and Trumbore 1997.
+            const Vector3d p = d.cross(one.v);
+            const double det = one.u.dot(p);
+            if (det == 0) continue;
+            const Vector3d from = place - one.a;
+            const double x = from.dot(p) / det;
+            if (x < 0 || x > 1) continue;
+            const Vector3d q = from.cross(one.u);
+            const double y = d.dot(q) / det;
+            if (y < 0 || x + y > 1) continue;
+            const double distance = one.v.dot(q) / det;
+            if (distance > 0 && distance < nearest) nearest = distance, hit = &one, s = x, t = y;
+        }
+        if (hit == nullptr) continue;
+        row[hit->corner[0]] += (1 - s - t) / nearest;
+        row[hit->corner[1]] += s / nearest;
+        row[hit->corner[2]] += t / nearest;
+    }
+    double sum = 0;
+    for (std::size_t j = 0; j < size; ++j) sum += row[j];
+    if (sum > 0)
+        for (std::size_t j = 0; j < size; ++j) row[j] /= sum;
+}
+
+void add_seen_weights(const CageInterior& inside, const UnitCage& cage, WeightMatrix& weights) {
+    const std::vector<Vector3d> directions = spread_directions();
+    std::vector<SeenFace> faces;
+    for (const Face f : cage.mesh.faces()) {
+        const auto c = corners(cage.mesh, f);
+        const Vector3d a = cage.corners[c[0]], u = cage.corners[c[1]] - a, v = cage.corners[c[2]] - a;
+        if (u.cross(v).norm() > 0) faces.push_back({a, u, v, {c[0], c[1], c[2]}});
+    }
+    Progress progress("what the nodes see", inside.nodes().size());
+    parallel_for(
+        inside.nodes().size(),
+        [&](std::size_t v) {
+            progress.advance();
+            if (!inside.is_within(static_cast<Index>(v))) return;
+            look_around(faces, directions, inside.nodes()[v], weights.row(static_cast<Eigen::Index>(v)).data(),
+                        cage.corners.size());
+        },
+        16);
+}
+
+}  // namespace
+
+Coordinates positive_mean_value(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
+    const UnitCage cage(mesh);
+    std::unique_ptr<CageInterior> inside;
+    WeightMatrix weights;
+    return bounded_coordinates(
+        cage, points, options.snap, options.drop, "positive-mean-value",
+        [&](const std::vector<std::size_t>&) {
+            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, "positive-mean-value");
+            weights = weights_on_cage(*inside, cage);
+            add_seen_weights(*inside, cage, weights);
+        },
+        [&](std::size_t, const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+}
+
+}  // namespace ostraka::coords

@@ -1,0 +1,361 @@
+// Tetrahedral meshes: Medit's .mesh (text) and VTK's .vtu (text). Their surface is what everything else works on.
+#include "formats.h"
+#include "ostraka/core/error.h"
+#include "text_reader.h"
+#include "text_writer.h"
+
+#include <pugixml.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+namespace ostraka::io {
+
+namespace {
+
+using Tetrahedron = std::array<Index, 4>;
+
+double volume_of(const PolygonSoup& soup, const Tetrahedron& t) {
+    std::array<std::array<double, 3>, 3> e{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) e[i][k] = soup.points[t[i + 1]][k] - soup.points[t[0]][k];
+    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+/// The faces of one tetrahedron only become the polygons of the soup, outward; labels are those of polygons with these corners.
+void take_surface(PolygonSoup& soup, const std::string& file) {
+    const std::vector<Tetrahedron>& cells = soup.extras.tetrahedra;
+    if (cells.empty()) return;
+    std::map<std::array<Index, 3>, std::int32_t> labels;
+    if (!soup.extras.face_labels.empty())
+        for (std::size_t f = 0; f < soup.polygon_count(); ++f) {
+            if (soup.polygon_begin[f + 1] - soup.polygon_begin[f] != 3) continue;
+            std::array<Index, 3> key{};
+            std::copy_n(soup.corners.begin() + soup.polygon_begin[f], 3, key.begin());
+            std::sort(key.begin(), key.end());
+            labels[key] = soup.extras.face_labels[f];
+        }
+    struct Side {
+        std::array<Index, 3> key, corners;
+        bool operator<(const Side& other) const { return key < other.key; }
+    };
+    std::vector<Side> sides;
+    sides.reserve(4 * cells.size());
+    for (Tetrahedron t : cells) {
+        if (volume_of(soup, t) < 0) std::swap(t[2], t[3]);
+        for (const std::array<Index, 3>& corners : {std::array{t[0], t[2], t[1]}, std::array{t[0], t[1], t[3]},
+                                                    std::array{t[1], t[2], t[3]}, std::array{t[0], t[3], t[2]}}) {
+            Side side{corners, corners};
+            std::sort(side.key.begin(), side.key.end());
+            sides.push_back(side);
+        }
+    }
+    std::stable_sort(sides.begin(), sides.end());
+    const bool labelled = !labels.empty();
+    soup.corners.clear();
+    soup.polygon_begin.assign(1, 0);
+    soup.extras.face_labels.clear();
+    for (std::size_t i = 0; i < sides.size();) {
+        std::size_t end = i + 1;
+        while (end < sides.size() && sides[end].key == sides[i].key) ++end;
+        if (end - i > 2) fail_input(file, "has a triangle between more than two tetrahedra", "mend the file");
+        if (end - i == 1) {
+            soup.corners.insert(soup.corners.end(), sides[i].corners.begin(), sides[i].corners.end());
+            close_polygon(soup, file);
+            if (labelled) {
+                const auto found = labels.find(sides[i].key);
+                soup.extras.face_labels.push_back(found == labels.end() ? 0 : found->second);
+            }
+        }
+        i = end;
+    }
+}
+
+void check_corner(std::int64_t corner, const PolygonSoup& soup, const std::string& file, const std::string& what) {
+    if (corner < 0 || corner >= static_cast<std::int64_t>(soup.points.size()))
+        fail_input(file, what + " names vertex " + std::to_string(corner) + " of " + std::to_string(soup.points.size()),
+                   "the file is damaged; export it again");
+}
+
+void check_cells(const PolygonSoup& soup, const std::string& file) {
+    for (std::size_t i = 0; i < soup.extras.tetrahedra.size(); ++i) {
+        Tetrahedron sorted = soup.extras.tetrahedra[i];
+        std::sort(sorted.begin(), sorted.end());
+        if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+            fail_input(file, "tetrahedron " + std::to_string(i) + " names a vertex twice", "mend the file");
+    }
+}
+
+class MeditReader {
+public:
+    MeditReader(std::string_view text, const std::string& file) : reader_(text, file, '#'), file_(file) {}
+
+    PolygonSoup read() {
+        while (reader_.skip_space()) {
+            const std::string word(reader_.word());
+            if (word == "End") break;
+            if (word == "MeshVersionFormatted") {
+                static_cast<void>(number("the version"));
+            } else if (word == "Dimension") {
+                if (number("the dimension") != 3) reader_.fail("the mesh does not have three dimensions", "give one in space");
+            } else if (word == "Vertices") {
+                vertices();
+            } else if (word == "Triangles") {
+                polygons(3);
+            } else if (word == "Quadrilaterals") {
+                polygons(4);
+            } else if (word == "Tetrahedra") {
+                tetrahedra();
+            } else {
+                other(word);
+            }
+        }
+        if (std::all_of(labels_.begin(), labels_.end(), [](std::int32_t l) { return l == 0; })) labels_.clear();
+        soup_.extras.face_labels = std::move(labels_);
+        check_cells(soup_, file_);
+        take_surface(soup_, file_);
+        return std::move(soup_);
+    }
+
+private:
+    std::int64_t number(const char* what) {
+        if (!reader_.skip_space())
+            reader_.fail(std::string("the file ends where ") + what + " is expected", "the file is cut off");
+        return reader_.integer(what);
+    }
+    std::size_t count() {
+        const std::int64_t value = number("a count");
+        // An entry takes two bytes at least.
+        if (value < 0 || static_cast<std::size_t>(value) > reader_.remaining() / 2 + 1)
+            reader_.fail("a section of " + std::to_string(value) + " entries does not fit the file", "the file is cut off");
+        return static_cast<std::size_t>(value);
+    }
+    void vertices() {
+        const std::size_t n = count();
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!reader_.skip_space()) reader_.fail("the file ends among the vertices", "the file is cut off");
+            const double x = reader_.finite("x"), y = reader_.finite("y"), z = reader_.finite("z");
+            soup_.points.push_back({x, y, z});
+            if (!reader_.line_done()) static_cast<void>(reader_.word());  // its reference
+        }
+    }
+    Index corner() {
+        const std::int64_t v = number("a vertex") - 1;
+        check_corner(v, soup_, file_, "an element");
+        return static_cast<Index>(v);
+    }
+    std::int32_t reference() {
+        return reader_.line_done()
+                   ? 0
+                   : static_cast<std::int32_t>(std::clamp<std::int64_t>(reader_.integer("a reference"), INT32_MIN, INT32_MAX));
+    }
+    void polygons(int sides) {
+        const std::size_t n = count();
+        for (std::size_t i = 0; i < n; ++i) {
+            for (int k = 0; k < sides; ++k) soup_.corners.push_back(corner());
+            close_polygon(soup_, file_);
+            labels_.push_back(reference());
+        }
+    }
+    void tetrahedra() {
+        const std::size_t n = count();
+        for (std::size_t i = 0; i < n; ++i) {
+            Tetrahedron t{};
+            for (Index& v : t) v = corner();
+            soup_.extras.tetrahedra.push_back(t);
+            static_cast<void>(reference());
+        }
+    }
+    /// A section that is not kept: a count, then a line each.
+    void other(const std::string& word) {
+        if (word.empty() || !std::isalpha(static_cast<unsigned char>(word.front())))
+            reader_.fail("there is " + in_quotes(word) + " where a section should begin", "export it again as text (.mesh)");
+        const std::size_t n = count();
+        for (std::size_t i = 0; i < n; ++i)
+            if (!reader_.next_line()) break;
+        while (!reader_.line_done()) static_cast<void>(reader_.word());
+        if (n > 0) soup_.notes.push_back("the section " + in_quotes(word) + " is not kept");
+    }
+
+    TextReader reader_;
+    const std::string& file_;
+    PolygonSoup soup_;
+    std::vector<std::int32_t> labels_;
+};
+
+/// The numbers of a DataArray, which must be text.
+template <class Number>
+std::vector<Number> numbers_of(const pugi::xml_node& array, const std::string& file, const char* what) {
+    if (!array) fail_input(file, std::string("has no ") + what, "export it again");
+    if (const std::string format = array.attribute("format").value(); format != "ascii")
+        fail_input(file, std::string("has its ") + what + " in the format '" + format + "'", "write it as text (ascii)");
+    std::vector<Number> values;
+    const std::string_view text = array.text().get();
+    const char *at = text.data(), *const end = text.data() + text.size();
+    while (true) {
+        while (at != end && (*at == ' ' || *at == '\n' || *at == '\t' || *at == '\r')) ++at;
+        if (at == end) return values;
+        Number value{};
+        const auto [next, code] = std::from_chars(at, end, value);
+        if (code != std::errc()) fail_input(file, std::string("has no number among its ") + what, "export it again");
+        values.push_back(value);
+        at = next;
+    }
+}
+
+pugi::xml_node named(const pugi::xml_node& parent, const char* name) {
+    for (const pugi::xml_node& array : parent.children("DataArray"))
+        if (std::string(array.attribute("Name").value()) == name) return array;
+    return {};
+}
+
+enum : std::int64_t { vtk_triangle = 5, vtk_polygon = 7, vtk_quad = 9, vtk_tetrahedron = 10 };
+
+void write_labels_note(const MeshExtras& extras, const char* format, Notes& notes) {
+    if (!extras.vertex_labels.empty()) notes.push_back(std::string(format) + " does not hold labels of vertices");
+    if (!extras.vertex_colours.empty() || !extras.face_colours.empty())
+        notes.push_back(std::string(format) + " does not hold colours");
+    if (!extras.vertex_texture.empty() || !extras.corner_texture.empty())
+        notes.push_back(std::string(format) + " does not hold texture coordinates");
+}
+
+}  // namespace
+
+PolygonSoup read_medit(std::string& bytes, const std::string& file) {
+    normalise_text(bytes);
+    return MeditReader(bytes, file).read();
+}
+
+PolygonSoup read_vtu(const std::string& bytes, const std::string& file) {
+    pugi::xml_document document;
+    if (const auto parsed = document.load_buffer(bytes.data(), bytes.size()); !parsed)
+        fail_input(file, "is no XML: " + std::string(parsed.description()) + " at byte " + std::to_string(parsed.offset),
+                   "export it again as text (.vtu)");
+    const pugi::xml_node grid = document.child("VTKFile").child("UnstructuredGrid"), piece = grid.child("Piece");
+    if (!piece) fail_input(file, "is no VTK file of an unstructured grid", "export it as .vtu");
+    if (piece.next_sibling("Piece")) fail_input(file, "has several pieces", "write it as one");
+    PolygonSoup soup;
+    const auto places = numbers_of<double>(piece.child("Points").child("DataArray"), file, "points");
+    if (places.size() % 3 != 0) fail_input(file, "has points that are not three numbers each", "export it again");
+    for (std::size_t i = 0; i < places.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!std::isfinite(places[i + k])) fail_input(file, "point " + std::to_string(i / 3) + " is not finite", "mend it");
+        soup.points.push_back({places[i], places[i + 1], places[i + 2]});
+    }
+    const pugi::xml_node cells = piece.child("Cells");
+    const auto corners = numbers_of<std::int64_t>(named(cells, "connectivity"), file, "connectivity"),
+               ends = numbers_of<std::int64_t>(named(cells, "offsets"), file, "offsets"),
+               types = numbers_of<std::int64_t>(named(cells, "types"), file, "types");
+    if (ends.size() != types.size()) fail_input(file, "has other numbers of offsets and of types", "export it again");
+    std::vector<std::int64_t> labels;
+    if (const pugi::xml_node array = named(piece.child("CellData"), "label"))
+        labels = numbers_of<std::int64_t>(array, file, "labels");
+    if (!labels.empty() && labels.size() != types.size())
+        fail_input(file, "has another number of labels than of cells", "mend it");
+    std::size_t others = 0;
+    for (std::size_t i = 0, begin = 0; i < ends.size(); ++i) {
+        const auto end = static_cast<std::size_t>(std::max<std::int64_t>(ends[i], 0));
+        if (end < begin || end > corners.size())
+            fail_input(file, "has offsets that do not ascend within its connectivity", "mend it");
+        const std::size_t n = end - begin;
+        for (std::size_t k = begin; k < end; ++k) check_corner(corners[k], soup, file, "cell " + std::to_string(i));
+        if (types[i] == vtk_tetrahedron && n == 4) {
+            Tetrahedron t{};
+            for (std::size_t k = 0; k < 4; ++k) t[k] = static_cast<Index>(corners[begin + k]);
+            soup.extras.tetrahedra.push_back(t);
+        } else if ((types[i] == vtk_triangle && n == 3) || (types[i] == vtk_quad && n == 4) ||
+                   (types[i] == vtk_polygon && n > 2)) {
+            for (std::size_t k = begin; k < end; ++k) soup.corners.push_back(static_cast<Index>(corners[k]));
+            close_polygon(soup, file);
+            if (!labels.empty()) soup.extras.face_labels.push_back(static_cast<std::int32_t>(labels[i]));
+        } else {
+            ++others;
+        }
+        begin = end;
+    }
+    if (others > 0) soup.notes.push_back(std::to_string(others) + " cells are neither polygons nor tetrahedra, and not kept");
+    check_cells(soup, file);
+    take_surface(soup, file);
+    return soup;
+}
+
+Notes write_medit(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
+    TextWriter writer(file);
+    writer.text("MeshVersionFormatted 2\n");
+    if (!options.comment.empty()) writer.text("# " + one_line(options.comment) + "\n");
+    writer.text("Dimension 3\nVertices\n" + std::to_string(soup.points.size()) + "\n");
+    for (const auto& [x, y, z] : soup.points) {
+        writer.number(x);
+        writer.numbers({y, z});
+        writer.text(" 0\n");
+    }
+    writer.text("Triangles\n" + std::to_string(soup.triangles.size()) + "\n");
+    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+        writer.number(soup.triangles[t][0] + 1);
+        writer.numbers({soup.triangles[t][1] + 1, soup.triangles[t][2] + 1});
+        writer.numbers({extras.face_labels.empty() ? 0 : extras.face_labels[t]});
+        writer.end_line();
+    }
+    if (!extras.tetrahedra.empty()) {
+        writer.text("Tetrahedra\n" + std::to_string(extras.tetrahedra.size()) + "\n");
+        for (const Tetrahedron& t : extras.tetrahedra) {
+            writer.number(t[0] + 1);
+            writer.numbers({t[1] + 1, t[2] + 1, t[3] + 1});
+            writer.text(" 0\n");
+        }
+    }
+    writer.text("End\n");
+    writer.commit();
+    Notes notes;
+    write_labels_note(extras, "Medit's format", notes);
+    return notes;
+}
+
+Notes write_vtu(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions&) {
+    TextWriter writer(file);
+    const std::size_t triangles = soup.triangles.size(), cells = triangles + extras.tetrahedra.size();
+    writer.text(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+        "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+        std::to_string(soup.points.size()) + "\" NumberOfCells=\"" + std::to_string(cells) +
+        "\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+    for (const auto& [x, y, z] : soup.points) {
+        writer.number(x);
+        writer.numbers({y, z});
+        writer.end_line();
+    }
+    writer.text("</DataArray>\n</Points>\n<Cells>\n<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n");
+    for (const auto& t : soup.triangles) {
+        writer.numbers({t[0], t[1], t[2]});
+        writer.end_line();
+    }
+    for (const Tetrahedron& t : extras.tetrahedra) {
+        writer.numbers({t[0], t[1], t[2], t[3]});
+        writer.end_line();
+    }
+    writer.text("</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n");
+    for (std::size_t i = 0; i < cells; ++i) {
+        writer.number(i < triangles ? 3 * (i + 1) : 3 * triangles + 4 * (i + 1 - triangles));
+        writer.end_line();
+    }
+    writer.text("</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n");
+    for (std::size_t i = 0; i < cells; ++i) writer.text(i < triangles ? "5\n" : "10\n");
+    writer.text("</DataArray>\n</Cells>\n");
+    if (!extras.face_labels.empty()) {
+        writer.text("<CellData>\n<DataArray type=\"Int32\" Name=\"label\" format=\"ascii\">\n");
+        for (std::size_t i = 0; i < cells; ++i) {
+            writer.number(i < triangles ? extras.face_labels[i] : 0);
+            writer.end_line();
+        }
+        writer.text("</DataArray>\n</CellData>\n");
+    }
+    writer.text("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+    writer.commit();
+    Notes notes;
+    write_labels_note(extras, "VTU as it is written here", notes);
+    return notes;
+}
+
+}  // namespace ostraka::io

@@ -1,0 +1,231 @@
+// Relations of parts to each other that a deformation keeps, and where and which way a single part is.
+#include "reader.h"
+
+#include "ostraka/axis/axis.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/core/dense.h"
+#include "ostraka/relation/geometric.h"
+
+namespace ostraka::semantic {
+
+namespace {
+
+/// What the selections themselves say: they do not change with the shape.
+Statement nothing_to_solve(const ReaderPtr& read, const RelationOptions& tolerances) {
+    Statement statement;
+    statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
+    RelationGraph graph;
+    graph.relationships.push_back(read->relationship());
+    graph.relationships.back().is_constraint = false;
+    graph.relationships.back().directed = read->relationship().type == "containment";
+    const RelationCheck check = check_relations(read->shape().mesh, read->shape().set, graph, tolerances).at(0);
+    statement.measure = [check](const State&) -> Measured {
+        return {check.verdict, check.parameters.deviations,
+                check.text.empty() ? "selections do not change with the shape" : check.text};
+    };
+    return statement;
+}
+
+/// Vertices that two parts have in common.
+std::vector<Index> common_outline(const Reader& read) {
+    const auto first = read.vertices(0), second = read.vertices(1);
+    std::vector<Index> shared;
+    std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
+    if (shared.size() < 3) read.fail("has parts without a common outline", "use parts that share one, or state adjacency");
+    return shared;
+}
+
+/// Unit normal of the plane that fits points.
+Vector3d normal_of(const Points& points, const std::vector<Index>& vertices) {
+    Vector3d mean = Vector3d::Zero();
+    for (const Index v : vertices) mean += points.col(v) - points.col(vertices.front());
+    mean = points.col(vertices.front()) + mean / static_cast<double>(vertices.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Index v : vertices) spread += (points.col(v) - mean) * (points.col(v) - mean).transpose();
+    return SymmetricEigen3(spread).eigenvectors().col(0);
+}
+
+/// The outline of two parts turns as a whole until its normal and up are at an angle in the range.
+Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& tolerances, double min, double max) {
+    read->need(2, 2);
+    const std::vector<Index> shared = common_outline(*read);
+    ConstraintParameters parameters;
+    parameters.direction = read->up();
+    parameters.min = min;
+    parameters.max = max;
+    Relationship stated = read->relationship();
+    stated.parameters.up = {(*parameters.direction)[0], (*parameters.direction)[1], (*parameters.direction)[2]};
+    parameters.rest_direction = normal_of(read->shape().rest, shared);
+    Statement statement;
+    statement.lower = [=](const State&, const State&) { return only(read->make("AxisDirection", ids_of(shared), parameters)); };
+    statement.measure = as_related(read, stated, tolerances);
+    return statement;
+}
+
+/// A share of the tolerance, so that what is kept is not on its brink.
+constexpr double well_within = 0.5;
+
+double surface(const Mesh& mesh, const std::vector<Index>& faces) { return area_of(mesh, faces); }
+
+/// The vertices along the only poly-line of a member.
+std::vector<int> only_polyline(const Reader& read, std::size_t i) {
+    const Annotation& line = read.member(i);
+    if (line.polylines.size() != 1)
+        read.fail("annotation " + std::to_string(line.id) + " is not one poly-line",
+                  "use lines of one piece, or state 'same measure' of tapes");
+    return ids_of(line.polylines.front());
+}
+
+double length_along(const std::vector<int>& way, const Points& points) {
+    double sum = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) sum += (points.col(way[i]) - points.col(way[i - 1])).norm();
+    return sum;
+}
+
+Vector3d mean_of(const std::vector<Index>& vertices, const Points& points) {
+    Vector3d sum = Vector3d::Zero();
+    for (const Index v : vertices) sum += points.col(v) - points.col(vertices.front());
+    return points.col(vertices.front()) + sum / static_cast<double>(vertices.size());
+}
+
+}  // namespace
+
+Statement selections_kept(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(2, read->relationship().type == "containment" ? 2 : 0);
+    return nothing_to_solve(read, tolerances);
+}
+
+Statement support(const ReaderPtr& read, const RelationOptions& tolerances) {
+    return outline_at_angle(read, tolerances, 0, well_within * tolerances.tilt * pi / 180);
+}
+
+Statement contact(const ReaderPtr& read, const RelationOptions& tolerances) {
+    return outline_at_angle(read, tolerances, pi / 2 - well_within * tolerances.tilt * pi / 180, pi / 2);
+}
+
+Statement part_similarity(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(2, 0);
+    std::vector<double> at_rest;
+    for (std::size_t i = 0; i < read->members(); ++i) at_rest.push_back(surface(read->shape().mesh, read->faces(i)));
+    for (const double area : at_rest)
+        if (!(area > 0)) read->fail("has a part without area", "use other parts");
+    Statement statement;
+    statement.follows = true;
+    // Each keeps its shape at rest, and all are as many times as large: the mean of what they are now.
+    statement.lower = [=](const State&, const State& now) {
+        double factor = 0;
+        for (std::size_t i = 0; i < at_rest.size(); ++i)
+            factor += std::sqrt(surface(now.mesh, read->faces(i)) / at_rest[i]) / static_cast<double>(at_rest.size());
+        Statement::Constraints list;
+        for (std::size_t i = 0; i < at_rest.size(); ++i) {
+            ConstraintParameters parameters;
+            parameters.min = parameters.max = factor;
+            list.push_back(read->make("Similarity", ids_of(read->vertices(i)), parameters));
+        }
+        return list;
+    };
+    statement.measure = as_related(read, read->relationship(), tolerances);
+    return statement;
+}
+
+Statement same_length(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(2, 0);
+    std::vector<std::vector<int>> ways;
+    for (std::size_t i = 0; i < read->members(); ++i) ways.push_back(only_polyline(*read, i));
+    const auto mean = [ways](const Points& points) {
+        double sum = 0;
+        for (const auto& way : ways) sum += length_along(way, points);
+        return sum / static_cast<double>(ways.size());
+    };
+    if (!(mean(read->shape().rest) > 0)) read->fail("has lines without length", "use other lines");
+    Statement statement;
+    statement.follows = statement.until_it_holds = true;
+    statement.lower = [=](const State&, const State& now) {
+        ConstraintParameters parameters;
+        parameters.min = parameters.max = mean(now.points);
+        parameters.absolute = true;
+        Statement::Constraints list;
+        for (const auto& way : ways) list.push_back(read->make("PolylineLength", way, parameters));
+        return list;
+    };
+    const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};
+    statement.measure = [=](const State& deformed) {
+        Deviation worst = tolerance;
+        const double size = mean(deformed.points);
+        for (const auto& way : ways)
+            worst.value = std::max(*worst.value, size > 0 ? 100 * std::abs(length_along(way, deformed.points) / size - 1) : 1e9);
+        return verdict_of({worst});
+    };
+    return statement;
+}
+
+Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(1, 0);
+    ConstraintParameters parameters;
+    parameters.direction = read->up();
+    struct Part {
+        std::vector<Index> vertices;
+        Vector3d axis;
+        double angle;
+    };
+    std::vector<Part> parts;
+    const double given = read->number("angle", -1, 0, 90);
+    for (std::size_t i = 0; i < read->members(); ++i) {
+        read->need_region(i);
+        const Axis axis = axis_of_part(read->shape().mesh, read->member(i));
+        if (!axis.found)
+            read->fail("annotation " + std::to_string(read->member(i).id) + " has no axis: " + axis.reason,
+                       "name a part that has one");
+        const Vector3d direction = eigen(axis.direction).normalized();
+        const double at_rest = std::acos(std::min(1.0, std::abs(direction.dot(*parameters.direction))));
+        parts.push_back({read->vertices(i), direction, given >= 0 ? given * pi / 180 : at_rest});
+    }
+    Statement statement;
+    statement.lower = [=](const State&, const State&) {
+        Statement::Constraints list;
+        for (const Part& part : parts) {
+            ConstraintParameters own = parameters;
+            own.rest_direction = part.axis;
+            own.min = own.max = part.angle;
+            list.push_back(read->make("AxisDirection", ids_of(part.vertices), own));
+        }
+        return list;
+    };
+    const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
+    statement.measure = [=](const State& deformed) -> Measured {
+        Deviation worst = angle;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const Axis axis = axis_of_part(deformed.mesh, read->member(i));
+            if (!axis.found) return {Verdict::unknown, {}, "a part has no axis any more: " + axis.reason};
+            const double now = std::acos(std::min(1.0, std::abs(eigen(axis.direction).normalized().dot(*parameters.direction))));
+            worst.value = std::max(*worst.value, std::abs(now - parts[i].angle) * 180 / pi);
+        }
+        return verdict_of({worst});
+    };
+    return statement;
+}
+
+Statement keep_position(const ReaderPtr& read, const RelationOptions& tolerances) {
+    read->need(1, 1);
+    const std::vector<Index> vertices = read->vertices(0);
+    const Vector3d place = read->vector("point").value_or(mean_of(vertices, read->shape().rest));
+    Statement statement;
+    // The part as the edit leaves it, moved as a whole.
+    statement.lower = [=](const State& edited, const State&) {
+        ConstraintParameters parameters;
+        const Vector3d way = place - mean_of(vertices, edited.points);
+        parameters.target.emplace(3, static_cast<Eigen::Index>(vertices.size()));
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            parameters.target->col(static_cast<Eigen::Index>(i)) = edited.points.col(vertices[i]) + way;
+        return only(read->make("Closeness", ids_of(vertices), parameters));
+    };
+    const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    statement.measure = [=](const State& deformed) {
+        Deviation off = distance;
+        off.value = (mean_of(vertices, deformed.points) - place).norm();
+        return verdict_of({off});
+    };
+    return statement;
+}
+
+}  // namespace ostraka::semantic

@@ -1,0 +1,70 @@
+// What annotations refer to: texts, links, images, files.
+#include "meshes.h"
+#include "ostraka/annotation/annotation_file.h"
+#include "ostraka/core/error.h"
+#include "scratch.h"
+
+#include <gtest/gtest.h>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+AnnotationSet with(std::vector<Information> information) {
+    AnnotationSet set;
+    Annotation one;
+    one.id = 4;
+    one.tag = "spout";
+    one.faces = {0, 1};
+    one.information = std::move(information);
+    set.annotations = {one};
+    return set;
+}
+
+using Kind = Information::Kind;
+
+}  // namespace
+
+TEST(Information, IsReadAsItWasWritten) {
+    const Mesh mesh = build_mesh(octahedron_sphere(1));
+    const AnnotationSet set = with({{Kind::text, "mended in 1931", "", ""},
+                                    {Kind::image, "photos/spout.jpg", "the spout", std::string(64, 'a')},
+                                    {Kind::link, "https://example.org/17", "", ""},
+                                    {Kind::file, "https://example.org/x.pdf", "report", ""}});
+    const Json document = annotations_to_json(set, mesh, "pot.ply", Provenance{"test", {}, {}});
+    const AnnotationSet back = annotations_from_json(document, mesh, "pot.ant.json");
+    EXPECT_TRUE(back.notes.empty());
+    EXPECT_EQ(back.annotations.at(0).information, set.annotations[0].information);
+    EXPECT_FALSE(back.annotations[0].information[3].is_local());
+    EXPECT_TRUE(back.annotations[0].information[1].is_local());
+}
+
+TEST(Information, OfLocalFilesIsChecked) {
+    const Scratch scratch;
+    write_file(scratch / "note.txt", "broken");
+    const std::string sum = sha256_of_file(scratch / "note.txt");
+    const auto said = [&](const Information& one) { return check_information(with({one}), scratch.path()); };
+    EXPECT_TRUE(said({Kind::file, "note.txt", "", sum}).empty());
+    EXPECT_TRUE(said({Kind::link, "nowhere", "", ""}).empty());
+    EXPECT_TRUE(said({Kind::image, "https://example.org/a.png", "", ""}).empty());
+    ASSERT_EQ(said({Kind::file, "note.txt", "", ""}).size(), 1U);
+    EXPECT_FALSE(said({Kind::file, "note.txt", "", ""})[0].defect);
+    ASSERT_EQ(said({Kind::file, "gone.txt", "", sum}).size(), 1U);
+    EXPECT_TRUE(said({Kind::file, "gone.txt", "", sum})[0].defect);
+    write_file(scratch / "note.txt", "mended");
+    ASSERT_EQ(said({Kind::file, "note.txt", "", sum}).size(), 1U);
+    EXPECT_TRUE(said({Kind::file, "note.txt", "", sum})[0].defect);
+}
+
+TEST(Information, OfAnotherKindOrWithAChecksumOfALinkIsRefused) {
+    const Mesh mesh = build_mesh(octahedron_sphere(1));
+    for (const char* entry : {R"({"kind": "song", "value": "la"})", R"({"kind": "text"})",
+                              R"({"kind": "link", "value": "https://a.b", "sha256": ")"}) {
+        std::string text = entry;
+        if (text.back() == '"' && text.find("sha256") != std::string::npos) text += std::string(64, 'a') + "\"}";
+        const std::string file =
+            R"({"annotations": [{"id": 1, "tag": "a", "type": "point", "points": [0], "information": [)" + text + "]}]}";
+        EXPECT_THROW((void)annotations_from_json(parse_json(file, "a"), mesh, "a"), Error) << entry;
+    }
+}

@@ -1,0 +1,189 @@
+// Relations of parts that a deformation keeps, and where and which way single parts are.
+#include "caged.h"
+#include "meshes.h"
+#include "ostraka/geom/eigen.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+constexpr int foot = 1, shaft = 2, top = 3, left_line = 4, right_line = 5, whole = 6;
+
+/// A closed column of radius 1 about z from 0 to 12: foot below 4, shaft, top above 8; two lines up its sides.
+struct Column {
+    Mesh mesh;
+    AnnotationSet set;
+    Column() {
+        constexpr Index around = 24, levels = 37;
+        TriangleSoup soup;
+        for (Index j = 0; j < levels; ++j)
+            for (Index i = 0; i < around; ++i) {
+                const double angle = 2 * std::numbers::pi * i / around;
+                soup.points.push_back({std::cos(angle), std::sin(angle), 12.0 * j / (levels - 1)});
+            }
+        for (Index j = 0; j + 1 < levels; ++j)
+            for (Index i = 0; i < around; ++i) {
+                const Index a = j * around + i, b = j * around + (i + 1) % around;
+                soup.triangles.push_back({a, b, b + around});
+                soup.triangles.push_back({a, b + around, a + around});
+            }
+        const Index below = around * levels, above = below + 1;
+        soup.points.push_back({0, 0, 0});
+        soup.points.push_back({0, 0, 12});
+        for (Index i = 0; i < around; ++i) {
+            soup.triangles.push_back({below, (i + 1) % around, i});
+            const Index last = around * (levels - 1);
+            soup.triangles.push_back({above, last + i, last + (i + 1) % around});
+        }
+        mesh = build_mesh(soup);
+        set.up = {0, 0, 1};
+        set.unit = "mm";
+        const auto region = [&](int id, const std::string& tag, double low, double high) {
+            Annotation one;
+            one.id = id;
+            one.tag = tag;
+            for (const Face f : mesh.faces())
+                if (const double z = centroid(mesh, f).z(); z > low && z < high) one.faces.push_back(f.idx());
+            set.annotations.push_back(one);
+        };
+        region(foot, "foot", -1, 4);
+        region(shaft, "shaft", 4, 8);
+        region(top, "top", 8, 13);
+        for (const auto& [id, column] : {std::pair{left_line, Index{0}}, {right_line, around / 2}}) {
+            Annotation line;
+            line.id = id;
+            line.tag = "line";
+            line.type = AnnotationType::line;
+            line.polylines.emplace_back();
+            for (Index j = 12; j <= 24; ++j) line.polylines[0].push_back(j * around + column);
+            set.annotations.push_back(line);
+        }
+        region(whole, "column", -1, 13);
+    }
+    [[nodiscard]] HandleSpace space() const { return {mesh, set}; }
+    [[nodiscard]] Eigen::Vector3d mean(int id, const std::vector<Point>& points) const {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        const auto vertices = vertices_of(mesh, *set.find(id));
+        for (const Index v : vertices) sum += eigen(points[v]);
+        return sum / static_cast<double>(vertices.size());
+    }
+};
+
+DeformResult solved(const Column& column, const Relationship& one, const std::string& steps) {
+    RelationGraph graph;
+    graph.relationships.push_back(one);
+    DeformOptions options;
+    options.followed = 0;
+    return deform(column.space(), graph, edit(steps), "e", options);
+}
+
+const std::string tilt_top =
+    R"({"select": {"annotation": "top"}, "rotate": {"axis": [0, 1, 0], "angle": 40, "centre": [0, 0, 8]}})";
+
+void expect_kept(const Column& column, const Relationship& one, const std::string& steps) {
+    const DeformResult result = solved(column, one, steps);
+    const ConstraintReport& report = result.constraints.at(0);
+    EXPECT_TRUE(report.used) << one.type;
+    EXPECT_EQ(report.before, Verdict::fails) << one.type;
+    EXPECT_EQ(report.verdict, Verdict::holds)
+        << one.type << ": " << report.text << (report.deviations.empty() ? 0 : *report.deviations[0].value);
+    EXPECT_LE(report.cost, report.cost_before) << one.type;
+    EXPECT_GT(report.cost_before, 0) << one.type;
+}
+
+}  // namespace
+
+TEST(PartsKept, SelectionsDoNotChangeWithTheShape) {
+    const Column column;
+    for (const auto& one :
+         {constraint(0, "containment", {whole, top}, "{}"), constraint(0, "equal selections", {whole, top}, "{}")}) {
+        const DeformResult result = solved(column, one, tilt_top);
+        EXPECT_TRUE(result.constraints.at(0).used);
+        EXPECT_EQ(result.constraints[0].verdict, one.type == "containment" ? Verdict::holds : Verdict::fails) << one.type;
+        EXPECT_EQ(result.constraints[0].low_level, 0U);
+    }
+}
+
+TEST(PartsKept, ASupportStaysLevel) {
+    expect_kept(Column(), constraint(0, "horizontal support", {shaft, top}, "{}", 1000), tilt_top);
+}
+
+TEST(PartsKept, ADirectionStaysUpright) {
+    expect_kept(Column(), constraint(0, "keep direction", {top}, "{}", 1000), tilt_top);
+    expect_kept(Column(), constraint(0, "keep direction", {top}, R"({"angle": 0})", 1000), tilt_top);
+    // By itself the top is where the edit puts it: it leans by 40 degrees.
+    const Column column;
+    const DeformResult result = solved(column, constraint(0, "keep direction", {top}, R"({"angle": 40})", 1000), tilt_top);
+    EXPECT_EQ(result.constraints[0].before, Verdict::holds) << *result.constraints[0].deviations[0].value;
+}
+
+TEST(PartsKept, APositionStays) {
+    const Column column;
+    const std::string push = R"({"select": {"annotation": "top"}, "translate": [2, 0, 0]})";
+    const auto rest = points_of(column.mesh);
+    const DeformResult kept = solved(column, constraint(0, "keep position", {shaft}, "{}", 1000), push);
+    EXPECT_EQ(kept.constraints[0].verdict, Verdict::holds);
+    EXPECT_LT((column.mean(shaft, kept.points) - column.mean(shaft, rest)).norm(), 0.03);
+    const DeformResult moved = solved(column, constraint(0, "keep position", {shaft}, R"({"point": [0, 1, 6]})", 1000), push);
+    EXPECT_EQ(moved.constraints[0].verdict, Verdict::holds);
+    EXPECT_LT((column.mean(shaft, moved.points) - Eigen::Vector3d(0, 1, 6)).norm(), 0.03);
+}
+
+TEST(PartsKept, LinesOfOneLengthStayAlike) {
+    // The column bends: the line inside the bend gets shorter than that outside.
+    expect_kept(Column(), constraint(0, "same length", {left_line, right_line}, "{}", 1e4),
+                R"({"select": {"annotation": "top"}, "rotate": {"axis": [0, 1, 0], "angle": 60, "centre": [0, 0, 6]}})");
+}
+
+TEST(PartsKept, SimilarPartsStaySimilar) {
+    const Column column;
+    expect_kept(column, constraint(0, "part similarity", {foot, top}, "{}", 1000),
+                R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})");
+}
+
+TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
+    Column column;
+    for (const int id : {foot, top}) {
+        Attribute height;
+        height.id = 1;
+        height.name = "height";
+        height.type = AttributeType::measure;
+        height.measure.tool = "bounding";
+        height.measure.direction = {0, 0, 1};
+        Index low = 0, high = 0;
+        for (const Index v : vertices_of(column.mesh, *column.set.find(id))) {
+            if (low == high && low == 0) low = high = v;
+            if (column.mesh.point(Vertex(v)).z() < column.mesh.point(Vertex(low)).z()) low = v;
+            if (column.mesh.point(Vertex(v)).z() > column.mesh.point(Vertex(high)).z()) high = v;
+        }
+        height.measure.points = {low, high};
+        column.set.find(id)->attributes.push_back(height);
+    }
+    Relationship equal = constraint(0, "equal attributes", {foot, top}, "{}", 1000);
+    equal.parameters.attribute = "height";
+    expect_kept(column, equal, R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})");
+    equal.parameters.attribute = "width";
+    RelationGraph graph;
+    graph.relationships.push_back(equal);
+    EXPECT_NE(error_of(column.space(), tilt_top, graph).find("has no measure"), std::string::npos);
+}
+
+TEST(PartsKept, WhatMakesNoSenseIsRefused) {
+    const Column column;
+    const auto said = [&](const Relationship& one) {
+        RelationGraph graph;
+        graph.relationships.push_back(one);
+        return error_of(column.space(), tilt_top, graph);
+    };
+    EXPECT_NE(said(constraint(0, "horizontal support", {foot, top}, "{}")).find("common outline"), std::string::npos);
+    EXPECT_NE(said(constraint(0, "same length", {foot, top}, "{}")).find("poly-line"), std::string::npos);
+    EXPECT_NE(said(constraint(0, "keep direction", {left_line}, "{}")).find("region"), std::string::npos);
+    EXPECT_NE(said(constraint(0, "keep direction", {top}, R"({"angle": 120})")).find("angle"), std::string::npos);
+    EXPECT_NE(said(constraint(0, "keep position", {top}, R"({"point": [1, 2]})")).find("three numbers"), std::string::npos);
+}
