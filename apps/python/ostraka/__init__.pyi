@@ -142,6 +142,7 @@ def fit(
     *,
     assembly: Input | None = None,
     class_: Input | None = None,
+    vocabulary: Input | None = None,
     output: FileName | bool | None = None,
     allow_outside: bool | None = False,
     force_mesh: bool | None = False,

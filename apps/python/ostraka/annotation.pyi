@@ -293,6 +293,8 @@ def edit(
     id: int | None = None,
     remove_attribute: Text | Sequence[Text] | None = None,
     attribute: Text | Sequence[Text] | None = None,
+    information: Text | Sequence[Text] | None = None,
+    remove_information: Text | Sequence[Text] | None = None,
     set_class: Text | None = None,
     set_unit: Text | None = None,
     set_up: Text | None = None,

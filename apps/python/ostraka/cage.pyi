@@ -52,8 +52,12 @@ def weights(
     cage: MeshLike,
     output: FileName | bool | None = None,
     *,
-    kind: Literal["mean-value", "green"] | None = 'mean-value',
+    kind: Literal["mean-value", "green", "harmonic", "local", "positive-mean-value"] | None = 'mean-value',
     snap: float | None = 4e-15,
+    nodes: int | None = 20000,
+    drop: float | None = 0.0001,
+    iterations: int | None = 300,
+    tolerance: float | None = 0.0001,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _WeightsResult:
     """Coordinates of a mesh in a cage, with a certificate."""

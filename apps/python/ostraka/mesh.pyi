@@ -118,6 +118,25 @@ def remesh(
 ) -> _RemeshResult:
     """A new mesh of the same surface, independent of the old one."""
 
+class _ExtractResult(Result):
+    output: Mesh | Sequence[Mesh] | Path | None
+    annotations_out: Annotations | Path | None
+def extract(
+    mesh: MeshLike,
+    annotations: AnnotationsLike,
+    output: FileName | bool | None = None,
+    *,
+    vocabulary: Input | None = None,
+    annotations_out: FileName | bool | None = None,
+    force_mesh: bool | None = False,
+    annotation: Text | Sequence[Text] | None = None,
+    without: Text | Sequence[Text] | None = None,
+    closed: bool | None = False,
+    labels: bool | None = False,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _ExtractResult:
+    """Cut annotated parts out of an object, with what is annotated on them."""
+
 class _BreakResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
     annotations_out: Annotations | Path | None

@@ -15,6 +15,7 @@ def extract(
     output: FileName | bool | None = None,
     *,
     graph: Input | None = None,
+    vocabulary: Input | None = None,
     force_mesh: bool | None = False,
     type: Text | Sequence[Text] | None = None,
     distance: float | None = 0.01,
@@ -61,6 +62,24 @@ def remove(
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RemoveResult:
     """Take relationships out of a graph."""
+
+class _EditResult(Result):
+    output: Document | Path | None
+def edit(
+    mesh: MeshLike,
+    annotations: AnnotationsLike,
+    graph: Input,
+    output: FileName | bool | None = None,
+    *,
+    force_mesh: bool | None = False,
+    id: int,
+    weight: float | None = None,
+    range: Text | None = None,
+    parameters: Text | None = None,
+    constraint: Literal["unchanged", "yes", "no"] | None = 'unchanged',
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _EditResult:
+    """Change weight, range and parameters of a relationship in place."""
 
 def list(
     mesh: MeshLike,

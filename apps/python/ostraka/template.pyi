@@ -56,6 +56,7 @@ def learn(
     members: MeshLike | Sequence[MeshLike] | None = None,
     *,
     strangers: MeshLike | Sequence[MeshLike] | None = None,
+    vocabulary: Input | None = None,
     output: FileName | bool | None = None,
     allow_outside: bool | None = False,
     force_mesh: bool | None = False,
@@ -107,6 +108,7 @@ class _ClassifyResult(Result):
 def classify(
     files: Input | Sequence[Input],
     *,
+    vocabulary: Input | None = None,
     report: FileName | bool | None = None,
     outlier: float | None = 0.25,
     unit_ratio: float | None = 3.0,
@@ -167,6 +169,7 @@ def propagate(
     template: Input,
     members: MeshLike | Sequence[MeshLike],
     *,
+    vocabulary: Input | None = None,
     output: FileName | bool | None = None,
     allow_outside: bool | None = False,
     force_mesh: bool | None = False,

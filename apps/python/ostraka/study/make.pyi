@@ -42,6 +42,7 @@ def moulds(
     beard: float | None = 0.0,
     chunk: float | None = 0.0,
     dents: int | None = 0,
+    body: bool | None = False,
     keep_pose: bool | None = False,
     vertices: int | None = 10000,
     cast_seed: int | None = 1,
