@@ -17,6 +17,7 @@ Statement nothing_to_solve(const ReaderPtr& read, const RelationOptions& toleran
     RelationGraph graph;
     graph.relationships.push_back(read->relationship());
     graph.relationships.back().is_constraint = false;
+    graph.relationships.back().constraint.clear();
     graph.relationships.back().directed = read->relationship().type == "containment";
     const RelationCheck check = check_relations(read->shape().mesh, read->shape().set, graph, tolerances).at(0);
     statement.measure = [check](const State&) -> Measured {
