@@ -182,7 +182,7 @@ TEST(Coordinates, AFurtherKindNeedsNoChangeElsewhere) {
                              return c;
                          }});
     const auto kinds = coordinate_kinds();
-    EXPECT_EQ(kinds, (std::vector<std::string>{"mean-value", "green", "nearest"}));
+    EXPECT_EQ(kinds, (std::vector<std::string>{"mean-value", "green", "harmonic", "local", "positive-mean-value", "nearest"}));
     const Mesh cage = build_mesh(test::box(2));
     const std::vector<Point> points{{0.4, 0.4, 0.4}, {0.9, 0.8, 0.7}};
     const Coordinates c = compute_coordinates("nearest", cage, points);

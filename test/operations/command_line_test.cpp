@@ -168,7 +168,7 @@ TEST(CommandLine, CompletionKnowsWhatAllCommandsHave) {
     EXPECT_EQ(run_command("--complete relation extract a.ply --type adj").out, "adjacency\n");
     EXPECT_EQ(run_command("--complete slice a.ply --up -").out, "-x\n-y\n-z\n");
     EXPECT_EQ(run_command("--complete slice a.ply --ax").out, "--axes\n");
-    EXPECT_EQ(run_command("--complete relation ''").out, "add\ncheck\nexport\nextract\nlist\nremove\n");
+    EXPECT_EQ(run_command("--complete relation ''").out, "add\ncheck\nedit\nexport\nextract\nlist\nremove\n");
 }
 
 }  // namespace

@@ -173,9 +173,10 @@ TEST(DeformCommand, EveryDocumentedConstraintCanBeStated) {
     EXPECT_GT(types.size(), 30U);
     for (const std::string& type : types) {
         const std::string graph = (scratch / (type + ".graph.json")).string();
-        const bool one = type == "keep measure";
+        const bool one = type == "keep measure" || type == "keep position";
         const auto added = run_command("relation add " + pot + parts + "'" + graph + "' --type '" + type + "' --annotation 5" +
-                                       (one ? "" : " --annotation 1") + " --constraint");
+                                       (one ? "" : " --annotation 1") +
+                                       (type == "equal attributes" ? " --attribute height" : "") + " --constraint");
         EXPECT_EQ(added.code, 0) << type << added.err;
     }
 }
