@@ -106,8 +106,8 @@ void settle(std::span<const double> estimate, const std::vector<Vector3d>& corne
 }  // namespace
 
 Coordinates bounded_coordinates(const UnitCage& cage, const std::vector<Point>& points, double snap, double drop,
-                                const std::string& kind, const std::function<void(const std::vector<std::size_t>&)>& prepare,
-                                const std::function<void(std::size_t, const Vector3d&, std::span<double>)>& estimate) {
+                                const std::string& kind, const std::function<void()>& prepare,
+                                const std::function<void(const Vector3d&, std::span<double>)>& estimate) {
     const SurfaceSearch search(cage.mesh);
     std::vector<SurfaceHit> nearest(points.size());
     std::vector<char> outside(points.size(), 0), on_cage(points.size(), 0);
@@ -124,10 +124,7 @@ Coordinates bounded_coordinates(const UnitCage& cage, const std::vector<Point>& 
     if (count > 0)
         fail_input("cage", std::to_string(count) + " points are not inside it: " + list + (count > 10 ? " ..." : ""),
                    kind + " coordinates are defined inside the cage; give a larger one, or use mean-value coordinates");
-    std::vector<std::size_t> within;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!on_cage[i]) within.push_back(i);
-    if (!within.empty()) prepare(within);
+    if (std::find(on_cage.begin(), on_cage.end(), 0) != on_cage.end()) prepare();
 
     const std::size_t columns = cage.corners.size();
     std::vector<std::vector<std::pair<int, double>>> rows(points.size());
@@ -144,7 +141,7 @@ Coordinates bounded_coordinates(const UnitCage& cage, const std::vector<Point>& 
             }
             std::fill(row.begin(), row.end(), 0.0);
             const Vector3d place = cage.unit(points[i]);
-            estimate(i, place, row);
+            estimate(place, row);
             settle(row, cage.corners, place, drop, rows[i]);
         }
     });

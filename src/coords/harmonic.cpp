@@ -97,6 +97,9 @@ WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage) 
     return weights;
 }
 
+namespace {
+
+/// Adds the weights at a place to a row, linear in its tetrahedron.
 void interpolate(const CageInterior& inside, const WeightMatrix& weights, const Vector3d& place, std::span<double> row) {
     const InteriorPlace at = inside.locate(place);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -106,17 +109,25 @@ void interpolate(const CageInterior& inside, const WeightMatrix& weights, const 
     }
 }
 
-Coordinates harmonic(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
+}  // namespace
+
+Coordinates interior_coordinates(const std::string& kind, const Mesh& mesh, const std::vector<Point>& points,
+                                 const CoordinateOptions& options,
+                                 const std::function<WeightMatrix(const CageInterior&, const UnitCage&)>& weights_of) {
     const UnitCage cage(mesh);
     std::unique_ptr<CageInterior> inside;
     WeightMatrix weights;
     return bounded_coordinates(
-        cage, points, options.snap, options.drop, "harmonic",
-        [&](const std::vector<std::size_t>&) {
-            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, "harmonic");
-            weights = harmonic_weights(*inside, cage);
+        cage, points, options.snap, options.drop, kind,
+        [&] {
+            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, kind);
+            weights = weights_of(*inside, cage);
         },
-        [&](std::size_t, const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+        [&](const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+}
+
+Coordinates harmonic(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
+    return interior_coordinates("harmonic", mesh, points, options, harmonic_weights);
 }
 
 }  // namespace ostraka::coords

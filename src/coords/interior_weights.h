@@ -20,7 +20,10 @@ WeightMatrix weights_on_cage(const CageInterior& inside, const UnitCage& cage);
 /// vertex. Rows sum to one and give their node; some weights may be a little below zero.
 WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage);
 
-/// Adds the weights at a place to a row, linear in its tetrahedron.
-void interpolate(const CageInterior& inside, const WeightMatrix& weights, const Eigen::Vector3d& place, std::span<double> row);
+/// Coordinates that are linear in each tetrahedron inside the cage: `weights_of` gives a row a node. It is asked only where a
+/// point does not lie on the cage.
+Coordinates interior_coordinates(const std::string& kind, const Mesh& mesh, const std::vector<Point>& points,
+                                 const CoordinateOptions& options,
+                                 const std::function<WeightMatrix(const CageInterior&, const UnitCage&)>& weights_of);
 
 }  // namespace ostraka::coords

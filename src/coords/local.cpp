@@ -337,18 +337,11 @@ private:
 }  // namespace
 
 Coordinates local(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
-    const UnitCage cage(mesh);
-    std::unique_ptr<CageInterior> inside;
-    WeightMatrix weights;
-    return bounded_coordinates(
-        cage, points, options.snap, options.drop, "local",
-        [&](const std::vector<std::size_t>&) {
-            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, "local");
-            LocalWeights minimiser(*inside, cage);
-            minimiser.iterate(options.iterations, options.tolerance);
-            weights = minimiser.weights();
-        },
-        [&](std::size_t, const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+    return interior_coordinates("local", mesh, points, options, [&](const CageInterior& inside, const UnitCage& cage) {
+        LocalWeights minimiser(inside, cage);
+        minimiser.iterate(options.iterations, options.tolerance);
+        return minimiser.weights();
+    });
 }
 
 }  // namespace ostraka::coords

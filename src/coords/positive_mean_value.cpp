@@ -66,7 +66,8 @@ void look_around(const std::vector<SeenFace>& faces, const std::vector<Vector3d>
         for (std::size_t j = 0; j < size; ++j) row[j] /= sum;
 }
 
-void add_seen_weights(const CageInterior& inside, const UnitCage& cage, WeightMatrix& weights) {
+WeightMatrix seen_weights(const CageInterior& inside, const UnitCage& cage) {
+    WeightMatrix weights = weights_on_cage(inside, cage);
     const std::vector<Vector3d> directions = spread_directions();
     std::vector<SeenFace> faces;
     for (const Face f : cage.mesh.faces()) {
@@ -84,22 +85,13 @@ void add_seen_weights(const CageInterior& inside, const UnitCage& cage, WeightMa
                         cage.corners.size());
         },
         16);
+    return weights;
 }
 
 }  // namespace
 
 Coordinates positive_mean_value(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
-    const UnitCage cage(mesh);
-    std::unique_ptr<CageInterior> inside;
-    WeightMatrix weights;
-    return bounded_coordinates(
-        cage, points, options.snap, options.drop, "positive-mean-value",
-        [&](const std::vector<std::size_t>&) {
-            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, "positive-mean-value");
-            weights = weights_on_cage(*inside, cage);
-            add_seen_weights(*inside, cage, weights);
-        },
-        [&](std::size_t, const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+    return interior_coordinates("positive-mean-value", mesh, points, options, seen_weights);
 }
 
 }  // namespace ostraka::coords

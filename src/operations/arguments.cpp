@@ -1,7 +1,5 @@
 #include "operations.h"
 
-#include "ostraka/core/nearest_name.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -69,14 +67,7 @@ const Annotation& find_annotation(const AnnotationSet& set, const std::string& n
     std::vector<const Annotation*> tagged;
     for (const Annotation& annotation : set.annotations)
         if (annotation.tag == name) tagged.push_back(&annotation);
-    if (tagged.empty()) {
-        std::vector<std::string> tags;
-        for (const Annotation& annotation : set.annotations) tags.push_back(annotation.tag);
-        const std::string near = name.size() > 100 ? std::string() : nearest_name(name, tags);
-        fail_input(file, "has no annotation '" + printable(name, 60) + "'",
-                   (near.empty() ? "" : "did you mean '" + printable(near, 60) + "'? ") +
-                       "give the id or the tag of one; 'ostraka annotation list' shows them");
-    }
+    if (tagged.empty()) fail_unknown_annotation(set, name, file);
     if (tagged.size() > 1)
         fail_input(file, "has " + std::to_string(tagged.size()) + " annotations tagged '" + printable(name, 60) + "'",
                    "give the id of one");

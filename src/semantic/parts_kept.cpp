@@ -3,7 +3,6 @@
 
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/angles.h"
-#include "ostraka/core/dense.h"
 #include "ostraka/relation/geometric.h"
 
 namespace ostraka::semantic {
@@ -34,16 +33,6 @@ std::vector<Index> common_outline(const Reader& read) {
     std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
     if (shared.size() < 3) read.fail("has parts without a common outline", "use parts that share one, or state adjacency");
     return shared;
-}
-
-/// Unit normal of the plane that fits points.
-Vector3d normal_of(const Points& points, const std::vector<Index>& vertices) {
-    Vector3d mean = Vector3d::Zero();
-    for (const Index v : vertices) mean += points.col(v) - points.col(vertices.front());
-    mean = points.col(vertices.front()) + mean / static_cast<double>(vertices.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Index v : vertices) spread += (points.col(v) - mean) * (points.col(v) - mean).transpose();
-    return SymmetricEigen3(spread).eigenvectors().col(0);
 }
 
 /// The outline of two parts turns as a whole until its normal and up are at an angle in the range.
@@ -81,12 +70,6 @@ double length_along(const std::vector<int>& way, const Points& points) {
     double sum = 0;
     for (std::size_t i = 1; i < way.size(); ++i) sum += (points.col(way[i]) - points.col(way[i - 1])).norm();
     return sum;
-}
-
-Vector3d mean_of(const std::vector<Index>& vertices, const Points& points) {
-    Vector3d sum = Vector3d::Zero();
-    for (const Index v : vertices) sum += points.col(v) - points.col(vertices.front());
-    return points.col(vertices.front()) + sum / static_cast<double>(vertices.size());
 }
 
 }  // namespace

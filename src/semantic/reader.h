@@ -223,6 +223,9 @@ Statement low_level(const ReaderPtr&, const RelationOptions&);
 
 /// What relations measure for the type of this name.
 std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances);
+/// The mean of vertices, and the unit normal of the plane that fits them.
+Vector3d mean_of(const std::vector<Index>& vertices, const Points& points);
+Vector3d normal_of(const Points& points, const std::vector<Index>& vertices);
 /// Tolerance of distances, in the mesh's unit.
 double length_tolerance(const Reader& read, const RelationOptions& tolerances);
 

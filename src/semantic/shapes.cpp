@@ -4,16 +4,24 @@
 
 namespace ostraka::semantic {
 
+Vector3d mean_of(const std::vector<Index>& vertices, const Points& points) {
+    Vector3d sum = Vector3d::Zero();
+    for (const Index v : vertices) sum += points.col(v) - points.col(vertices.front());
+    return points.col(vertices.front()) + sum / static_cast<double>(vertices.size());
+}
+
+Vector3d normal_of(const Points& points, const std::vector<Index>& vertices) {
+    const Vector3d mean = mean_of(vertices, points);
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Index v : vertices) spread += (points.col(v) - mean) * (points.col(v) - mean).transpose();
+    return SymmetricEigen3(spread).eigenvectors().col(0);
+}
+
 namespace {
 
 /// The vertex of an annotation that stands for its place: nearest to the mean of its vertices on its plane (section 5.2.1).
 Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
-    Vector3d mean = Vector3d::Zero();
-    for (const Index v : vertices) mean += rest.col(v);
-    mean /= static_cast<double>(vertices.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Index v : vertices) spread += (rest.col(v) - mean) * (rest.col(v) - mean).transpose();
-    const Vector3d normal = SymmetricEigen3(spread).eigenvectors().col(0);
+    const Vector3d mean = mean_of(vertices, rest), normal = normal_of(rest, vertices);
     Index best = vertices.front();
     double minimum = std::numeric_limits<double>::infinity();
     for (const Index v : vertices) {
@@ -34,11 +42,7 @@ Statement::Constraints kept(const Reader& read, const char* kind) {
 /// The mean of each group of vertices.
 std::vector<Vector3d> means_of(const std::vector<std::vector<Index>>& groups, const Points& points) {
     std::vector<Vector3d> means;
-    for (const auto& vertices : groups) {
-        Vector3d sum = Vector3d::Zero();
-        for (const Index v : vertices) sum += points.col(v) - points.col(vertices.front());
-        means.push_back(points.col(vertices.front()) + sum / static_cast<double>(vertices.size()));
-    }
+    for (const auto& vertices : groups) means.push_back(mean_of(vertices, points));
     return means;
 }
 

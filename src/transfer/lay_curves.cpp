@@ -513,6 +513,7 @@ private:
         laid.annotation.colour = from.colour;
         laid.annotation.type = from.type;
         laid.annotation.note = from.note;
+        laid.annotation.information = from.information;
         laid.annotation.all = from.all;
     }
 

@@ -34,8 +34,6 @@ std::string TagWords::key(const std::string& tag) const {
     return meant ? "\x01" + search_->vocabulary().concepts[*meant].id + text.substr(without_number(text).size()) : text;
 }
 
-bool TagWords::same(const std::string& tag, const std::string& other) const { return key(tag) == key(other); }
-
 std::vector<std::size_t> TagWords::find(const AnnotationSet& set, const std::string& name) const {
     const auto all = [&](const auto& holds) {
         std::vector<std::size_t> found;
@@ -70,6 +68,10 @@ void TagWords::rename_like(AnnotationSet& set, const AnnotationSet& reference) c
 std::vector<std::size_t> TagWords::require(const AnnotationSet& set, const std::string& name, const std::string& where) const {
     std::vector<std::size_t> found = find(set, name);
     if (!found.empty()) return found;
+    fail_unknown_annotation(set, name, where);
+}
+
+void fail_unknown_annotation(const AnnotationSet& set, const std::string& name, const std::string& where) {
     std::vector<std::string> tags;
     for (const Annotation& annotation : set.annotations) tags.push_back(annotation.tag);
     const std::string near = name.size() > 100 ? std::string() : nearest_name(name, tags);

@@ -2,6 +2,7 @@
 #include "caged.h"
 #include "meshes.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/measure/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -156,13 +157,8 @@ TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
         height.type = AttributeType::measure;
         height.measure.tool = "bounding";
         height.measure.direction = {0, 0, 1};
-        Index low = 0, high = 0;
-        for (const Index v : vertices_of(column.mesh, *column.set.find(id))) {
-            if (low == high && low == 0) low = high = v;
-            if (column.mesh.point(Vertex(v)).z() < column.mesh.point(Vertex(low)).z()) low = v;
-            if (column.mesh.point(Vertex(v)).z() > column.mesh.point(Vertex(high)).z()) high = v;
-        }
-        height.measure.points = {low, high};
+        const auto ends = extremes(column.mesh, *column.set.find(id), {0, 0, 1});
+        height.measure.points.assign(ends.begin(), ends.end());
         column.set.find(id)->attributes.push_back(height);
     }
     Relationship equal = constraint(0, "equal attributes", {foot, top}, "{}", 1000);

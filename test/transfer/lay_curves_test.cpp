@@ -104,10 +104,14 @@ TEST(LayCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
         if (centroid(coarse, f).z() > 30) set.annotations[0].faces.push_back(f);
     const SurfaceSearch on_fine(fine);
     TransferOptions options;
-    EXPECT_FALSE(is_free(transfer(coarse, set, on_fine, options).annotations.annotations.at(0)));
+    set.annotations[0].information = {{Information::Kind::text, "cracked", "", ""}};
+    const TransferResult along_edges = transfer(coarse, set, on_fine, options);
+    EXPECT_FALSE(is_free(along_edges.annotations.annotations.at(0)));
     options.outlines = TransferOptions::Outlines::free;
     const TransferResult free = transfer(coarse, set, on_fine, options);
     EXPECT_TRUE(is_free(free.annotations.annotations.at(0)));
+    for (const TransferResult* one : {&along_edges, &free})
+        EXPECT_EQ(one->annotations.annotations[0].information, set.annotations[0].information);
     EXPECT_NEAR(free.scores.at(0).target_length / free.scores.at(0).source_length, 1, 0.03);
     options.outlines = TransferOptions::Outlines::edges;
     EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));

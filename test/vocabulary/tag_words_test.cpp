@@ -39,8 +39,8 @@ TEST(TagWords, WithoutAVocabularyGoByTheLetters) {
     EXPECT_TRUE(words.means("flower", " FLOWER "));
     EXPECT_FALSE(words.means("flower", "flower 3"));
     EXPECT_FALSE(words.means("manico", "handle"));
-    EXPECT_TRUE(words.same("Flower  3", "flower 3"));
-    EXPECT_FALSE(words.same("flower 3", "flower 4"));
+    EXPECT_EQ(words.key("Flower  3"), words.key("flower 3"));
+    EXPECT_NE(words.key("flower 3"), words.key("flower 4"));
 }
 
 TEST(TagWords, WithAVocabularyGoByConcepts) {
@@ -52,9 +52,9 @@ TEST(TagWords, WithAVocabularyGoByConcepts) {
     EXPECT_FALSE(words.means("manico", "grip"));  // broader
     EXPECT_FALSE(words.means("spout", "handle"));
     EXPECT_TRUE(words.means("crack 4", "crack"));  // not in the vocabulary: letters
-    EXPECT_TRUE(words.same("manico 2", "handle 2"));
-    EXPECT_FALSE(words.same("manico 2", "handle 3"));
-    EXPECT_FALSE(words.same("grip", "handle"));
+    EXPECT_EQ(words.key("manico 2"), words.key("handle 2"));
+    EXPECT_NE(words.key("manico 2"), words.key("handle 3"));
+    EXPECT_NE(words.key("grip"), words.key("handle"));
 }
 
 TEST(TagWords, FindAnnotationsByIdTagOrMeaning) {

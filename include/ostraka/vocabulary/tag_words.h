@@ -16,12 +16,10 @@ public:
 
     /// Does the tag mean the word?
     [[nodiscard]] bool means(const std::string& tag, const std::string& word) const;
-    /// Do both tags mean the same: one concept, or the same letters? The numbers of "flower 3" and "flower 4" tell them apart.
-    [[nodiscard]] bool same(const std::string& tag, const std::string& other) const;
-    /// One text for all tags that are the same in this sense.
+    /// One text for all tags that mean the same: one concept, or the same letters. Numbers tell "flower 3" and "flower 4" apart.
     [[nodiscard]] std::string key(const std::string& tag) const;
-    /// The annotations (places in the set) that the name means: of that id, if it is a number that one has; else those tagged to
-    /// the letter; else those whose tag means it. Empty if there are none.
+    /// The annotations (places in the set) that the name means: of that id, if it is a number that one has; else those whose tag
+    /// means it, without a vocabulary those tagged to the letter alone where there are any. Empty if there are none.
     [[nodiscard]] std::vector<std::size_t> find(const AnnotationSet& set, const std::string& name) const;
     /// The same; throws Error (input), naming `where` and the nearest tag, if there are none.
     [[nodiscard]] std::vector<std::size_t> require(const AnnotationSet& set, const std::string& name,
@@ -29,10 +27,12 @@ public:
     /// Tags of `set` become those of `reference` that are the same, or where there is none and only one that they mean, that one
     /// ("grip" becomes "handle" where the reference has handles alone). Others stay.
     void rename_like(AnnotationSet& set, const AnnotationSet& reference) const;
-    [[nodiscard]] const VocabularySearch* search() const { return search_.get(); }
 
 private:
     std::shared_ptr<const VocabularySearch> search_;
 };
+
+/// Throws Error (input): `where` has no annotation of this name; the nearest tag is proposed.
+[[noreturn]] void fail_unknown_annotation(const AnnotationSet& set, const std::string& name, const std::string& where);
 
 }  // namespace ostraka
