@@ -6,6 +6,7 @@
 #include "ostraka/core/file.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
+#include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/remesh/refine.h"
@@ -110,6 +111,73 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
     return result;
 }
 
+/// The same by rays, place by place: along the interpolated normals of the coarser of the two meshes, from it to the other. The
+/// curve laid is the source's where that is the coarser, else the one that was written, which then has to come back.
+struct LaidByRays {
+    double perimeter = 0, of_written = 0;  ///< of the curve laid, and of the one that it should be
+    double mean = 0, most = 0;             ///< distance of the laid places from that, in edges of the target
+    std::size_t places = 0, without_ray = 0;
+};
+
+LaidByRays laid_by_rays(const SurfaceSearch& source, const Annotation& drawn, const SurfaceSearch& target,
+                        const Annotation& written) {
+    const bool forward = source.typical_edge() >= target.typical_edge();
+    const SurfaceSearch &from = forward ? source : target, &to = forward ? target : source;
+    const Mesh& mesh = from.mesh();
+    std::vector<std::pair<Point, Point>> segments;
+    LaidByRays result;
+    for (const SurfaceCurve& curve : curves_on(to.mesh(), forward ? written : drawn))
+        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) {
+            segments.emplace_back(curve.nodes[i].point, curve.nodes[i + 1].point);
+            result.of_written += distance(curve.nodes[i].point, curve.nodes[i + 1].point);
+        }
+    const double step = 0.05 * to.typical_edge(), far = 0.05 * to.diagonal();
+    double sum = 0;
+    for (const SurfaceCurve& curve : curves_on(mesh, forward ? drawn : written)) {
+        std::vector<std::pair<Point, Vector>> places;
+        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) {
+            const Point &a = curve.nodes[i].point, &b = curve.nodes[i + 1].point;
+            const auto [u, v, w] = corners(mesh, Face(curve.faces[i]));
+            const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / step)));
+            for (int k = 0; k < parts; ++k) {
+                const Point p = a + (static_cast<double>(k) / parts) * (b - a);
+                const auto weight = nearest_barycentric(mesh.point(u), mesh.point(v), mesh.point(w), p);
+                const Vector n =
+                    weight[0] * vertex_normal(mesh, u) + weight[1] * vertex_normal(mesh, v) + weight[2] * vertex_normal(mesh, w);
+                places.emplace_back(p, n / std::sqrt(n.squared_length()));
+            }
+        }
+        std::vector<std::optional<Point>> on(places.size());
+        std::vector<double> off(places.size(), 0);
+        parallel_for(places.size(), [&](std::size_t i) {
+            for (const SurfaceHit& hit : to.line_hits(places[i].first, places[i].second, far))
+                if (to.normal(hit.face) * places[i].second > 0) {
+                    on[i] = hit.point;
+                    break;
+                }
+            if (!on[i]) return;
+            off[i] = std::numeric_limits<double>::infinity();
+            for (const auto& [a, b] : segments) off[i] = std::min(off[i], distance_to_segment(*on[i], a, b));
+        });
+        std::optional<Point> last, first;
+        for (std::size_t i = 0; i < on.size(); ++i) {
+            ++result.places;
+            if (!on[i]) {
+                ++result.without_ray;
+                continue;
+            }
+            sum += off[i];
+            result.most = std::max(result.most, off[i] / target.typical_edge());
+            if (last) result.perimeter += distance(*last, *on[i]);
+            last = on[i];
+            if (!first) first = on[i];
+        }
+        if (last) result.perimeter += distance(*last, *first);
+    }
+    result.mean = sum / target.typical_edge() / static_cast<double>(std::max<std::size_t>(1, result.places - result.without_ray));
+    return result;
+}
+
 std::string name_of(std::size_t n) {
     return n % 1000000 == 0 ? std::to_string(n / 1000000) + "M"
            : n % 1000 == 0  ? std::to_string(n / 1000) + "K"
@@ -146,11 +214,12 @@ std::optional<Annotation> ball(const Mesh& mesh, const Point& centre, double sha
 
 void free_outlines(const FreeOutlineOptions& options) {
     std::ostringstream csv;
-    csv << "object,kind,from,to,region,share,perimeter,laid perimeter,off perimeter %,area,laid area,off area %,overlap,own "
+    csv << "object,kind,from,to,region,share,perimeter,laid perimeter,off perimeter %,off perimeter by rays %,mean off by rays "
+           "in edges,most,without ray,area,laid area,off area %,overlap,own "
            "overlap,places,by ray,"
            "detours,untangled,seconds\n";
     struct Worst {
-        double perimeter = 0, area = 0, overlap = 1;
+        double perimeter = 0, by_rays = 0, away = 0, area = 0, overlap = 1;
         std::size_t cells = 0;
     };
     std::map<std::string, Worst> worst;
@@ -174,14 +243,19 @@ void free_outlines(const FreeOutlineOptions& options) {
                 std::find_if(moved.scores.begin(), moved.scores.end(), [&](const TransferScore& s) { return s.id == one.id; });
             const double off_perimeter = 100 * (now.perimeter / exact.perimeter - 1),
                          off_area = 100 * (now.area / exact.area - 1);
+            const LaidByRays rays = laid_by_rays(from, one, to, *there);
+            const double off_by_rays = 100 * (rays.of_written / rays.perimeter - 1);
             const double share = area_of(from.mesh(), one) / surface_area(from.mesh());
             csv << object << ',' << kind << ',' << from_name << ',' << to_name << ',' << one.tag << ',' << digits(share, 3) << ','
-                << now.perimeter << ',' << exact.perimeter << ',' << digits(off_perimeter, 3) << ',' << now.area << ','
+                << now.perimeter << ',' << exact.perimeter << ',' << digits(off_perimeter, 3) << ',' << digits(off_by_rays, 3)
+                << ',' << digits(rays.mean, 3) << ',' << digits(rays.most, 3) << ',' << rays.without_ray << ',' << now.area << ','
                 << exact.area << ',' << digits(off_area, 3) << ',' << digits(exact.overlap, 6) << ','
                 << digits(score->overlap.value_or(0), 6) << ',' << score->vertices << ',' << score->by_ray << ','
                 << score->detours << ',' << score->crossings_resolved << ',' << digits(seconds, 3) << '\n';
             Worst& cell = worst[kind + ' ' + from_name + " -> " + to_name + " share " + digits(share, 1)];
             cell.perimeter = std::max(cell.perimeter, std::abs(off_perimeter));
+            cell.by_rays = std::max(cell.by_rays, std::abs(off_by_rays));
+            cell.away = std::max(cell.away, rays.mean);
             cell.area = std::max(cell.area, std::abs(off_area));
             cell.overlap = std::min(cell.overlap, exact.overlap);
             ++cell.cells;
@@ -273,10 +347,11 @@ void free_outlines(const FreeOutlineOptions& options) {
             }
         }
     }
-    std::cout << "kind, from -> to, share: worst perimeter %, area %, overlap\n";
+    std::cout << "kind, from -> to, share: worst perimeter %, by rays %, mean distance by rays in edges, area %, overlap\n";
     for (const auto& [cell, what] : worst)
-        std::cout << cell << ": " << digits(what.perimeter, 3) << " %, " << digits(what.area, 3) << " %, "
-                  << digits(what.overlap, 6) << " (" << what.cells << ")\n";
+        std::cout << cell << ": " << digits(what.perimeter, 3) << " %, " << digits(what.by_rays, 3) << " %, "
+                  << digits(what.away, 3) << ", " << digits(what.area, 3) << " %, " << digits(what.overlap, 6) << " ("
+                  << what.cells << ")\n";
     if (!options.csv.empty()) write_file(options.csv, csv.str());
 }
 

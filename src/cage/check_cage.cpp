@@ -1,4 +1,5 @@
 #include "ostraka/cage/cage.h"
+#include "ostraka/coords/nested.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -115,6 +116,13 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     return result;
 }
 
+/// Faces of a level get the numbers that they have in the whole cage.
+void number_as_whole(const SubMesh& level, CageCheck& check) {
+    for (auto& [f, g] : check.intersections) f = level.faces[f], g = level.faces[g];
+    for (OutsideVertex& vertex : check.outside)
+        if (vertex.face != no_index) vertex.face = level.faces[vertex.face];
+}
+
 }  // namespace
 
 CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
@@ -123,7 +131,23 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
     const double largest = std::max(largest_coordinate_of(cage), largest_coordinate_of(mesh));
     int exponent = 0;
     if (largest > 0 && std::isfinite(largest)) (void)std::frexp(largest, &exponent);
-    CageCheck result = check_in_unit(scaled(cage, -exponent), scaled(mesh, -exponent));
+    const Mesh own = scaled(cage, -exponent);
+    const std::vector<CageLevel> levels = cage_levels(own);
+    const Mesh object = scaled(mesh, -exponent);
+    CageCheck result = check_in_unit(levels.size() > 1 ? levels[0].cage.mesh : own, object);
+    if (levels.size() > 1) {
+        number_as_whole(levels[0].cage, result);
+        for (std::size_t l = 1; l < levels.size(); ++l) {
+            CageCheck inner = check_in_unit(levels[l].cage.mesh, Mesh());
+            number_as_whole(levels[l].cage, inner);
+            result.outward = result.outward && inner.outward;
+            result.degenerate += inner.degenerate;
+            result.components += inner.components;
+            result.genus += inner.genus;
+            result.intersections.insert(result.intersections.end(), inner.intersections.begin(), inner.intersections.end());
+        }
+        result.nested = levels.size() - 1;
+    }
     for (OutsideVertex& o : result.outside) o.distance = std::ldexp(o.distance, exponent);
     result.clearance = std::ldexp(result.clearance, exponent);
     return result;
@@ -158,7 +182,9 @@ std::vector<Finding> findings(const CageCheck& check, const std::string& unit) {
                         "is crossed by the cage though its vertices are inside: move the cage outwards there"});
     if (check.crossing.size() > 5)
         list.push_back({true, "mesh", std::to_string(check.crossing.size() - 5) + " more faces are crossed"});
-    if (check.components > 1) list.push_back({false, "cage", "has " + std::to_string(check.components) + " components"});
+    if (check.nested > 0) list.push_back({false, "cage", "holds " + counted(check.nested, "cage") + " within the outermost"});
+    if (check.components > 1 + check.nested)
+        list.push_back({false, "cage", "has " + std::to_string(check.components) + " components"});
     return list;
 }
 

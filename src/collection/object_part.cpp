@@ -5,8 +5,10 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
+#include "ostraka/fields/thickness.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/select/recipe.h"
+#include "ostraka/select/scalars.h"
 #include "ostraka/slicing/cut_object.h"
 
 #include <algorithm>
@@ -81,6 +83,17 @@ Mesh cut_band(const Mesh& mesh, const SliceFrame& frame, const Band& band, std::
     return std::move(part.mesh);
 }
 
+/// Of the segments by thickness, cut out along its edges.
+CutPart largest_segment(const Mesh& mesh) {
+    const std::vector<Index> numbers = segment(mesh, thickness(mesh), {});
+    AnnotationSet set;
+    Annotation& region = set.annotations.emplace_back();
+    region.tag = "segment 0";
+    for (Index f = 0; f < numbers.size(); ++f)
+        if (numbers[f] == 0) region.faces.push_back(f);
+    return cut_out_part(mesh, set, {0});
+}
+
 }  // namespace
 
 void PartOptions::describe(OptionList& visit) {
@@ -88,9 +101,11 @@ void PartOptions::describe(OptionList& visit) {
           "the part that is looked at: regions by id or by tag (with a vocabulary also what is narrower); else the whole objects")
         .words();
     visit("without", without, "regions that are left out, by id or tag, such as beard; objects need not have them").words();
-    visit("proposed", proposed,
-          "a part found by slices across the upward direction instead: the tubular part, or the top above the neck",
-          Choices{"none", "tube", "top"});
+    visit(
+        "proposed", proposed,
+        "a part that is found instead: the tubular part or the top above the neck, by slices across the upward direction, or the "
+        "largest segment by thickness",
+        Choices{"none", "tube", "top", "segment"});
 }
 
 ObjectParts::ObjectParts(PartOptions options, TagWords words, std::string words_checksum)
@@ -145,6 +160,10 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
                        "annotate the part's surface");
         CutPart cut = about_file(object.annotations, [&] { return cut_out_part(file.mesh, *set, regions, left_out); });
         for (const Index f : cut.faces) origin.push_back(cut.whole ? cut.whole->face_origin[f] : f);
+        part.mesh = std::move(cut.mesh);
+    } else if (options_.proposed == PartOptions::Proposal::segment) {
+        CutPart cut = about_file(object.mesh, [&] { return largest_segment(file.mesh); });
+        origin = std::move(cut.faces);
         part.mesh = std::move(cut.mesh);
     } else if (options_.proposed != PartOptions::Proposal::none) {
         if (!up && part.annotations_error) std::rethrow_exception(part.annotations_error);

@@ -1,6 +1,7 @@
 #include "ostraka/coords/certificate.h"
 
 #include "ostraka/coords/influence.h"
+#include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
@@ -93,7 +94,7 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
                    "give the mesh and the cage that they were computed for");
     if (columns == 0) fail_input("cage", "has no vertices");
     CoordinateCertificate result{coordinates.kind, points.size(), cage.number_of_vertices(), cage.number_of_faces()};
-    if (coordinate_kind(coordinates.kind).on_cage) certify_kind(cage, options, result);
+    if (coordinate_kind(coordinates.kind).on_cage && cage_levels(cage).size() == 1) certify_kind(cage, options, result);
     if (points.empty()) return result;
 
     const std::vector<Point> corner = points_of(cage);

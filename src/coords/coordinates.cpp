@@ -2,6 +2,7 @@
 
 #include "kinds.h"
 
+#include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
@@ -84,6 +85,9 @@ std::vector<Point> points_of(const Mesh& mesh) {
 }
 
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const Mesh& mesh, const CoordinateOptions& options) {
+    check_cage(cage);
+    if (const std::vector<CageLevel> levels = cage_levels(cage); levels.size() > 1)
+        return nested_coordinates(kind, levels, mesh, options);
     return compute_coordinates(kind, cage, points_of(mesh), options);
 }
 
@@ -171,6 +175,8 @@ void CoordinateOptions::describe(OptionList& visit) {
     visit("drop", drop, "all but mean-value and green: weights below this are left out", Range{0, 0.01});
     visit("iterations", iterations, "local: steps at most", Range{1, 100000});
     visit("tolerance", tolerance, "local: end when ten steps lower the total variation by less than this share", Range{0, 0.1});
+    visit("fade", fade, "cages within cages: length over which an inner cage's hold on what enters it rises", Range{0, 1},
+          "share of its diagonal");
 }
 
 }  // namespace ostraka

@@ -5,6 +5,7 @@
 #include "ostraka/core/cholesky.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/stopwatch.h"
 
 #include <Eigen/Dense>
 
@@ -117,13 +118,21 @@ Coordinates interior_coordinates(const std::string& kind, const Mesh& mesh, cons
     const UnitCage cage(mesh);
     std::unique_ptr<CageInterior> inside;
     WeightMatrix weights;
-    return bounded_coordinates(
+    double tetrahedra = 0, at_nodes = 0;
+    const Stopwatch watch;
+    Coordinates result = bounded_coordinates(
         cage, points, options.snap, options.drop, kind,
         [&] {
-            inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, kind);
+            {
+                const AddedSeconds added(tetrahedra);
+                inside = std::make_unique<CageInterior>(cage.mesh, options.nodes, kind);
+            }
+            const AddedSeconds added(at_nodes);
             weights = weights_of(*inside, cage);
         },
         [&](const Vector3d& place, std::span<double> row) { interpolate(*inside, weights, place, row); });
+    result.seconds = {{"tetrahedra", tetrahedra}, {"weights", at_nodes}, {"points", watch.seconds() - tetrahedra - at_nodes}};
+    return result;
 }
 
 Coordinates harmonic(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {

@@ -3,6 +3,8 @@
 
 #include "ostraka/io/mesh_file.h"
 
+#include <span>
+
 namespace ostraka::io {
 
 // Readers: `bytes` is the whole file, `file` its name for messages. They may change the bytes.
@@ -26,6 +28,22 @@ std::uint8_t channel_from_unit(double value, std::size_t& bad);
 std::uint8_t channel_from_byte(double value, std::size_t& bad);
 
 inline constexpr Colour white{255, 255, 255, 255};
+
+/// The faces to write: options.polygons, or the triangles where there are none.
+class WrittenFaces {
+public:
+    WrittenFaces(const TriangleSoup& soup, const WriteOptions& options) : soup_(soup), options_(options) {}
+    [[nodiscard]] std::size_t size() const { return polygons() ? options_.polygons.size() : soup_.triangles.size(); }
+    [[nodiscard]] std::span<const Index> corners(std::size_t face) const {
+        if (polygons()) return options_.polygons[face];
+        return soup_.triangles[face];
+    }
+
+private:
+    [[nodiscard]] bool polygons() const { return !options_.polygons.empty(); }
+    const TriangleSoup& soup_;
+    const WriteOptions& options_;
+};
 
 // Writers: `extras` were checked to be empty or complete. They return what the format cannot hold.
 using Notes = std::vector<std::string>;

@@ -27,6 +27,52 @@ void check_extras(const MeshExtras& extras, const WriteOptions& options, std::si
             if (v >= vertices) throw std::logic_error("write_mesh: a tetrahedron of a vertex that is not there");
 }
 
+/// What faces have, for the polygons.
+MeshExtras of_polygons(const MeshExtras& extras, const std::vector<Index>& triangle) {
+    MeshExtras result = extras;
+    const auto pick = [&](const auto& from, auto& to) {
+        if (from.empty()) return;
+        to.clear();
+        for (const Index t : triangle) to.push_back(from[t]);
+    };
+    pick(extras.face_colours, result.face_colours);
+    pick(extras.face_labels, result.face_labels);
+    result.corner_texture.clear();
+    return result;
+}
+
+std::vector<std::string> write_polygons(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
+                                        const WriteOptions& options) {
+    const std::string ending = extension(file);
+    if (options.polygons.size() != options.polygon_triangle.size())
+        throw std::logic_error("write_mesh: polygons without triangles");
+    for (const auto& polygon : options.polygons)
+        for (const Index v : polygon)
+            if (v >= soup.points.size()) throw std::logic_error("write_mesh: a polygon of a vertex that is not there");
+    WriteOptions rest = options;
+    std::vector<std::string> notes;
+    if (ending != ".obj" && ending != ".off" && ending != ".ply") {
+        rest.polygons.clear();
+        rest.polygon_triangle.clear();
+        notes = write_triangles(file, soup, extras, rest);
+        notes.emplace_back("only OBJ, OFF and PLY hold polygons: they are cut into triangles");
+        return notes;
+    }
+    for (FaceValues& one : rest.face_values) {
+        std::vector<float> values;
+        for (const Index t : options.polygon_triangle) values.push_back(one.values[t]);
+        one.values = std::move(values);
+    }
+    const MeshExtras own = of_polygons(extras, options.polygon_triangle);
+    notes = ending == ".obj"   ? io::write_obj(file, soup, own, rest)
+            : ending == ".off" ? io::write_off(file, soup, own, rest)
+                               : io::write_ply(file, soup, own, rest);
+    if (!extras.corner_texture.empty())
+        notes.emplace_back("texture coordinates of corners are left out where polygons are written");
+    if (!extras.tetrahedra.empty()) notes.emplace_back("tetrahedra are left out: .mesh and .vtu hold them");
+    return notes;
+}
+
 void check_soup(const Path& file, const TriangleSoup& soup) {
     for (std::size_t v = 0; v < soup.points.size(); ++v)
         for (const double x : soup.points[v])
@@ -63,6 +109,7 @@ std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& s
         notes.emplace_back("only PLY holds numbers of vertices and faces: they are left out");
         return notes;
     }
+    if (!options.polygons.empty()) return write_polygons(file, soup, extras, options);
     if (ending == ".mesh") return io::write_medit(file, soup, extras, options);
     if (ending == ".vtu") return io::write_vtu(file, soup, extras, options);
     if (!extras.tetrahedra.empty()) {

@@ -24,10 +24,12 @@ Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         writer.numbers({s, t});
         writer.end_line();
     }
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    const WrittenFaces faces(soup, options);
+    for (std::size_t t = 0; t < faces.size(); ++t) {
         writer.character('f');
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Index v = soup.triangles[t][k];
+        const auto corners = faces.corners(t);
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const Index v = corners[k];
             writer.character(' ');
             writer.number(static_cast<std::uint64_t>(v) + 1);
             if (!by_vertex && !by_corner) continue;

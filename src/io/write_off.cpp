@@ -5,10 +5,11 @@ namespace ostraka::io {
 
 Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     TextWriter writer(file);
+    const WrittenFaces faces(soup, options);
     const bool textured = !extras.vertex_texture.empty(), coloured = !extras.vertex_colours.empty();
     writer.text(std::string(textured ? "ST" : "") + (coloured ? "C" : "") + "OFF\n");
     if (!options.comment.empty()) writer.text("# " + one_line(options.comment) + "\n");
-    writer.text(std::to_string(soup.points.size()) + " " + std::to_string(soup.triangles.size()) + " 0\n");
+    writer.text(std::to_string(soup.points.size()) + " " + std::to_string(faces.size()) + " 0\n");
     for (std::size_t v = 0; v < soup.points.size(); ++v) {
         const auto& [x, y, z] = soup.points[v];
         writer.number(x);
@@ -18,9 +19,10 @@ Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         if (textured) writer.numbers({extras.vertex_texture[v][0], extras.vertex_texture[v][1]});
         writer.end_line();
     }
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        writer.character('3');
-        for (const Index v : soup.triangles[t]) writer.numbers({v});
+    for (std::size_t t = 0; t < faces.size(); ++t) {
+        const auto corners = faces.corners(t);
+        writer.number(corners.size());
+        for (const Index v : corners) writer.numbers({v});
         if (!extras.face_colours.empty())
             for (const std::uint8_t c : extras.face_colours[t]) writer.numbers<unsigned>({c});
         writer.end_line();

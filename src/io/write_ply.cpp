@@ -51,6 +51,10 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     TextWriter writer(file);
     const bool ascii = options.encoding == Encoding::ascii;
     const bool vertex_alpha = has_alpha(extras.vertex_colours), face_alpha = has_alpha(extras.face_colours);
+    const WrittenFaces faces(soup, options);
+    std::size_t most = 3;
+    for (std::size_t t = 0; t < faces.size(); ++t) most = std::max(most, faces.corners(t).size());
+    const bool wide = most > 255;
     std::string header = std::string("ply\nformat ") + (ascii ? "ascii" : "binary_little_endian") + " 1.0\n";
     if (!options.comment.empty()) header += "comment " + one_line(options.comment) + "\n";
     header +=
@@ -59,7 +63,8 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     if (!extras.vertex_labels.empty()) header += "property int label\n";
     if (!extras.vertex_texture.empty()) header += "property float s\nproperty float t\n";
     if (!options.vertex_quality.empty()) header += "property double quality\n";
-    header += "element face " + std::to_string(soup.triangles.size()) + "\nproperty list uchar int vertex_indices\n";
+    header +=
+        "element face " + std::to_string(faces.size()) + "\nproperty list " + (wide ? "int" : "uchar") + " int vertex_indices\n";
     if (!extras.face_colours.empty()) header += colour_properties(face_alpha);
     if (!extras.face_labels.empty()) header += "property int label\n";
     for (const FaceValues& one : options.face_values) header += "property float " + one.name + "\n";
@@ -76,9 +81,11 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         if (!options.vertex_quality.empty()) values.put(options.vertex_quality[v]);
         values.end_element();
     }
-    for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-        values.put(std::uint8_t{3});
-        for (const Index v : soup.triangles[t]) values.put(v);
+    for (std::size_t t = 0; t < faces.size(); ++t) {
+        const auto corners = faces.corners(t);
+        if (wide) values.put(static_cast<Index>(corners.size()));
+        else values.put(static_cast<std::uint8_t>(corners.size()));
+        for (const Index v : corners) values.put(v);
         if (!extras.face_colours.empty()) values.colour(extras.face_colours[t], face_alpha);
         if (!extras.face_labels.empty()) values.put(extras.face_labels[t]);
         for (const FaceValues& one : options.face_values) values.put(one.values[t]);

@@ -1,7 +1,9 @@
 // cage make, cage check: cages around meshes.
 #include "operations.h"
 
+#include "ostraka/coords/nested.h"
 #include "ostraka/semantic/cage_density.h"
+#include "ostraka/semantic/part_cages.h"
 
 #include <algorithm>
 #include <set>
@@ -16,18 +18,26 @@ struct CageMake final : Operation {
         p.output("output", Kind::cage, output, "cage to write (.ply, .obj, .off, .stl)");
         p.input_option("annotations", Kind::annotations, annotations,
                        "annotations of the mesh (.ant.json): four times the vertices where points, lines and outlines are");
+        p.input_option(
+            "graph", Kind::graph, graph,
+            "relationships (.graph.json): a mirror symmetry gives the plane of the cage, and parts of which one is the "
+            "image of the other get cages that are, too");
+        vocabulary.describe(p, "by which tags are compared with --parts");
         options.describe(p.options);
         p.options("levels", levels,
                   "numbers of vertices with commas: nested cages, each around the finer one, written as output-NUMBER",
                   Range{4, 1000000});
+        p.options("together", one_file, "the levels in one file: a cage with cages nested in it, each of which can be edited");
+        p.options("parts", parts, "regions, by id or tag, that get cages of their own, nested in that of the whole").words();
+        p.options("part-vertices", part_vertices, "wanted number of vertices of a part's cage", Range{4, 1000000});
         p.options("mirror", mirror, "a mirror-symmetric cage about this plane; auto: about that of the object",
                   Words{{"auto"}, "a point and a normal as six numbers with commas", [](const std::string& text) {
                             if (text != "auto") static_cast<void>(plane_of(text));
                         }});
         p.options("detail", details, "annotation=factor: so many times the vertices there, instead; may be given several times");
-        p.report.table("cages", text("file", "cage"), integer("vertices", "vertices"), integer("faces", "faces"),
-                       boolean("reached"), integer("genus", "genus"), number("clearance", "clearance", "length"),
-                       number("alpha", "alpha"));
+        p.report.table("cages", text("file", "cage"), integer("level"), text("part"), integer("vertices", "vertices"),
+                       integer("faces", "faces"), boolean("reached"), integer("genus", "genus"),
+                       number("clearance", "clearance", "length"), number("alpha", "alpha"));
     }
 
     void check() const override {
@@ -35,7 +45,11 @@ struct CageMake final : Operation {
         if (std::adjacent_find(sizes.begin(), sizes.end()) != sizes.end())
             fail_usage("--levels has a number twice", "give each once");
         if (!annotations && !details.empty()) fail_usage("--detail without --annotations", "add --annotations");
-        if (levels.empty() || output.file().empty()) return;
+        if (!annotations && (!parts.empty() || graph))
+            fail_usage(std::string(parts.empty() ? "--graph" : "--parts") + " without --annotations", "add --annotations");
+        if (!parts.empty() && levels.size() > 1 && !one_file)
+            fail_usage("--parts with --levels", "add --together: parts are nested in the finest level, in one file");
+        if (levels.empty() || one_file || output.file().empty()) return;
         std::vector<Path> files;
         for (const std::uint64_t size : sizes) files.emplace_back(output.part_file(ending(size)));
         check_outputs({mesh.file(), annotations.file()}, files);
@@ -55,7 +69,10 @@ struct CageMake final : Operation {
                         " border edges): the cage goes around both sides of its surface, in through openings that are wider than "
                         "--alpha; close it with 'mesh repair' where it stands for a solid");
         const auto sizes = wanted();
-        const auto plane = mirror_of(object, set, report);
+        const RelationGraph none;
+        const RelationGraph& relations = graph ? graph.on(set) : none;
+        const auto plane = mirror_of(object, set, relations, report);
+        const std::vector<std::size_t> regions = regions_of(set);
         auto results = in_file(mesh.file(), [&] { return make_nested_cages(object, sizes, options, density, plane); });
         bool reached = true;
         std::size_t left_out = 0;
@@ -66,17 +83,18 @@ struct CageMake final : Operation {
             reached = reached && made.reached;
             left_out += check.outside.size();
             genera.insert(check.genus);
-            std::string file = levels.empty() ? output.file() : output.part_file(ending(sizes[i]));
-            if (file.empty()) file = output.name + (levels.empty() ? "" : ending(sizes[i]));
+            const bool alone = levels.empty() || one_file;
+            std::string file = alone ? output.file() : output.part_file(ending(sizes[i]));
+            if (file.empty()) file = output.name + (alone ? "" : ending(sizes[i]));
             const std::string name = Path(file).filename().string();
             if (made.cage.number_of_vertices() < sizes[i])
                 report.note(name + " has " + std::to_string(made.cage.number_of_vertices()) + " vertices instead of " +
                             std::to_string(sizes[i]) +
                             (made.wrap_vertices < sizes[i] ? ": its wrap has no more, a smaller --alpha gives more"
                                                            : ": a mirrored cage has as many on both sides of the plane"));
-            report.row("cages")("file", file, name)("vertices", made.cage.number_of_vertices())(
-                "faces", made.cage.number_of_faces())("reached", made.reached)("genus", check.genus)(
-                "clearance", check.clearance)("alpha", made.alpha);
+            report.row("cages")("file", file, name)("level", results.size() - 1 - i)("part", "")(
+                "vertices", made.cage.number_of_vertices())("faces", made.cage.number_of_faces())("reached", made.reached)(
+                "genus", check.genus)("clearance", check.clearance)("alpha", made.alpha);
         }
         if (!reached) report.note("fewer vertices could not be had without leaving a part of the mesh outside");
         if (genera.size() > 1)
@@ -86,9 +104,69 @@ struct CageMake final : Operation {
                 (left_out == 1 ? "1 vertex that no face has is" : std::to_string(left_out) + " vertices that no face has are") +
                 std::string(" not inside the cage, which is made around faces: remove with 'mesh repair'"));
         if (!reached || left_out > 0) report.answer_no();
+        if (one_file || !regions.empty()) {
+            output.write(nested(object, set, relations, regions, results, report));
+            return;
+        }
         for (std::size_t i = 0; i < results.size(); ++i)
             if (levels.empty()) output.write(std::move(results[i].cage));
             else output.write_part(ending(sizes[i]), std::move(results[i].cage));
+    }
+
+    /// All levels and the cages of the parts as one mesh, the outermost first.
+    [[nodiscard]] Mesh nested(const Mesh& object, const AnnotationSet& set, const RelationGraph& relations,
+                              const std::vector<std::size_t>& regions, const std::vector<CageResult>& results,
+                              Report& report) const {
+        CageOptions of_parts = options;
+        of_parts.vertices = part_vertices;
+        const std::vector<PartCage> inner =
+            in_file(annotations.file(), [&] { return make_part_cages(object, set, regions, of_parts, relations, graph.file()); });
+        std::vector<const Mesh*> all;
+        for (std::size_t i = results.size(); i-- > 0;) all.push_back(&results[i].cage);
+        for (const PartCage& one : inner) all.push_back(&one.made.cage);
+        Mesh cage = together(all);
+        const std::vector<CageLevel> found = cage_levels(cage);
+        std::size_t first = 0;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const auto level = std::find_if(found.begin() + (k > 0 ? 1 : 0), found.end(),
+                                            [&](const CageLevel& l) { return l.cage.vertices.front() == first; });
+            const std::string what =
+                k < results.size() ? "a level" : "the cage of '" + tag_of(set, regions, k - results.size()) + "'";
+            if (level == found.end() || level->cage.vertices.size() != all[k]->number_of_vertices())
+                throw Error(ErrorKind::failure, "cage", what + " does not lie in that of the whole",
+                            "raise --offset, or give the whole more --vertices");
+            first += all[k]->number_of_vertices();
+            if (k < results.size()) continue;
+            const PartCage& one = inner[k - results.size()];
+            const std::string file = output.file().empty() ? output.name : output.file();
+            report.row("cages")("file", file, Path(file).filename().string() + ", " + tag_of(set, regions, k - results.size()))(
+                "level", level - found.begin())("part", tag_of(set, regions, k - results.size()))(
+                "vertices", one.made.cage.number_of_vertices())("faces", one.made.cage.number_of_faces())(
+                "reached", one.made.reached)("genus", one.check.genus)("clearance", one.check.clearance)("alpha", one.made.alpha);
+            if (!one.made.reached) report.answer_no();
+        }
+        return cage;
+    }
+
+    static std::string tag_of(const AnnotationSet& set, const std::vector<std::size_t>& regions, std::size_t k) {
+        return set.annotations[regions[k]].tag;
+    }
+
+    /// The regions that --parts names, each once.
+    [[nodiscard]] std::vector<std::size_t> regions_of(const AnnotationSet& set) const {
+        const TagWords words = vocabulary.words();
+        std::vector<std::size_t> regions;
+        for (const std::string& name : parts) {
+            const std::size_t before = regions.size();
+            for (const std::size_t i : words.require(set, name, annotations.file()))
+                if (set.annotations[i].type == AnnotationType::region &&
+                    std::find(regions.begin(), regions.end(), i) == regions.end())
+                    regions.push_back(i);
+            if (regions.size() == before)
+                fail_input(annotations.file(), "no annotation '" + printable(name, 60) + "' is a region, or it was named before",
+                           "name regions, each once");
+        }
+        return regions;
     }
 
     static std::string ending(std::uint64_t size) { return "-" + std::to_string(size); }
@@ -127,8 +205,9 @@ struct CageMake final : Operation {
         return {Point(n[0], n[1], n[2]), Vector(n[3], n[4], n[5])};
     }
 
-    [[nodiscard]] std::optional<MirrorPlane> mirror_of(const Mesh& object, const AnnotationSet& set, Report& report) const {
-        if (mirror.empty()) return {};
+    [[nodiscard]] std::optional<MirrorPlane> mirror_of(const Mesh& object, const AnnotationSet& set,
+                                                       const RelationGraph& relations, Report& report) const {
+        if (mirror.empty()) return mirror_of(relations, object, set);
         if (mirror != "auto") return plane_of(mirror);
         const MirrorPlane plane = find_mirror_plane(object, set, mesh.file());
         const auto three = [](const auto& p) { return number(p.x()) + "," + number(p.y()) + "," + number(p.z()); };
@@ -136,10 +215,23 @@ struct CageMake final : Operation {
         return plane;
     }
 
+    /// Of the first mirror symmetry in the graph.
+    [[nodiscard]] std::optional<MirrorPlane> mirror_of(const RelationGraph& relations, const Mesh& object,
+                                                       const AnnotationSet& set) const {
+        for (const Relationship& one : relations.relationships)
+            if (const auto plane = symmetry_plane(object, set, relations, one.annotations, graph.file())) return plane;
+        return {};
+    }
+
     MeshInput mesh;
     AnnotationsInput annotations;
+    GraphInput graph;
+    VocabularyOption vocabulary;
     MeshOutput output;
     CageOptions options;
+    bool one_file = false;
+    std::vector<std::string> parts;
+    std::uint64_t part_vertices = 40;
     std::vector<int> levels;
     std::string mirror;
     std::vector<std::string> details;

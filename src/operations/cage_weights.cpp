@@ -74,6 +74,12 @@ struct CageCoordinates final : Operation {
         row("locality", number(c.carriers_mean, 4) + " mean, " + std::to_string(c.carriers_max) + " most",
             "weights that carry 95 % at a point");
         if (coordinates.is_sparse()) row("stored", share(coordinates.stored_share()), "of the weights; the others are zero");
+        std::vector<std::string> phases;
+        for (const auto& [phase, seconds] : coordinates.seconds) {
+            report.run("seconds." + phase, seconds);
+            phases.push_back(phase + " " + number(seconds, 3) + " s");
+        }
+        if (!phases.empty()) row("time", joined(phases), "of each phase");
         report("storedShare", coordinates.stored_share());
         const double factor = amplification(coordinates);
         row("amplification", number(factor, 3), "a point moves at most so many times as far as the cage");

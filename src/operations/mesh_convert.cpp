@@ -1,6 +1,8 @@
 // mesh convert
 #include "operations.h"
 
+#include <algorithm>
+
 namespace ostraka {
 
 namespace {
@@ -11,6 +13,10 @@ struct MeshConvert final : Operation {
         p.output("output", Kind::mesh, output.with_encoding(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
         p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle the polygon it was cut from");
+        p.input_option(
+            "polygons-of", Kind::mesh, polygons_of,
+            "file of polygons that the triangles were cut from, or a mesh of them in another shape, as the input itself: "
+            "they are written instead (.obj, .off, .ply)");
         p.options("binary", binary, "write PLY and STL as bytes (the default)");
         for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));
     }
@@ -33,10 +39,42 @@ struct MeshConvert final : Operation {
                 {"face", std::move(origin), polygon_count, "for each triangle written the polygon of the input it was cut from"});
         }
         report("vertices", triangles.soup.points.size())("polygons", polygon_count)("triangles", count);
-        output.write(std::move(triangles.soup), std::move(triangles.extras));
+        WriteOptions writing;
+        if (polygons_of) keep_polygons(triangles.soup, writing, report);
+        output.write(std::move(triangles.soup), std::move(triangles.extras), std::move(writing));
     }
 
-    MeshInput input;
+    /// Of a file whose polygons give these triangles, in their order, whatever shape it has.
+    void keep_polygons(const TriangleSoup& soup, WriteOptions& writing, Report& report) {
+        PolygonSoup given = polygons_of.take_polygons();
+        const std::vector<Index> corner = given.corners, begin = given.polygon_begin;
+        const std::size_t vertices = given.points.size();
+        const TriangulatedSoup cut = triangulate(std::move(given));
+        const auto fail = [&](const std::string& what) {
+            fail_input(polygons_of.file(), what, "give the file that the mesh was read from at first");
+        };
+        if (vertices != soup.points.size())
+            fail("has " + std::to_string(vertices) + " vertices, and the mesh " + std::to_string(soup.points.size()));
+        if (cut.soup.triangles.size() != soup.triangles.size())
+            fail("gives " + std::to_string(cut.soup.triangles.size()) + " triangles, and the mesh has " +
+                 std::to_string(soup.triangles.size()));
+        Index last = no_index;
+        for (Index t = 0; t < soup.triangles.size(); ++t) {
+            const Index polygon = cut.triangle_polygon.empty() ? t : cut.triangle_polygon[t];
+            const std::vector<Index> corners(corner.begin() + begin[polygon], corner.begin() + begin[polygon + 1]);
+            for (const Index v : soup.triangles[t])
+                if (std::find(corners.begin(), corners.end(), v) == corners.end())
+                    fail("has a polygon " + std::to_string(polygon) + " that triangle " + std::to_string(t) +
+                         " of the mesh was not cut from");
+            if (polygon == last) continue;
+            last = polygon;
+            writing.polygons.push_back(corners);
+            writing.polygon_triangle.push_back(t);
+        }
+        report.note(counted(writing.polygons.size(), "polygon") + " in place of the triangles");
+    }
+
+    MeshInput input, polygons_of;
     MeshOutput output;
     IndexMapOutput map;
     bool binary = false;

@@ -2,10 +2,14 @@
 
 #include "geometry.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/shortest_path.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/measure/measure.h"
 #include "ostraka/relation/layout.h"
 #include "ostraka/render/colour_scale.h"
 
@@ -113,6 +117,25 @@ JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObje
     return entry;
 }
 
+/// The places of a curve a little off the surface, so that it is not half within it.
+std::vector<Point> lifted(const Mesh& mesh, const SurfaceCurve& curve) {
+    const double step = 0.002 * box_diagonal(mesh);
+    std::vector<Point> places;
+    for (std::size_t i = 0; i < curve.nodes.size(); ++i) {
+        const Point& p = curve.nodes[i].point;
+        Vector normal(0, 0, 0);
+        if (curve.faces.empty()) {
+            for (const Face f : faces_of(mesh, curve.nodes[i])) normal += area_vector(mesh, f);
+        } else {
+            const auto [a, b, c] = corners(mesh, Face(curve.faces[std::min(i, curve.faces.size() - 1)]));
+            const auto weight = nearest_barycentric(mesh.point(a), mesh.point(b), mesh.point(c), p);
+            normal = weight[0] * vertex_normal(mesh, a) + weight[1] * vertex_normal(mesh, b) + weight[2] * vertex_normal(mesh, c);
+        }
+        places.push_back(p + step * unit_vector(normal));
+    }
+    return places;
+}
+
 JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const ContainmentOrder& order, const Relative& relative,
                            const Keep& keep, JsonAllocator& allocator) {
     const auto& parents = order.parent;
@@ -149,6 +172,10 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
                         json_object(allocator, "count", one.faces.size(), "blob", keep(runs_of(one.faces))));
         else if (one.type == AnnotationType::line) add_members(entry, allocator, "lines", one.polylines);
         else add_members(entry, allocator, "points", one.points);
+        if (is_free(one))
+            add_members(entry, allocator, "curves", json_list(curves_on(mesh, one), allocator, [&](const SurfaceCurve& curve) {
+                            return json_list(lifted(mesh, curve), allocator, [&](const Point& p) { return relative(triple(p)); });
+                        }));
         annotations.PushBack(entry, allocator);
     }
     return annotations;

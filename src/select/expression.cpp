@@ -155,6 +155,12 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
         return faces_seen(mesh_, from.camera, screen_area(kind, *value, from, at + '/' + kind),
                           visible_only(*value) ? &search(at + '/' + kind) : nullptr);
     }
+    if (whole_ != nullptr)
+        if (const SelectionLevel* level = whole_->level_of(expression, around, at)) {
+            const double infinite = std::numeric_limits<double>::infinity();
+            return faces_between(mesh_, {cut_->vertex_values(whole_->mesh_, level->values), false},
+                                 level->above ? ScalarRange{level->level, infinite} : ScalarRange{-infinite, level->level});
+        }
     // What runs along the edges of the mesh is asked there.
     if (whole_ != nullptr && (kind == "segments" || kind == "grow" || kind == "shrink" || kind == "faces"))
         return faces_of_origin(whole_->faces(expression, around, at));

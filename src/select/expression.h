@@ -37,6 +37,19 @@ struct SelectionBorders {
     std::map<std::string, std::vector<std::size_t>> lassos;  ///< by the place of the lasso in the recipe: its curves
 };
 
+/// A selection on the mesh cut along its borders.
+struct CutSelection {
+    CutMesh cut;
+    std::vector<bool> faces;  ///< of it
+};
+
+/// Numbers at vertices, and the one at the border of a selection.
+struct SelectionLevel {
+    std::vector<double> values;
+    double level = 0;
+    bool above = true;  ///< inside the values are at least the level, or at most
+};
+
 /// Evaluates expressions on one mesh. `set` holds the annotations made so far. All errors name file and JSON pointer.
 class ExpressionEvaluator {
 public:
@@ -52,8 +65,11 @@ public:
     /// The lines of an expression as geodesics.
     std::vector<std::vector<SurfacePlace>> curves(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
-    /// Adds the places at which the selection's borders cross faces: of volumes, pictures, thresholds and brushes straight pieces
-    /// between the exact places on edges, of lassos geodesics. Others run along edges and add nothing.
+    /// The faces of an expression where its borders are, on the mesh cut along them.
+    CutSelection cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+
+    /// Adds the places at which the selection's borders cross faces: of volumes, pictures, thresholds, brushes and `level_of`
+    /// straight pieces between the exact places on edges, of lassos geodesics. Others run along edges and add nothing.
     void add_borders(const JsonValue& expression, PlaceFrame frame, const std::string& at, SelectionBorders& borders) const;
     /// From now on answers for the mesh that `whole` is of, cut along these borders: each face lies on one side of them. All
     /// three must outlive it.
@@ -90,6 +106,10 @@ private:
     /// Picked vertices that have faces.
     std::vector<Index> surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
     std::vector<Index> brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    /// Of what is grown or shrunk by a distance: the exact geodesic distance from its border, below 0 inside. Of what is chosen
+    /// face by face (segments, labels, thresholds on faces, growth by rings): the share of the faces' area around each vertex
+    /// that is, where a vertex has half; otherwise, and of other kinds, nothing. Kept by the place in the recipe.
+    const SelectionLevel* level_of(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
     std::vector<bool> faces_of_origin(const std::vector<bool>& whole) const;
     std::vector<bool> lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
@@ -118,6 +138,7 @@ private:
     mutable std::map<std::string, ScreenCamera> cameras_;         ///< those with a name
     mutable std::map<std::string, ScalarMap> maps_;               ///< computed ones
     mutable std::map<std::string, std::vector<Index>> segments_;  ///< likewise
+    mutable std::map<std::string, std::optional<SelectionLevel>> levels_;
 };
 
 /// The kind of an expression (its member that is not "frame") and its value.

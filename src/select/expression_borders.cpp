@@ -177,7 +177,9 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     const std::string here = at + '/' + kind;
-    if (kind == "box" || kind == "sphere" || kind == "halfspace") {
+    if (const SelectionLevel* level = level_of(expression, around, at)) {
+        add_level(mesh_, level->values, level->level, level->above, borders.curves);
+    } else if (kind == "box" || kind == "sphere" || kind == "halfspace") {
         const auto inside = volume(kind, *value, frame, at);
         std::vector<bool> flags(mesh_.number_of_vertices());
         for (const Vertex v : mesh_.vertices()) flags[v] = inside(mesh_.point(v));
@@ -229,6 +231,62 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
             add_borders((*value)[i], frame, here + '/' + std::to_string(i), borders);
     }
     // Others run along the edges of the mesh.
+}
+
+CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const {
+    SelectionBorders borders;
+    add_borders(expression, frame, at, borders);
+    CutSelection result{cut_along_curves(mesh_, set_, borders.curves), {}};
+    const std::vector<std::int32_t> labels =
+        face_labels_.empty() ? std::vector<std::int32_t>() : result.cut.face_values(face_labels_);
+    ExpressionEvaluator there(result.cut.mesh, labels, result.cut.annotations, where_);
+    there.look_from(surroundings_);
+    there.stand_on(*this, result.cut, borders);
+    result.faces = there.faces(expression, frame, at);
+    return result;
+}
+
+const SelectionLevel* ExpressionEvaluator::level_of(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
+    const PlaceFrame frame = frame_of(expression, around);
+    const auto [kind, value] = only_kind(expression, at);
+    const std::string here = at + '/' + kind;
+    const bool grows = kind == "grow" || kind == "shrink";
+    if (!grows && kind != "segments" && kind != "labels" && (kind != "threshold" || !scalar(*value, frame, here).on_faces))
+        return nullptr;
+    const auto [entry, fresh] = levels_.try_emplace(at);
+    std::optional<SelectionLevel>& known = entry->second;
+    if (fresh && grows && by_distance(*value, here)) {
+        const double distance = length((*value)["distance"].GetDouble(), frame);
+        const CutSelection inner = cut_selection((*value)["of"], frame, here + "/of");
+        std::vector<bool> in(inner.cut.mesh.number_of_vertices(), false), out = in;
+        for (const Face face : inner.cut.mesh.faces())
+            for (const Vertex v : corners(inner.cut.mesh, face)) (inner.faces[face] ? in : out)[v] = true;
+        std::vector<Index> border;
+        for (std::size_t v = 0; v < in.size(); ++v)
+            if (in[v] && out[v]) border.push_back(static_cast<Index>(v));
+        if (border.empty()) return nullptr;  // nothing or all: it has no border to grow from
+        known.emplace();
+        known->values = distances_within(inner.cut.mesh, border, distance);
+        known->values.resize(inner.cut.old_vertices);
+        for (std::size_t v = 0; v < known->values.size(); ++v)
+            if (in[v]) known->values[v] = -known->values[v];
+        known->level = kind == "grow" ? distance : -distance;
+        known->above = false;
+    } else if (fresh) {
+        const std::vector<bool> chosen = faces(expression, around, at);
+        std::vector<double> area(mesh_.number_of_vertices(), 0), part = area;
+        for (const Face face : mesh_.faces()) {
+            const double size = face_area(mesh_, face);
+            for (const Vertex v : corners(mesh_, face)) area[v] += size, part[v] += chosen[face] ? size : 0;
+        }
+        bool any = false;
+        for (std::size_t v = 0; v < area.size(); ++v) {
+            part[v] = area[v] > 0 ? part[v] / area[v] : 0;
+            any = any || part[v] >= 0.5;
+        }
+        if (any) known = SelectionLevel{std::move(part), 0.5, true};
+    }
+    return known ? &*known : nullptr;
 }
 
 std::vector<bool> ExpressionEvaluator::faces_of_origin(const std::vector<bool>& whole) const {

@@ -79,15 +79,7 @@ private:
     /// added, without those taken away, or those alone.
     Annotation selected_free(const JsonValue& select, PlaceFrame frame, const std::string& here, const std::string& action,
                              const Annotation* given) {
-        SelectionBorders borders;
-        evaluator_.add_borders(select, frame, here, borders);
-        const CutMesh cut = cut_along_curves(mesh_, set_, borders.curves);
-        const std::vector<std::int32_t> labels =
-            face_labels_.empty() ? std::vector<std::int32_t>() : cut.face_values(face_labels_);
-        ExpressionEvaluator there(cut.mesh, labels, cut.annotations, where_);
-        there.look_from(surroundings_);
-        there.stand_on(evaluator_, cut, borders);
-        const std::vector<bool> named = there.faces(select, frame, here);
+        const auto [cut, named] = evaluator_.cut_selection(select, frame, here);
         if (std::none_of(named.begin(), named.end(), [](bool b) { return b; }))
             fail(here, "selects no face", "the volume or the set misses the surface: look at the numbers and the frame");
         Annotation annotation;

@@ -1,6 +1,7 @@
 #include "ostraka/semantic/edit.h"
 
 #include "ostraka/coords/influence.h"
+#include "ostraka/coords/nested.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -20,6 +21,9 @@ public:
         state_.handles = ostraka::points_of(space.cage != nullptr ? *space.cage : space.mesh);
         state_.touched.assign(state_.handles.size(), false);
         state_.named.assign(space.mesh.number_of_vertices(), false);
+        if (space.cage == nullptr) return;
+        levels_ = cage_levels(*space.cage);
+        carrying_ = carrying_weights(levels_);
     }
 
     EditState step(const JsonValue& step, const std::string& at) {
@@ -27,6 +31,7 @@ public:
         state_.threshold = 0;
         state_.selected = select(step["select"]);
         int operations = 0;
+        const std::vector<Point> before = state_.handles;
         for (const char* name : {"translate", "rotate", "scale", "stretch", "moveTo"}) {
             const JsonValue* value = find_member(step, name);
             if (value == nullptr) continue;
@@ -35,12 +40,54 @@ public:
         }
         if (operations == 0) fail("has no operation", "add translate, rotate, scale, stretch or moveTo");
         for (const Index v : state_.selected) state_.touched[v] = true;
+        carry(before);
         return state_;
     }
 
 private:
     [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
         fail_input(where_ + ", " + at_, what, remedy);
+    }
+
+    /// Cages within others go along with these, but for the vertices that the step moved itself.
+    void carry(const std::vector<Point>& before) {
+        if (levels_.size() < 2) return;
+        std::vector<bool> own(state_.handles.size(), false);
+        for (const Index v : state_.selected) own[v] = true;
+        for (std::size_t l = 1; l < levels_.size(); ++l) {
+            const std::vector<Index>&vertices = levels_[l].cage.vertices, &around = levels_[levels_[l].parent].cage.vertices;
+            for (std::size_t i = 0; i < vertices.size(); ++i) {
+                if (own[vertices[i]]) continue;
+                Vector3d by = Vector3d::Zero();
+                for (std::size_t j = 0; j < around.size(); ++j)
+                    by += carrying_[l](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *
+                          (eigen(state_.handles[around[j]]) - eigen(before[around[j]]));
+                state_.handles[vertices[i]] = point_of(eigen(before[vertices[i]]) + by);
+            }
+        }
+    }
+
+    /// The level that a step says, or of those that hold most of these vertices the innermost.
+    [[nodiscard]] std::size_t level_for(const JsonValue& select, const std::vector<Index>& vertices) const {
+        if (const JsonValue* level = find_member(select, "level")) {
+            if (level->GetUint64() >= levels_.size())
+                fail("there is no level " + std::to_string(level->GetUint64()) + ": the cage has " +
+                         std::to_string(levels_.size()) + (levels_.size() == 1 ? " level" : " levels"),
+                     "levels count from 0, the outermost; leave it out where no cage is within another");
+            return static_cast<std::size_t>(level->GetUint64());
+        }
+        for (std::size_t l = levels_.size() - 1; l > 0; --l)
+            if (weights_in(l, vertices).vertex.sum() >= 0.5 * static_cast<double>(vertices.size())) return l;
+        return 0;
+    }
+
+    /// What the vertices of a level have to say on those of the mesh, all if none are given: a row for each.
+    [[nodiscard]] Coordinates weights_in(std::size_t level, const std::vector<Index>& vertices) const {
+        const WeightMatrix& all = space_.coordinates->vertex;
+        if (vertices.empty()) return {"", weights_of_level(all, levels_, carrying_, level), {}};
+        WeightMatrix rows(static_cast<Eigen::Index>(vertices.size()), all.cols());
+        for (std::size_t i = 0; i < vertices.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = all.row(vertices[i]);
+        return {"", weights_of_level(rows, levels_, carrying_, level), {}};
     }
 
     [[nodiscard]] Vector3d vector(const JsonValue& value, const char* name, bool direction = false) const {
@@ -60,6 +107,8 @@ private:
     [[nodiscard]] std::vector<Index> select(const JsonValue& select) {
         std::set<Index> chosen;
         int ways = 0;
+        if (find_member(select, "level") != nullptr && space_.cage == nullptr)
+            fail("has a level without a cage", "leave it out, or give --cage and --weights");
         const auto add_mesh_vertices = [&](const std::vector<Index>& vertices, const std::string& what) {
             for (const Index v : vertices) state_.named[v] = true;
             if (space_.cage == nullptr) {
@@ -68,28 +117,30 @@ private:
             }
             const JsonValue* threshold = find_member(select, "threshold");
             const JsonValue* scope = find_member(select, "scope");
+            const std::size_t level = level_for(select, vertices);
+            const Coordinates weights = weights_in(level, vertices);
+            std::vector<Index> rows(vertices.size());
+            for (Index i = 0; i < rows.size(); ++i) rows[i] = i;
+            const auto choose = [&](const std::vector<Index>& found) {
+                for (const Index j : found) chosen.insert(levels_[level].cage.vertices[j]);
+            };
             if (threshold != nullptr && threshold->IsString() && std::string(threshold->GetString()) == "per-point") {
-                const std::vector<Index> found = strongest(*space_.coordinates, vertices);
-                chosen.insert(found.begin(), found.end());
+                choose(strongest(weights, rows));
                 return;
             }
             const bool here = scope != nullptr && std::string(scope->GetString()) == "selection";
             // As in the thesis, figure 5.11, or less where the cage is so dense that a vertex of the part would have no handle.
-            if (threshold == nullptr)
-                state_.threshold = std::min(0.4, influence_threshold(space_.coordinates->vertex, "auto-mesh", vertices));
+            if (threshold == nullptr) state_.threshold = std::min(0.4, influence_threshold(weights.vertex, "auto-mesh"));
             else if (threshold->IsNumber()) state_.threshold = threshold->GetDouble();
             else
-                state_.threshold = influence_threshold(space_.coordinates->vertex, threshold->GetString(),
-                                                       here ? vertices : std::vector<Index>());
-            const auto found = influential(*space_.coordinates, vertices, state_.threshold);
-            if (found.empty()) {
-                double maximum = 0;
-                for (const Index v : vertices) maximum = std::max(maximum, space_.coordinates->vertex.row(v).maxCoeff());
+                state_.threshold =
+                    influence_threshold(here ? weights.vertex : weights_in(level, {}).vertex, threshold->GetString());
+            const auto found = influential(weights, rows, state_.threshold);
+            if (found.empty())
                 fail("no cage vertex has an influence of " + std::to_string(state_.threshold) + " on " + what +
-                         "; the largest is " + std::to_string(maximum),
+                         "; the largest is " + std::to_string(weights.vertex.maxCoeff()),
                      "lower the threshold, use auto-mesh, or name cageVertices");
-            }
-            chosen.insert(found.begin(), found.end());
+            choose(found);
         };
         if (const JsonValue* name = find_member(select, "annotation")) {
             ++ways;
@@ -117,14 +168,14 @@ private:
             ++ways;
             const Vector3d low = vector((*box)["min"], "min"), high = vector((*box)["max"], "max");
             if ((low.array() > high.array()).any()) fail("the box has min > max", "exchange them");
-            for (Index v = 0; v < state_.handles.size(); ++v) {
+            for (const Index v : handles_in(select)) {
                 const Vector3d p = eigen(state_.handles[v]);
                 if ((p.array() >= low.array()).all() && (p.array() <= high.array()).all()) chosen.insert(v);
             }
         }
         if (find_member(select, "all") != nullptr) {
             ++ways;
-            for (Index v = 0; v < state_.handles.size(); ++v) chosen.insert(v);
+            for (const Index v : handles_in(select)) chosen.insert(v);
         }
         bool names = false;
         for (const char* way : {"annotation", "annotations", "vertices"}) names = names || find_member(select, way) != nullptr;
@@ -134,6 +185,14 @@ private:
                  "use one of annotation, annotations, vertices, cageVertices, box, all");
         if (chosen.empty()) fail("selects nothing", "choose another box");
         return {chosen.begin(), chosen.end()};
+    }
+
+    /// All handles, or those of the level that is said.
+    [[nodiscard]] std::vector<Index> handles_in(const JsonValue& select) const {
+        if (find_member(select, "level") != nullptr) return levels_[level_for(select, {})].cage.vertices;
+        std::vector<Index> all(state_.handles.size());
+        for (Index v = 0; v < all.size(); ++v) all[v] = v;
+        return all;
     }
 
     [[nodiscard]] std::vector<Index> indices(const JsonValue& list, std::size_t count, const std::string& of) const {
@@ -216,6 +275,8 @@ private:
     const std::string& where_;
     std::string at_;
     EditState state_;
+    std::vector<CageLevel> levels_;       ///< of the cage
+    std::vector<WeightMatrix> carrying_;  ///< of each level in its parent
 };
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include "ostraka/annotation/part.h"
 #include "ostraka/collection/technique_objects.h"
 #include "ostraka/core/error.h"
+#include "ostraka/fields/thickness.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/select/scalars.h"
 #include "ostraka/synthetic/head_casts.h"
 #include "scratch.h"
 
@@ -105,6 +107,21 @@ TEST(ObjectParts, TheTopIsWhatIsAboveTheNeck) {
     EXPECT_THROW((void)ObjectParts(options).read(one.collection.objects.at(0),
                                                  std::array<double, 3>{-one.cast.up[0], -one.cast.up[1], -one.cast.up[2]}),
                  Error);
+}
+
+TEST(ObjectParts, TheLargestSegmentIsThatOfTheSegmentation) {
+    const OneStatuette one;
+    PartOptions options;
+    options.proposed = PartOptions::Proposal::segment;
+    const ObjectPart part = ObjectParts(options).read(one.collection.objects.at(0));
+    const Mesh mesh = read_mesh(one.scratch / "one.ply").mesh;
+    const std::vector<Index> numbers = segment(mesh, thickness(mesh), {});
+    double area = 0;
+    for (const Face f : mesh.faces())
+        if (numbers[f] == 0) area += face_area(mesh, f);
+    EXPECT_NEAR(surface_area(part.mesh) / area, 1, 1e-12);
+    EXPECT_LT(area, 0.95 * surface_area(mesh));
+    EXPECT_EQ(part.face_labels.size(), part.mesh.number_of_faces());
 }
 
 TEST(ObjectParts, ProposalsAndNamesExcludeEachOther) {

@@ -56,6 +56,43 @@ TEST(ConvertCommand, PolygonsAreCutAndMapped) {
     EXPECT_NE(result.err.find("fewer than three distinct corners"), std::string::npos);
 }
 
+TEST(ConvertCommand, PolygonsAreHandedBack) {
+    const Scratch scratch;
+    const Path input = scratch.file("a.obj", quads), bent = scratch / "bent.ply";
+    ASSERT_EQ(run_command(words(input, scratch / "a.ply")).code, 0);
+    // Another shape of the same triangles.
+    MeshFile shape = read_mesh(scratch / "a.ply");
+    shape.mesh.point(Vertex(2)) = Point(1, 1, 1);
+    shape.extras.face_labels = {4, 4, 9, 9};
+    write_mesh(bent, shape.mesh, shape.extras);
+    for (const char* name : {"b.obj", "b.off", "b.ply", "b2.ply"}) {
+        const Path output = scratch / name;
+        const auto result = run_command(
+            words(bent, output, "--polygons-of " + input.string() + (std::string(name) == "b2.ply" ? " --ascii" : "")));
+        ASSERT_EQ(result.code, 0) << result.err;
+        const PolygonSoup back = read_polygons(output);
+        EXPECT_EQ(back.polygon_begin, (std::vector<Index>{0, 4, 8})) << name;
+        EXPECT_EQ(back.corners, (std::vector<Index>{0, 1, 2, 3, 1, 4, 5, 2})) << name;
+        EXPECT_EQ(back.points[2], (std::array<double, 3>{1, 1, 1})) << name;
+        EXPECT_EQ(back.extras.face_labels,
+                  output.extension() == ".ply" ? (std::vector<std::int32_t>{4, 9}) : std::vector<std::int32_t>());
+    }
+    // Formats of triangles keep them, and say so.
+    const auto cut = run_command(words(bent, scratch / "b.stl", "--polygons-of " + input.string()));
+    EXPECT_EQ(cut.code, 0);
+    EXPECT_NE(cut.err.find("cut into triangles"), std::string::npos) << cut.err;
+    // Of another mesh.
+    for (const char* other :
+         {"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\n",
+          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 2 5 6 3\nf 1 2 3 4\n"}) {
+        const Path wrong = scratch.file("wrong.obj", other);
+        const auto result = run_command(words(bent, scratch / "c.obj", "--polygons-of " + wrong.string()));
+        EXPECT_EQ(result.code, 1) << result.err;
+        EXPECT_NE(result.err.find("read from at first"), std::string::npos) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(scratch / "c.obj"));
+    }
+}
+
 TEST(ConvertCommand, LossesAreSaid) {
     const Scratch scratch;
     write_triangles(scratch / "a.ply", octahedron(), full_extras(octahedron()));

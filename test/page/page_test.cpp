@@ -1,9 +1,11 @@
 // Pages: what is within them is what was given, in its order, and text stays text.
 #include "ostraka/page/page.h"
 #include "meshes.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/glb.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/select/recipe.h"
 #include "scratch.h"
 
 #include <meshoptimizer.h>
@@ -192,6 +194,31 @@ TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
     const JsonValue& rows = read.data["tables"][0]["rows"];
     EXPECT_NEAR(rows[0][4].GetDouble(), area_of(one.mesh, one.set.annotations[0].faces), 1e-9);
     EXPECT_EQ(read.data["tables"][0]["annotations"][1].GetInt(), 1);
+}
+
+TEST(Page, HoldsCurvesThatRunThroughTheTriangles) {
+    Annotated one;
+    const std::string recipe = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 20, "tag": "cap",
+        "type": "region", "outline": "free", "select": {"sphere": {"centre": [1007, 2000, 3000], "radius": 5.3}}}]})";
+    one.set = apply_recipe(parse_json(recipe, "r"), one.mesh, {}, "r");
+    ASSERT_TRUE(is_free(one.set.annotations[0]));
+    Page page("a sphere");
+    page.add(one.object());
+    const ReadPage read(page.html(""));
+    const JsonValue &entry = read.data["objects"][0]["annotations"][0], &origin = read.data["objects"][0]["origin"];
+    const auto curves = curves_on(one.mesh, one.set.annotations[0]);
+    ASSERT_EQ(entry["curves"].Size(), curves.size());
+    ASSERT_EQ(entry["curves"][0].Size(), curves[0].nodes.size());
+    for (rapidjson::SizeType i = 0; i < curves[0].nodes.size(); ++i) {
+        const JsonValue& place = entry["curves"][0][i];
+        const Point there(place[0].GetDouble() + origin[0].GetDouble(), place[1].GetDouble() + origin[1].GetDouble(),
+                          place[2].GetDouble() + origin[2].GetDouble());
+        const double off = std::sqrt(CGAL::squared_distance(there, curves[0].nodes[i].point));
+        EXPECT_NEAR(off, 0.002 * box_diagonal(one.mesh), 1e-4 * box_diagonal(one.mesh));
+        EXPECT_GT(std::sqrt(CGAL::squared_distance(there, Point(1000, 2000, 3000))),
+                  std::sqrt(CGAL::squared_distance(curves[0].nodes[i].point, Point(1000, 2000, 3000))));
+    }
+    EXPECT_FALSE(entry.HasMember("lines"));
 }
 
 TEST(Page, QuantisesMapsAndTellsWhatHasNoValue) {

@@ -158,3 +158,56 @@ TEST(FreeSelection, WhatMissesTheSurfaceIsRefused) {
     // The whole is the whole, and has no outline.
     EXPECT_TRUE(selected(mesh, R"({"sphere": {"centre": [0, 0, 0], "radius": 9}})").all);
 }
+
+TEST(FreeSelection, GrowthByADistanceIsOfSecondOrder) {
+    // A cap that is grown and shrunk along the surface: caps again.
+    std::vector<double> grown, shrunk, length;
+    for (const int level : {3, 4, 5}) {
+        const Mesh mesh = build_mesh(octahedron_sphere(level));
+        const std::string cap = R"({"halfspace": {"point": [0.3024, 0.4032, 0.672], "normal": [0.36, 0.48, 0.8]}})";
+        const double angle = std::acos(0.84);
+        const RegionMeasures more =
+            measure_region(mesh, selected(mesh, R"({"grow": {"of": )" + cap + R"(, "distance": 0.3}})"));
+        const RegionMeasures less =
+            measure_region(mesh, selected(mesh, R"({"shrink": {"of": )" + cap + R"(, "distance": 0.3}})"));
+        grown.push_back(std::abs(more.area / (2 * pi * (1 - std::cos(angle + 0.3))) - 1));
+        shrunk.push_back(std::abs(less.area / (2 * pi * (1 - std::cos(angle - 0.3))) - 1));
+        length.push_back(std::abs(more.perimeter / (2 * pi * std::sin(angle + 0.3)) - 1));
+    }
+    expect_second_order(grown, "area of the grown cap");
+    expect_second_order(shrunk, "area of the shrunk cap");
+    expect_second_order(length, "perimeter of the grown cap");
+}
+
+TEST(FreeSelection, WhatIsChosenFaceByFaceEndsAtIsolines) {
+    const Mesh mesh = build_mesh(octahedron_sphere(5));
+    // Labels by a plane that follows no edges: their border is a saw, the isoline nearly the circle.
+    std::vector<std::int32_t> labels;
+    for (const Face f : mesh.faces()) {
+        const Point c = centroid(mesh, f);
+        labels.push_back(0.36 * c.x() + 0.48 * c.y() + 0.8 * c.z() > 0.34 ? 7 : 3);
+    }
+    const auto region = [&](const std::string& outline, const std::string& select) {
+        const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [
+            {"id": 1, "tag": "part", "type": "region", "outline": ")" +
+                                 outline + R"(", "select": )" + select + "}]}";
+        AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, labels, "test");
+        check_annotations(set, mesh, "labelled");
+        return measure_region(mesh, *set.find(1));
+    };
+    const double circle = 2 * pi * std::sqrt(1 - 0.34 * 0.34), cap = 2 * pi * (1 - 0.34);
+    const RegionMeasures saw = region("edges", R"({"labels": [7]})"), line = region("free", R"({"labels": [7]})");
+    EXPECT_GT(saw.perimeter, 1.15 * circle);
+    EXPECT_LT(line.perimeter, 1.06 * circle);
+    EXPECT_NEAR(line.area / cap, 1, 0.01);
+    // Both labels together are the whole, without a gap or an overlap; a ring more or less is along isolines as well.
+    const RegionMeasures rest = region("free", R"({"invert": {"labels": [7]}})");
+    EXPECT_NEAR((line.area + rest.area) / surface_area(mesh), 1, 1e-12);
+    const RegionMeasures ring = region("free", R"({"grow": {"of": {"labels": [7]}, "rings": 1}})");
+    EXPECT_GT(ring.area, line.area);
+    EXPECT_LT(ring.perimeter, region("edges", R"({"grow": {"of": {"labels": [7]}, "rings": 1}})").perimeter);
+    // A single triangle has no vertex with half of its faces: it stays as it is.
+    labels.assign(labels.size(), 3);
+    labels[11] = 7;
+    EXPECT_NEAR(region("free", R"({"labels": [7]})").area, face_area(mesh, Face(11)), 1e-12);
+}

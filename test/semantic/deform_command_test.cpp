@@ -56,6 +56,54 @@ TEST(CageCommand, MakesAndChecks) {
     EXPECT_EQ(read_file(fine), first);
 }
 
+TEST(CageCommand, CagesWithinACageAreEditedLevelByLevel) {
+    const Scratch scratch;
+    const auto at = [&](const std::string& name) { return (scratch / name).string(); };
+    const auto made = run_command("cage make " + pot + at("cage.ply") + " --vertices 80 --annotations " + parts +
+                                  "--parts spout handle --part-vertices 30 --json");
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Json report = parse_json(made.out, "report");
+    validate(report, "report", "report");
+    const auto& cages = report["result"]["cages"];
+    ASSERT_EQ(cages.Size(), 3U);
+    for (rapidjson::SizeType i = 0; i < 3; ++i) EXPECT_EQ(cages[i]["level"].GetInt(), static_cast<int>(i));
+    EXPECT_STREQ(cages[0]["part"].GetString(), "");
+    EXPECT_STREQ(cages[1]["part"].GetString(), "spout");
+    EXPECT_EQ(read_mesh(at("cage.ply")).mesh.number_of_vertices(), 140U);
+    EXPECT_NE(run_command("cage check " + pot + at("cage.ply")).out.find("2 cages within the outermost"), std::string::npos);
+    const auto weights = run_command("cage weights " + pot + at("cage.ply") + " " + at("w.npy"));
+    ASSERT_EQ(weights.code, 0) << weights.err;
+    EXPECT_NE(weights.out.find("fit for deformation"), std::string::npos);
+    // The spout alone: nothing outside its cage moves.
+    static_cast<void>(scratch.file("spout.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [
+        {"select": {"annotation": "spout"}, "translate": [3, 0, 2]}]})"));
+    const std::string handles = " --cage " + at("cage.ply") + " --weights " + at("w.npy");
+    const auto edited = run_command("deform " + pot + parts + at("spout.edit.json") + " " + at("out.ply") + handles + " --json");
+    ASSERT_EQ(edited.code, 0) << edited.err << edited.out;
+    const Mesh before = read_mesh(data + "teapot.ply").mesh, after = read_mesh(at("out.ply")).mesh;
+    std::size_t moved = 0;
+    for (const Vertex v : before.vertices()) moved += CGAL::squared_distance(before.point(v), after.point(v)) > 1e-18;
+    EXPECT_GT(moved, before.number_of_vertices() / 50);
+    EXPECT_LT(moved, before.number_of_vertices() / 4);
+    // Levels of the whole in one file.
+    const auto levels = run_command("cage make " + pot + at("levels.ply") + " --levels 120,60 --together");
+    ASSERT_EQ(levels.code, 0) << levels.err;
+    EXPECT_EQ(read_mesh(at("levels.ply")).mesh.number_of_vertices(), 180U);
+    EXPECT_EQ(count_files(scratch.path()), 6U);  // no file for each level
+    const auto moves = [&](int level) {
+        static_cast<void>(scratch.file("all.edit.json", R"({"format": "ostraka-edit", "version": 1, "steps": [
+            {"select": {"all": true, "level": )" + std::to_string(level) +
+                                                            R"(}, "translate": [1, 0, 0]}]})"));
+        EXPECT_EQ(run_command("cage edit " + at("levels.ply") + " " + at("all.edit.json") + " " + at("moved.ply")).code, 0);
+        const Mesh cage = read_mesh(at("levels.ply")).mesh, to = read_mesh(at("moved.ply")).mesh;
+        std::size_t count = 0;
+        for (const Vertex v : cage.vertices()) count += to.point(v).x() > cage.point(v).x() + 0.5;
+        return count;
+    };
+    EXPECT_EQ(moves(0), 180U) << "the inner one is carried along";
+    EXPECT_EQ(moves(1), 120U);
+}
+
 TEST(CageCommand, BadInput) {
     const Scratch scratch;
     const std::string cage = (scratch / "cage.ply").string();
@@ -71,6 +119,10 @@ TEST(CageCommand, BadInput) {
     refused(pot + cage + " --mirror 0,0,0,0,0,0", 2, "normal is zero");
     refused(pot + cage + " --detail spout=4", 2, "--annotations");
     refused(pot + cage + " --annotations " + parts + "--detail nose=4", 2, "no annotation");
+    refused(pot + cage + " --parts spout", 2, "--annotations");
+    refused(pot + cage + " --annotations " + parts + "--parts nose", 1, "nose");
+    refused(pot + cage + " --annotations " + parts + "--parts spout --levels 100,50", 2, "--together");
+    refused(pot + cage + " --annotations " + parts + "--parts spout --part-vertices 3", 2, "part-vertices");
     refused(pot + pot, 2, "input");
     EXPECT_EQ(count_files(scratch.path()), 0U);
 }

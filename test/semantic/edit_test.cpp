@@ -1,6 +1,9 @@
 // Edits through cages and without.
 #include "caged.h"
+#include "meshes.h"
+#include "ostraka/coords/nested.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/semantic/part_cages.h"
 
 #include <gtest/gtest.h>
 
@@ -80,4 +83,120 @@ TEST(Edit, WhatMakesNoSenseIsRefused) {
     refused(R"({"select": {"all": true, "cageVertices": [1]}, "translate": [0, 0, 1]})", "2 ways");
     EXPECT_NE(error_of(object.bare(), R"({"select": {"cageVertices": [1]}, "translate": [0, 0, 1]})").find("without a cage"),
               std::string::npos);
+}
+
+namespace {
+
+/// The teapot in a cage, with one of its own around the spout within it.
+struct Nested {
+    const Caged& whole = teapot();
+    std::size_t spout = 0;
+    Mesh cage;
+    Coordinates coordinates;
+    std::vector<CageLevel> levels;
+    Nested() {
+        while (whole.set.annotations[spout].tag != "spout") ++spout;
+        CageOptions options;
+        options.vertices = 40;
+        const auto parts = make_part_cages(whole.made.mesh, whole.set, {spout}, options, {}, "graph");
+        EXPECT_TRUE(parts[0].check.valid());
+        cage = together({&whole.cage, &parts[0].made.cage});
+        coordinates = compute_coordinates("mean-value", cage, whole.made.mesh);
+        levels = cage_levels(cage);
+    }
+    [[nodiscard]] HandleSpace handles() const { return {whole.made.mesh, whole.set, &cage, &coordinates}; }
+    [[nodiscard]] std::vector<EditState> follow(const std::string& steps) const {
+        return follow_edit(edit(steps), handles(), "e");
+    }
+};
+
+const Nested& nested() {
+    static const Nested object;
+    return object;
+}
+
+}  // namespace
+
+TEST(NestedEdit, APartIsMovedByItsOwnCage) {
+    const Nested& n = nested();
+    ASSERT_EQ(n.levels.size(), 2U);
+    const auto states = n.follow(R"({"select": {"annotation": "spout"}, "translate": [1, 2, 3]})");
+    const std::size_t first = n.levels[1].cage.vertices.front();
+    for (const Index v : states[0].selected) EXPECT_GE(v, first);
+    EXPECT_FALSE(states[0].selected.empty());
+    const auto outer = n.follow(R"({"select": {"annotation": "spout", "level": 0}, "translate": [1, 2, 3]})");
+    for (const Index v : outer[0].selected) EXPECT_LT(v, first);
+    // As in the cage of the whole alone.
+    const HandleSpace alone = n.whole.handles();
+    EXPECT_EQ(outer[0].selected,
+              follow_edit(edit(R"({"select": {"annotation": "spout"}, "translate": [1, 2, 3]})"), alone, "e")[0].selected);
+}
+
+TEST(NestedEdit, InnerCagesAreCarriedAlong) {
+    const Nested& n = nested();
+    // All of the outer cage: the inner goes with it, and so does the whole object.
+    const auto states = n.follow(R"({"select": {"all": true, "level": 0}, "translate": [5, 0, 0]},
+        {"select": {"all": true, "level": 1}, "translate": [0, 7, 0]})");
+    const std::vector<Point> first = deformed(n.coordinates, n.cage, states[0].handles);
+    for (const Vertex v : n.whole.made.mesh.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(first[v], n.whole.made.mesh.point(v) + Vector(5, 0, 0))), 1e-9);
+    for (const Vertex v : n.cage.vertices())
+        ASSERT_LT(std::sqrt(CGAL::squared_distance(states[0].handles[v], n.cage.point(v) + Vector(5, 0, 0))), 1e-9);
+    // Both levels in one edit; what is carried does not count as touched.
+    const Index inner = n.levels[1].cage.vertices.front();
+    EXPECT_FALSE(states[0].touched[inner]);
+    EXPECT_TRUE(states[1].touched[inner]);
+    EXPECT_LT(std::sqrt(CGAL::squared_distance(states[1].handles[inner], n.cage.point(Vertex(inner)) + Vector(5, 7, 0))), 1e-9);
+    // A step on all handles moves each once.
+    const auto all = n.follow(R"({"select": {"all": true}, "translate": [5, 0, 0]})");
+    EXPECT_LT(std::sqrt(CGAL::squared_distance(all[0].handles[inner], n.cage.point(Vertex(inner)) + Vector(5, 0, 0))), 1e-12);
+}
+
+TEST(NestedEdit, LevelsThatAreNotThereAreRefused) {
+    EXPECT_NE(error_of(nested().handles(), R"({"select": {"annotation": "spout", "level": 2}, "translate": [1, 2, 3]})")
+                  .find("the cage has 2 levels"),
+              std::string::npos);
+    EXPECT_NE(error_of(teapot().bare(), R"({"select": {"annotation": "spout", "level": 0}, "translate": [1, 2, 3]})")
+                  .find("level without a cage"),
+              std::string::npos);
+}
+
+TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
+    // The statuette's arms, or any two regions of one tag on both sides of the plane x = 0 of a symmetric mesh.
+    const Mesh mesh = build_mesh(test::octahedron_sphere(5));
+    AnnotationSet set;
+    for (const double side : {-1.0, 1.0}) {
+        Annotation cap;
+        cap.id = static_cast<int>(set.annotations.size()) + 1;
+        cap.tag = "ear";
+        for (const Face f : mesh.faces())
+            if (side * centroid(mesh, f).x() > 0.7) cap.faces.push_back(f);
+        set.annotations.push_back(std::move(cap));
+    }
+    Relationship mirror;
+    mirror.id = 1;
+    mirror.type = "mirror symmetry";
+    mirror.annotations = {2, 1};
+    mirror.parameters.plane = PointAndDirection{{0, 0, 0}, {1, 0, 0}};
+    RelationGraph graph;
+    graph.relationships.push_back(mirror);
+    CageOptions options;
+    options.vertices = 30;
+    const auto cages = make_part_cages(mesh, set, {0, 1}, options, graph, "graph");
+    ASSERT_EQ(cages.size(), 2U);
+    const Mesh &a = cages[0].made.cage, &b = cages[1].made.cage;
+    ASSERT_EQ(a.number_of_vertices(), b.number_of_vertices());
+    for (const Vertex v : a.vertices()) {
+        EXPECT_NEAR(a.point(v).x(), -b.point(v).x(), 1e-12);
+        EXPECT_NEAR(a.point(v).y(), b.point(v).y(), 1e-12);
+        EXPECT_NEAR(a.point(v).z(), b.point(v).z(), 1e-12);
+    }
+    EXPECT_TRUE(cages[0].check.valid());
+    EXPECT_TRUE(cages[1].check.valid());
+    // Without the plane it is found.
+    graph.relationships[0].parameters.plane.reset();
+    const auto plane = symmetry_plane(mesh, set, graph, {1, 2}, "graph");
+    ASSERT_TRUE(plane);
+    EXPECT_NEAR(std::abs(plane->normal.x()), 1, 1e-6);
+    EXPECT_FALSE(symmetry_plane(mesh, set, graph, {1}, "graph"));
 }

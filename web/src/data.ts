@@ -35,6 +35,8 @@ export interface Annotation {
   /** Of lines and points: vertices of the mesh that is shown. */
   lines?: number[][];
   points?: number[];
+  /** Of what runs through the triangles: places a little off the surface, relative to the object's box. */
+  curves?: [number, number, number][][];
 }
 
 /** A number for each vertex, as 16 bit steps between `minimum` and `maximum`; 65535: no value. */

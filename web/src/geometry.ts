@@ -333,7 +333,7 @@ export class DrawnObject {
     this.top = new Int32Array(triangles.length / 3);
     this.group.add(this.mesh, this.pins, this.chosen);
     about.annotations.forEach((one, i) => {
-      const mark = one.lines ? this.line(one.lines, one.colour) : one.points ? this.dots(one.points, one.colour) : undefined;
+      const mark = one.curves ? this.curves(one.curves, one.colour, one.type) : one.lines ? this.line(one.lines, one.colour) : one.points ? this.dots(one.points, one.colour) : undefined;
       if (!mark) return;
       this.marks.set(i, mark);
       this.group.add(mark);
@@ -425,6 +425,18 @@ export class DrawnObject {
       const geometry = new THREE.BufferGeometry().setFromPoints(one.map((v) => this.vertex(v).addScaledVector(lift(v), 1)));
       group.add(new THREE.Line(geometry, material));
     }
+    return group;
+  }
+
+  /** What runs through the triangles, darker than its region so that it is seen on it. */
+  private curves(curves: [number, number, number][][], colour: [number, number, number], type: string): THREE.Object3D {
+    if (type === "point") {
+      const geometry = new THREE.BufferGeometry().setFromPoints(curves.map(([p]) => new THREE.Vector3(...p)));
+      return new THREE.Points(geometry, flatMaterial(colour, 11));
+    }
+    const group = new THREE.Group();
+    const material = flatMaterial(type === "region" ? (colour.map((x) => Math.round(0.5 * x)) as [number, number, number]) : colour);
+    for (const one of curves) group.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(one.map((p) => new THREE.Vector3(...p))), material));
     return group;
   }
 

@@ -22,6 +22,7 @@ def convert(
     input: MeshLike,
     output: FileName | bool | None = None,
     *,
+    polygons_of: MeshLike | None = None,
     map: FileName | bool | None = None,
     ascii: bool | None = False,
     binary: bool | None = False,

@@ -63,7 +63,7 @@ struct CageCheck {
     bool closed = false;   ///< no border; otherwise nothing below but the components is known
     bool flat = false;     ///< no face has an area; nothing below but the components and those faces is known
     bool outward = false;  ///< faces are counter-clockwise seen from outside
-    std::size_t components = 0;
+    std::size_t components = 0, nested = 0;  ///< nested: cages within the outermost (coords/nested.h)
     long genus = 0;                                      ///< of all components together
     std::size_t degenerate = 0;                          ///< faces without area
     std::vector<std::pair<Index, Index>> intersections;  ///< pairs of faces of the cage, the first few thousands
@@ -76,7 +76,8 @@ struct CageCheck {
     [[nodiscard]] bool valid() const { return encloses() && outward && intersections.empty() && degenerate == 0; }
 };
 
-/// Every property that a cage needs, exact for the coordinates as given. Vertices of the mesh that no face has count as well.
+/// Every property that a cage needs, exact for the coordinates as given. Of cages within cages the outermost has to enclose the
+/// mesh; each is judged by itself otherwise, and they may cross each other. Vertices of the mesh that no face has count as well.
 CageCheck check_cage(const Mesh& cage, const Mesh& mesh);
 
 /// The check in words: what is wrong, where, and what to do about it; lengths in `unit` ("" if unknown).

@@ -12,7 +12,7 @@ namespace ostraka {
 struct PartOptions {
     std::vector<std::string> annotations;
     std::vector<std::string> without;
-    enum class Proposal { none, tube, top } proposed = Proposal::none;
+    enum class Proposal { none, tube, top, segment } proposed = Proposal::none;
 
     void describe(OptionList& visit);
 };
@@ -38,7 +38,8 @@ public:
     /// Reads an object and cuts the part out, along its outlines. Regions of any of `annotations` (all, where there are none) but
     /// those of `without`, which an object need not have. A proposal is cut off across `up` (else as the annotations have it,
     /// else z): "tube" is the tubular part (slicing/slice_axes.h) of 100 slices; "top" is what is above the neck: the slice in
-    /// the upper half with the smallest radius against the largest below and the largest above it, at most 0.8 of both. Throws
+    /// the upper half with the smallest radius against the largest below and the largest above it, at most 0.8 of both;
+    /// "segment" is the largest of the segments by thickness (select/scalars.h), of a closed object. Throws
     /// Error (input), naming the file, where the object has no such part.
     [[nodiscard]] ObjectPart read(const CollectionObject& object, const std::optional<std::array<double, 3>>& up = {}) const;
 

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ostraka {
@@ -25,6 +26,8 @@ struct Coordinates {
     WeightMatrix vertex;        ///< points x cage vertices, columns in the order of the cage's vertices
     WeightMatrix normal;        ///< points x cage faces, in units of length; 0 x 0 for kinds without a normal term
     SparseWeights sparse = {};  ///< `vertex` again, of kinds most of whose weights are zero; 0 x 0 for others
+    /// Of kinds on tetrahedra, seconds that each phase took: tetrahedra, weights at their nodes, points.
+    std::vector<std::pair<std::string, double>> seconds = {};
     [[nodiscard]] bool has_normals() const { return normal.size() > 0; }
     [[nodiscard]] bool is_sparse() const { return sparse.rows() > 0; }
     /// The share of the weights that are stored: 1 where all are.
@@ -40,6 +43,8 @@ struct CoordinateOptions {
     /// Of local coordinates: steps at most, and the share by which the total variation falls in ten steps that ends them.
     int iterations = 300;
     double tolerance = 1e-4;
+    /// Of cages within cages: over what share of an inner cage's diagonal its hold rises from where the mesh enters it.
+    double fade = 0.15;
 
     void describe(OptionList& visit);
 };
@@ -77,7 +82,7 @@ const CoordinateKind& coordinate_kind(const std::string& name);
 /// coordinates of what each point sees of the cage, by evenly spread rays.
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const std::vector<Point>& points,
                                 const CoordinateOptions& options = {});
-/// As above, for the vertices of a mesh.
+/// As above, for the vertices of a mesh; in a cage that holds others, of all of them together (coords/nested.h).
 Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const Mesh& mesh,
                                 const CoordinateOptions& options = {});
 /// The points of a mesh, in the order of its vertices.

@@ -79,6 +79,10 @@ struct WriteOptions {
     std::vector<double>
         vertex_quality{};  ///< empty or one number a vertex: the property "quality" of PLY, which viewers colour by
     std::vector<FaceValues> face_values{};  ///< further properties of the faces, of PLY
+    /// Polygons to write in place of the triangles into OBJ, OFF and PLY: the corners of each, and the triangle whose colour,
+    /// label and values it has. Other formats get the triangles.
+    std::vector<std::vector<Index>> polygons{};
+    std::vector<Index> polygon_triangle{};
 };
 
 /// Writes OBJ, PLY, OFF, STL, GLB, .mesh or .vtu (these with tetrahedra) by extension, atomically. Coordinates as shortest

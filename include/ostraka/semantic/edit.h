@@ -18,7 +18,7 @@ struct HandleSpace {
 /// After a step: where all handles are, and which of them steps have selected so far.
 struct EditState {
     std::vector<Point> handles;
-    std::vector<bool> touched;
+    std::vector<bool> touched;    ///< vertices of cages within a cage that are carried along do not count
     std::vector<Index> selected;  ///< by this step
     std::vector<bool> named;      ///< vertices of the mesh that steps so far named, by annotation or index
     bool by_handles = false;      ///< a step so far selected handles of a cage themselves

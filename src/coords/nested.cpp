@@ -1,0 +1,227 @@
+#include "ostraka/coords/nested.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/point_tree.h"
+#include "ostraka/geom/surface_search.h"
+
+#include <CGAL/Side_of_triangle_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace ostraka {
+
+namespace {
+
+/// Which places are strictly inside a closed mesh. In a unit, a power of two, in which no coordinate is beyond 1, so that the
+/// rays by which CGAL decides do not vanish against the places that they start from.
+std::vector<bool> strictly_inside(const Mesh& closed, const std::vector<Point>& places) {
+    double largest = 0;
+    const auto widen = [&](const Point& p) { largest = std::max({largest, std::abs(p.x()), std::abs(p.y()), std::abs(p.z())}); };
+    for (const Point& p : closed.points()) widen(p);
+    for (const Point& p : places) widen(p);
+    int exponent = 0;
+    if (largest > 0 && std::isfinite(largest)) (void)std::frexp(largest, &exponent);
+    const auto in_unit = [&](const Point& p) {
+        return Point(std::ldexp(p.x(), -exponent), std::ldexp(p.y(), -exponent), std::ldexp(p.z(), -exponent));
+    };
+    Mesh scaled = closed;
+    for (const Vertex v : scaled.vertices()) scaled.point(v) = in_unit(closed.point(v));
+    const CGAL::Side_of_triangle_mesh<Mesh, Kernel> side(scaled);
+    std::vector<char> inside(places.size(), 0);
+    if (places.empty()) return {};
+    static_cast<void>(side(in_unit(places.front())));  // what it prepares at first use
+    parallel_for(places.size(), [&](std::size_t i) { inside[i] = side(in_unit(places[i])) == CGAL::ON_BOUNDED_SIDE; });
+    return {inside.begin(), inside.end()};
+}
+
+double signed_volume(const Mesh& mesh) {
+    double volume = 0;
+    if (mesh.number_of_faces() == 0) return 0;
+    const Point origin = mesh.point(*mesh.vertices().begin());
+    for (const Face face : mesh.faces()) volume += (centroid(mesh, face) - origin) * area_vector(mesh, face);
+    return volume / 3;
+}
+
+/// The faces of these components, and vertices that no face has where `loose` says so.
+SubMesh part_of(const Mesh& cage, const FacePieces& pieces, const std::vector<bool>& chosen, bool loose) {
+    SubMesh part;
+    std::vector<Index> place(cage.number_of_vertices(), no_index);
+    std::vector<bool> use(cage.number_of_vertices(), false);
+    for (const Face f : cage.faces())
+        if (chosen[pieces.of_face[f]])
+            for (const Vertex v : corners(cage, f)) use[v] = true;
+    for (const Vertex v : cage.vertices())
+        if (use[v] || (loose && cage.is_isolated(v))) {
+            place[v] = part.mesh.add_vertex(cage.point(v));
+            part.vertices.push_back(v);
+        }
+    for (const Face f : cage.faces()) {
+        if (!chosen[pieces.of_face[f]]) continue;
+        const auto [a, b, c] = corners(cage, f);
+        part.mesh.add_face(Vertex(place[a]), Vertex(place[b]), Vertex(place[c]));
+        part.faces.push_back(f);
+    }
+    return part;
+}
+
+/// 0 at 0, 1 from 1 on, with continuous curvature.
+double smooth_step(double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * t * (t * (6 * t - 15) + 10);
+}
+
+/// How far a level holds the vertices of a mesh, 0 to 1.
+std::vector<double> holds_of(const Mesh& cage, const Mesh& mesh, double fade) {
+    const std::vector<Point> points = points_of(mesh);
+    const std::vector<bool> inside = strictly_inside(cage, points);
+    // The largest piece within: another part of the object that reaches into the cage is not meant.
+    std::vector<bool> seen(points.size(), false);
+    std::vector<Index> piece;
+    for (const Vertex first : mesh.vertices()) {
+        if (!inside[first] || seen[first]) continue;
+        std::vector<Index> reached{first};
+        seen[first] = true;
+        for (std::size_t i = 0; i < reached.size(); ++i)
+            if (!mesh.is_isolated(Vertex(reached[i])))
+                for (const Vertex v : mesh.vertices_around_target(mesh.halfedge(Vertex(reached[i]))))
+                    if (inside[v] && !seen[v]) seen[v] = true, reached.push_back(v);
+        if (reached.size() > piece.size()) piece = std::move(reached);
+    }
+    std::vector<bool> held(points.size(), false);
+    for (const Index v : piece) held[v] = true;
+    const SurfaceSearch search(cage);
+    std::vector<Point> entries;
+    for (const Edge e : mesh.edges()) {
+        Vertex in = mesh.vertex(e, 0), out = mesh.vertex(e, 1);
+        if (held[in] == held[out]) continue;
+        if (held[out]) std::swap(in, out);
+        const double before = search.closest(mesh.point(in)).distance, after = search.closest(mesh.point(out)).distance;
+        const double t = before + after > 0 ? before / (before + after) : 0;
+        entries.push_back(mesh.point(in) + t * (mesh.point(out) - mesh.point(in)));
+    }
+    std::vector<double> holds(points.size(), 0);
+    if (entries.empty()) {
+        for (const Index v : piece) holds[v] = 1;
+        return holds;
+    }
+    const PointTree tree(entries);
+    const double length = fade * box_diagonal(cage);
+    parallel_for(piece.size(), [&](std::size_t i) {
+        const double off = std::sqrt(tree.nearest(points[piece[i]]).squared);
+        holds[piece[i]] = length > 0 ? smooth_step(off / length) : 1;
+    });
+    return holds;
+}
+
+}  // namespace
+
+std::vector<CageLevel> cage_levels(const Mesh& cage) {
+    const FacePieces pieces = face_pieces(
+        cage, [](Face) { return true; }, [](Halfedge) { return true; });
+    const bool open =
+        std::any_of(cage.halfedges().begin(), cage.halfedges().end(), [&](Halfedge h) { return cage.is_border(h); });
+    const auto all_of = [&](auto&& wanted) {
+        std::vector<bool> chosen(pieces.count, false);
+        for (Index k = 0; k < pieces.count; ++k) chosen[k] = wanted(k);
+        return chosen;
+    };
+    const auto whole = [&] { return CageLevel{part_of(cage, pieces, all_of([](Index) { return true; }), true), 0}; };
+    std::vector<CageLevel> levels;
+    if (pieces.count < 2 || open) {
+        levels.push_back(whole());
+        return levels;
+    }
+    // Of each component the smallest one around it.
+    std::vector<SubMesh> component;
+    std::vector<double> volume;
+    for (Index k = 0; k < pieces.count; ++k) {
+        component.push_back(part_of(cage, pieces, all_of([&](Index other) { return other == k; }), false));
+        volume.push_back(signed_volume(component.back().mesh));
+    }
+    std::vector<Index> parent(pieces.count, no_index);
+    for (Index k = 0; k < pieces.count; ++k) {
+        const std::vector<Point> places = points_of(component[k].mesh);
+        for (Index other = 0; other < pieces.count; ++other) {
+            if (other == k || !(volume[k] * volume[other] > 0) || !(std::abs(volume[other]) > std::abs(volume[k]))) continue;
+            if (parent[k] != no_index && std::abs(volume[parent[k]]) <= std::abs(volume[other])) continue;
+            const std::vector<bool> inside = strictly_inside(component[other].mesh, places);
+            if (2 * std::count(inside.begin(), inside.end(), true) > static_cast<std::ptrdiff_t>(places.size()))
+                parent[k] = other;
+        }
+    }
+    levels.push_back({part_of(cage, pieces, all_of([&](Index k) { return parent[k] == no_index; }), true), 0});
+    std::vector<std::size_t> level_of(pieces.count, 0);
+    std::vector<bool> done = all_of([&](Index k) { return parent[k] == no_index; });
+    for (bool more = true; more;) {
+        more = false;
+        const std::vector<bool> before = done;
+        for (Index k = 0; k < pieces.count; ++k) {
+            if (before[k] || !before[parent[k]]) continue;
+            level_of[k] = levels.size();
+            levels.push_back({std::move(component[k]), level_of[parent[k]]});
+            done[k] = more = true;
+        }
+    }
+    return levels;
+}
+
+std::vector<WeightMatrix> carrying_weights(const std::vector<CageLevel>& levels) {
+    std::vector<WeightMatrix> carrying(levels.size());
+    for (std::size_t l = 1; l < levels.size(); ++l)
+        carrying[l] =
+            compute_coordinates("mean-value", levels[levels[l].parent].cage.mesh, points_of(levels[l].cage.mesh)).vertex;
+    return carrying;
+}
+
+Coordinates nested_coordinates(const std::string& kind, const std::vector<CageLevel>& levels, const Mesh& mesh,
+                               const CoordinateOptions& options) {
+    if (coordinate_kind(kind).with_normals)
+        fail_usage(kind + " coordinates are not defined in nested cages", "use another kind, or a cage without cages inside");
+    Eigen::Index columns = 0;
+    for (const CageLevel& level : levels) columns += static_cast<Eigen::Index>(level.cage.vertices.size());
+    const std::vector<Point> points = points_of(mesh);
+    const Coordinates outer = compute_coordinates(kind, levels[0].cage.mesh, points, options);
+    Coordinates result;
+    result.kind = kind;
+    result.seconds = outer.seconds;
+    result.vertex = WeightMatrix::Zero(static_cast<Eigen::Index>(points.size()), columns);
+    for (std::size_t j = 0; j < levels[0].cage.vertices.size(); ++j)
+        result.vertex.col(levels[0].cage.vertices[j]) = outer.vertex.col(static_cast<Eigen::Index>(j));
+    const std::vector<WeightMatrix> carrying = carrying_weights(levels);
+    for (std::size_t l = 1; l < levels.size(); ++l) {
+        const SubMesh &own = levels[l].cage, &around = levels[levels[l].parent].cage;
+        const std::vector<double> holds = holds_of(own.mesh, mesh, options.fade);
+        std::vector<Point> held;
+        std::vector<Eigen::Index> rows;
+        for (std::size_t v = 0; v < holds.size(); ++v)
+            if (holds[v] > 0) held.push_back(points[v]), rows.push_back(static_cast<Eigen::Index>(v));
+        const Coordinates inner = compute_coordinates(kind, own.mesh, held, options);
+        for (std::size_t k = 0; k < inner.seconds.size(); ++k) result.seconds[k].second += inner.seconds[k].second;
+        const WeightMatrix& weights = inner.vertex;
+        parallel_for(rows.size(), [&](std::size_t i) {
+            const Eigen::RowVectorXd part = holds[static_cast<std::size_t>(rows[i])] * weights.row(static_cast<Eigen::Index>(i));
+            const Eigen::RowVectorXd taken = part * carrying[l];
+            for (std::size_t j = 0; j < own.vertices.size(); ++j)
+                result.vertex(rows[i], own.vertices[j]) += part[static_cast<Eigen::Index>(j)];
+            for (std::size_t j = 0; j < around.vertices.size(); ++j)
+                result.vertex(rows[i], around.vertices[j]) -= taken[static_cast<Eigen::Index>(j)];
+        });
+    }
+    if (outer.is_sparse()) result.sparse = result.vertex.sparseView();
+    return result;
+}
+
+WeightMatrix weights_of_level(const WeightMatrix& vertex, const std::vector<CageLevel>& levels,
+                              const std::vector<WeightMatrix>& carrying, std::size_t level) {
+    const std::vector<Index>& columns = levels[level].cage.vertices;
+    WeightMatrix weights(vertex.rows(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) weights.col(static_cast<Eigen::Index>(j)) = vertex.col(columns[j]);
+    for (std::size_t child = level + 1; child < levels.size(); ++child)
+        if (levels[child].parent == level) weights += weights_of_level(vertex, levels, carrying, child) * carrying[child];
+    return weights;
+}
+
+}  // namespace ostraka
