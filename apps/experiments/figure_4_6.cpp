@@ -7,6 +7,7 @@
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/coords/coordinates.h"
+#include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 
@@ -89,6 +90,23 @@ void figure_4_6(const Figure46Options& options) {
     std::map<std::string, CageWeights> weights_of;
     for (const std::string& kind : options.kinds) weights_of[kind] = compute_coordinates(kind, cage, mesh, computing).vertex;
     const double diagonal = box_diagonal(mesh), flat = flatness(rest, region);
+    // Of cages within a cage those that do not hold the region stand.
+    const std::vector<CageLevel> levels = cage_levels(cage);
+    const auto through_its_own = [&](std::vector<std::unique_ptr<Constraint>> list, const CageWeights& weights, Points& x,
+                                     const SolveOptions& how) {
+        const std::size_t own = level_that_holds(weights, region, levels, carrying_weights(levels));
+        CageWeights extended(weights.rows() + weights.cols(), weights.cols());
+        extended.topRows(weights.rows()) = weights;
+        extended.bottomRows(weights.cols()).setIdentity();
+        Points all(3, extended.rows());
+        all << rest, cage_rest;
+        for (std::size_t l = 0; l < levels.size(); ++l)
+            for (const Index v : levels[l].cage.vertices)
+                if (l != own)
+                    list.push_back(
+                        make_constraint("Closeness", {static_cast<int>(weights.rows()) + static_cast<int>(v)}, 1e6, {}, all));
+        return CageSpaceSolver(std::move(list), extended, cage_rest).solve(x, how);
+    };
 
     std::vector<Solved> solved;
     for (const Case& one : cases) {
@@ -96,7 +114,8 @@ void figure_4_6(const Figure46Options& options) {
         auto constraints = plane_constraints(mesh, rest, region, one.problem);
         Points x = one.cage ? cage_rest : rest;
         const CageWeights& weights = one.cage ? weights_of.at(one.kind) : weights_of.begin()->second;
-        if (one.cage) result.summary = CageSpaceSolver(std::move(constraints), weights, cage_rest).solve(x, solving(one));
+        if (one.cage && levels.size() > 1) result.summary = through_its_own(std::move(constraints), weights, x, solving(one));
+        else if (one.cage) result.summary = CageSpaceSolver(std::move(constraints), weights, cage_rest).solve(x, solving(one));
         else result.summary = MeshSpaceSolver(std::move(constraints), rest).solve(x, solving(one));
         result.points = one.cage ? ostraka::points_of(weights, x) : x;
         result.moved = displacements(mesh_points(rest), mesh_points(result.points));

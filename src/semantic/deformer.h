@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include "ostraka/cage/cage.h"
+#include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -344,6 +345,21 @@ private:
         }
     }
 
+    /// Of cages within a cage, the handles of the levels that hold what constraints are about: the others shall stand, so that
+    /// each part is brought to what is asked of it by its own cage.
+    [[nodiscard]] std::vector<bool> handles_asked() const {
+        const std::vector<CageLevel> levels = cage_levels(*space_.cage);
+        std::vector<bool> asked(space_.cage->number_of_vertices(), levels.size() == 1);
+        if (levels.size() == 1) return asked;
+        const std::vector<WeightMatrix> carrying = carrying_weights(levels);
+        for (const auto& constraint : lowered_) {
+            const std::vector<Index> points(constraint->ids().begin(), constraint->ids().end());
+            const std::size_t level = level_that_holds(space_.coordinates->vertex, points, levels, carrying);
+            for (const Index v : levels[level].cage.vertices) asked[v] = true;
+        }
+        return asked;
+    }
+
     /// All constraints over the cage's vertices. Its first one holds the handles that steps moved, if there are any.
     CageSystem cage_system() {
         CageSystem system;
@@ -358,14 +374,19 @@ private:
         std::vector<std::unique_ptr<Constraint>> list;
         // A point of the cage stands for as many of the mesh.
         const double share = static_cast<double>(n) / static_cast<double>(c);
+        const std::vector<bool> asked = handles_asked();
+        std::vector<int> stiff;
         for (const bool touched : {true, false}) {
             std::vector<int> ids;
-            for (Eigen::Index j = 0; j < c; ++j)
-                if (last_.touched[static_cast<std::size_t>(j)] == touched) ids.push_back(static_cast<int>(n + j));
+            for (Eigen::Index j = 0; j < c; ++j) {
+                const auto handle = static_cast<std::size_t>(j);
+                if (last_.touched[handle] == touched) (touched || asked[handle] ? ids : stiff).push_back(static_cast<int>(n + j));
+            }
             const double weight = closeness(options_, space_.mesh, mean_edge_length(*space_.cage));
             add_closeness(ids, touched ? options_.handles : std::min(options_.handles, share * weight), edited_cage,
                           static_cast<int>(n), rest, list);
         }
+        add_closeness(stiff, share * options_.handles, edited_cage, static_cast<int>(n), rest, list);
         // What the cage tends to between constraints; else its points fly off for little.
         Points shape = rest;
         shape.rightCols(c) = options_.details == DeformOptions::Details::rest ? rest_cage : edited_cage;

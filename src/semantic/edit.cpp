@@ -76,9 +76,7 @@ private:
                      "levels count from 0, the outermost; leave it out where no cage is within another");
             return static_cast<std::size_t>(level->GetUint64());
         }
-        for (std::size_t l = levels_.size() - 1; l > 0; --l)
-            if (weights_in(l, vertices).vertex.sum() >= 0.5 * static_cast<double>(vertices.size())) return l;
-        return 0;
+        return level_that_holds(space_.coordinates->vertex, vertices, levels_, carrying_);
     }
 
     /// What the vertices of a level have to say on those of the mesh, all if none are given: a row for each.
@@ -160,6 +158,8 @@ private:
         }
         if (const JsonValue* list = find_member(select, "cageVertices")) {
             ++ways;
+            if (find_member(select, "level") != nullptr)
+                fail("names cageVertices and a level", "leave the level out: each vertex is of one");
             if (space_.cage == nullptr) fail("cageVertices without a cage", "give --cage and --weights, or select otherwise");
             const auto found = indices(*list, space_.cage->number_of_vertices(), "cage");
             chosen.insert(found.begin(), found.end());

@@ -166,8 +166,7 @@ TEST(FreeSelection, GrowthByADistanceIsOfSecondOrder) {
         const Mesh mesh = build_mesh(octahedron_sphere(level));
         const std::string cap = R"({"halfspace": {"point": [0.3024, 0.4032, 0.672], "normal": [0.36, 0.48, 0.8]}})";
         const double angle = std::acos(0.84);
-        const RegionMeasures more =
-            measure_region(mesh, selected(mesh, R"({"grow": {"of": )" + cap + R"(, "distance": 0.3}})"));
+        const RegionMeasures more = measure_region(mesh, selected(mesh, R"({"grow": {"of": )" + cap + R"(, "distance": 0.3}})"));
         const RegionMeasures less =
             measure_region(mesh, selected(mesh, R"({"shrink": {"of": )" + cap + R"(, "distance": 0.3}})"));
         grown.push_back(std::abs(more.area / (2 * pi * (1 - std::cos(angle + 0.3))) - 1));

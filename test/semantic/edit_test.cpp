@@ -200,3 +200,27 @@ TEST(PartCages, MirroredPartsHaveMirroredControlPoints) {
     EXPECT_NEAR(std::abs(plane->normal.x()), 1, 1e-6);
     EXPECT_FALSE(symmetry_plane(mesh, set, graph, {1}, "graph"));
 }
+
+TEST(NestedEdit, ConstraintsInCageSpaceAreMetByThePartsOwnCage) {
+    // The spout is turned and is to keep its direction: through one cage that moves the body as well, through its own hardly.
+    const Nested& n = nested();
+    RelationGraph graph;
+    int spout = 0;
+    for (const Annotation& one : n.whole.set.annotations)
+        if (one.tag == "spout") spout = one.id;
+    graph.relationships.push_back(constraint(1, "keep direction", {spout}, "{}"));
+    DeformOptions options;
+    options.space = DeformOptions::Space::cage;
+    const std::string turn = R"({"select": {"annotation": "spout"}, "rotate": {"axis": [0, 1, 0], "angle": 20}})";
+    const auto moved_elsewhere = [&](const HandleSpace& space) {
+        const DeformResult result = deform(space, graph, edit(turn), "e", options);
+        EXPECT_TRUE(result.solved);
+        std::vector<bool> of_spout(space.mesh.number_of_vertices(), false);
+        for (const Index v : vertices_of(space.mesh, *space.set.find(spout))) of_spout[v] = true;
+        double sum = 0;
+        for (const Vertex v : space.mesh.vertices())
+            if (!of_spout[v]) sum += std::sqrt(CGAL::squared_distance(result.points[v], space.mesh.point(v)));
+        return sum;
+    };
+    EXPECT_LT(moved_elsewhere(n.handles()), 0.1 * moved_elsewhere(n.whole.handles()));
+}

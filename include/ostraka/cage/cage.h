@@ -60,12 +60,12 @@ struct OutsideVertex {
 };
 
 struct CageCheck {
-    bool closed = false;   ///< no border; otherwise nothing below but the components is known
-    bool flat = false;     ///< no face has an area; nothing below but the components and those faces is known
-    bool outward = false;  ///< faces are counter-clockwise seen from outside
+    bool closed = false;                     ///< no border; otherwise nothing below but the components is known
+    bool flat = false;                       ///< no face has an area; nothing below but the components and those faces is known
+    bool outward = false;                    ///< faces are counter-clockwise seen from outside
     std::size_t components = 0, nested = 0;  ///< nested: cages within the outermost (coords/nested.h)
-    long genus = 0;                                      ///< of all components together
-    std::size_t degenerate = 0;                          ///< faces without area
+    long genus = 0;                          ///< of all components together
+    std::size_t degenerate = 0;              ///< faces without area
     std::vector<std::pair<Index, Index>> intersections;  ///< pairs of faces of the cage, the first few thousands
     std::vector<OutsideVertex> outside;                  ///< by vertex
     std::size_t touching = 0;                            ///< how many of these are on the cage

@@ -34,4 +34,8 @@ Coordinates nested_coordinates(const std::string& kind, const std::vector<CageLe
 WeightMatrix weights_of_level(const WeightMatrix& vertex, const std::vector<CageLevel>& levels,
                               const std::vector<WeightMatrix>& carrying, std::size_t level);
 
+/// The innermost level that holds most of these points (rows of `vertex`).
+std::size_t level_that_holds(const WeightMatrix& vertex, const std::vector<Index>& points, const std::vector<CageLevel>& levels,
+                             const std::vector<WeightMatrix>& carrying);
+
 }  // namespace ostraka
