@@ -29,6 +29,16 @@ namespace {
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
+/// Others end at the border of an open mesh, which is not laid.
+bool is_closed(const SurfaceCurve& curve) { return curve.nodes.front().point == curve.nodes.back().point; }
+
+double length_of_curves(const Mesh& mesh, const Annotation& annotation) {
+    double sum = 0;
+    for (const SurfaceCurve& curve : curves_on(mesh, annotation))
+        for (std::size_t i = 0; i + 1 < curve.nodes.size(); ++i) sum += distance(curve.nodes[i].point, curve.nodes[i + 1].point);
+    return sum;
+}
+
 /// A region asked about places of its own mesh.
 struct Known {
     Known(const Mesh& mesh, const Annotation& annotation)
@@ -63,7 +73,8 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
             const auto hit = to.closest_compatible(places[i], from.normal(faces[i]), 0, reach);
             on[i] = hit ? hit->point : to.closest(places[i]).point;
         });
-        for (std::size_t i = 0; i < on.size(); ++i) result.perimeter += distance(on[i], on[(i + 1) % on.size()]);
+        for (std::size_t i = 0; i + 1 < on.size(); ++i) result.perimeter += distance(on[i], on[i + 1]);
+        if (is_closed(curve)) result.perimeter += distance(on.back(), on.front());
     }
     const Mesh& mesh = to.mesh();
     const Known before(from.mesh(), source), after(mesh, moved);
@@ -172,7 +183,7 @@ LaidByRays laid_by_rays(const SurfaceSearch& source, const Annotation& drawn, co
             last = on[i];
             if (!first) first = on[i];
         }
-        if (last) result.perimeter += distance(*last, *first);
+        if (last && is_closed(curve)) result.perimeter += distance(*last, *first);
     }
     result.mean = sum / target.typical_edge() / static_cast<double>(std::max<std::size_t>(1, result.places - result.without_ray));
     return result;
@@ -241,14 +252,14 @@ void free_outlines(const FreeOutlineOptions& options) {
             const RegionMeasures now = measure_region(to.mesh(), *there);
             const auto score =
                 std::find_if(moved.scores.begin(), moved.scores.end(), [&](const TransferScore& s) { return s.id == one.id; });
-            const double off_perimeter = 100 * (now.perimeter / exact.perimeter - 1),
-                         off_area = 100 * (now.area / exact.area - 1);
+            const double perimeter = length_of_curves(to.mesh(), *there);
+            const double off_perimeter = 100 * (perimeter / exact.perimeter - 1), off_area = 100 * (now.area / exact.area - 1);
             const LaidByRays rays = laid_by_rays(from, one, to, *there);
             const double off_by_rays = 100 * (rays.of_written / rays.perimeter - 1);
             const double share = area_of(from.mesh(), one) / surface_area(from.mesh());
             csv << object << ',' << kind << ',' << from_name << ',' << to_name << ',' << one.tag << ',' << digits(share, 3) << ','
-                << now.perimeter << ',' << exact.perimeter << ',' << digits(off_perimeter, 3) << ',' << digits(off_by_rays, 3)
-                << ',' << digits(rays.mean, 3) << ',' << digits(rays.most, 3) << ',' << rays.without_ray << ',' << now.area << ','
+                << perimeter << ',' << exact.perimeter << ',' << digits(off_perimeter, 3) << ',' << digits(off_by_rays, 3) << ','
+                << digits(rays.mean, 3) << ',' << digits(rays.most, 3) << ',' << rays.without_ray << ',' << now.area << ','
                 << exact.area << ',' << digits(off_area, 3) << ',' << digits(exact.overlap, 6) << ','
                 << digits(score->overlap.value_or(0), 6) << ',' << score->vertices << ',' << score->by_ray << ','
                 << score->detours << ',' << score->crossings_resolved << ',' << digits(seconds, 3) << '\n';

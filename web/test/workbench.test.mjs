@@ -148,6 +148,11 @@ try {
     await useTool(page, "brush");
     await drag(page, [0.45 * w, 0.6 * h], [0.55 * w, 0.6 * h], 8);
     await selected(page);
+    // As drawn: through the triangles, and a line is drawn there.
+    assert.ok(await page.evaluate(() => {
+      const at = ostraka.page.page.objects[0].annotations.findIndex((one) => one.tag === "lid");
+      return ostraka.page.page.objects[0].annotations[at].curves?.[0].length > 10 && ostraka.objects[0].marks.has(at);
+    }));
     await page.locator(".annotate input").first().fill("belly");
     await page.locator(".annotate button[type=submit]").first().click();
     await steps(page, 3);

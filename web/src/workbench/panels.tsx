@@ -42,6 +42,7 @@ export function annotate(action: "make" | "replace" | "add to" | "remove from", 
     if (rgb) given.colour = rgb.slice(1).map((x) => parseInt(x, 16));
   }
   if (id !== undefined) given.id = id;
+  if (selection.typeOf(selection.expression.value!) === "region") given.outline = selection.asDrawn.value ? "free" : "edges";
   return run({ operation: "annotation select", title: `${text("annotate")}: ${tag}`, with: given, keep });
 }
 
@@ -72,6 +73,9 @@ export function Annotating() {
         <div class="buttons">
           <label>
             <input type="checkbox" checked={selection.visible.value} onChange={(event) => (selection.visible.value = event.currentTarget.checked)} /> {text("visibleOnly")}
+          </label>
+          <label>
+            <input type="checkbox" checked={selection.asDrawn.value} onChange={(event) => (selection.asDrawn.value = event.currentTarget.checked)} /> {text("asDrawn")}
           </label>
           <label>
             <input type="checkbox" checked={selection.erases.value} onChange={(event) => (selection.erases.value = event.currentTarget.checked)} /> {text("erase")}

@@ -13,6 +13,8 @@ export const expression = signal<Expression | undefined>(undefined);
 export const selected = signal<{ type: string; count: number } | undefined>(undefined);
 export const erases = signal(false);
 export const visible = signal(true);
+/** Outlines run through the triangles where they were drawn, not along the nearest edges. */
+export const asDrawn = signal(true);
 
 /** What kind of thing an expression selects. */
 export function typeOf(of: Expression): "region" | "line" | "point" {
