@@ -93,3 +93,17 @@ Mesh mirrored_whole(const Mesh& half, const MirrorPlane& plane) {
 }
 
 }  // namespace ostraka::cage
+
+namespace ostraka {
+
+Mesh mirror_image(const Mesh& mesh, const MirrorPlane& plane) {
+    TriangleSoup soup = to_soup(mesh);
+    for (auto& p : soup.points) {
+        const Point q = cage::image(Point(p[0], p[1], p[2]), plane);
+        p = {q.x(), q.y(), q.z()};
+    }
+    for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+    return build_mesh(soup);
+}
+
+}  // namespace ostraka

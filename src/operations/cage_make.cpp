@@ -121,6 +121,11 @@ struct CageMake final : Operation {
         of_parts.vertices = part_vertices;
         const std::vector<PartCage> inner =
             in_file(annotations.file(), [&] { return make_part_cages(object, set, regions, of_parts, relations, graph.file()); });
+        for (std::size_t k = 0; k < inner.size(); ++k)
+            if (inner[k].check.components > 1)
+                fail_input(annotations.file(),
+                           "'" + tag_of(set, regions, k) + "' lies apart in " + counted(inner[k].check.components, "piece"),
+                           "annotate the pieces one by one: each has a cage of its own");
         std::vector<const Mesh*> all;
         for (std::size_t i = results.size(); i-- > 0;) all.push_back(&results[i].cage);
         for (const PartCage& one : inner) all.push_back(&one.made.cage);
@@ -215,11 +220,12 @@ struct CageMake final : Operation {
         return plane;
     }
 
-    /// Of the first mirror symmetry in the graph.
+    /// Of the mirror symmetry of the whole in the graph. Parts may mirror each other, and themselves, in planes of their own.
     [[nodiscard]] std::optional<MirrorPlane> mirror_of(const RelationGraph& relations, const Mesh& object,
                                                        const AnnotationSet& set) const {
-        for (const Relationship& one : relations.relationships)
-            if (const auto plane = symmetry_plane(object, set, relations, one.annotations, graph.file())) return plane;
+        for (const Annotation& one : set.annotations)
+            if (one.all || one.faces.size() == object.number_of_faces())
+                if (const auto plane = symmetry_plane(object, set, relations, {one.id}, graph.file())) return plane;
         return {};
     }
 

@@ -106,6 +106,7 @@ private:
     /// Picked vertices that have faces.
     std::vector<Index> surface_picks(const JsonValue& list, PlaceFrame frame, const std::string& at) const;
     std::vector<Index> brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
+    bool on_faces(const JsonValue& threshold, PlaceFrame frame, const std::string& at) const;
     /// Of what is grown or shrunk by a distance: the exact geodesic distance from its border, below 0 inside. Of what is chosen
     /// face by face (segments, labels, thresholds on faces, growth by rings): the share of the faces' area around each vertex
     /// that is, where a vertex has half; otherwise, and of other kinds, nothing. Kept by the place in the recipe.

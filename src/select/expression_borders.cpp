@@ -246,12 +246,18 @@ CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, Pla
     return result;
 }
 
+bool ExpressionEvaluator::on_faces(const JsonValue& threshold, PlaceFrame frame, const std::string& at) const {
+    // Other maps are on vertices, and dear.
+    if (find_member(threshold, "thickness") == nullptr && find_member(threshold, "map") == nullptr) return false;
+    return scalar(threshold, frame, at).on_faces;
+}
+
 const SelectionLevel* ExpressionEvaluator::level_of(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     const std::string here = at + '/' + kind;
     const bool grows = kind == "grow" || kind == "shrink";
-    if (!grows && kind != "segments" && kind != "labels" && (kind != "threshold" || !scalar(*value, frame, here).on_faces))
+    if (!grows && kind != "segments" && kind != "labels" && (kind != "threshold" || !on_faces(*value, frame, here)))
         return nullptr;
     const auto [entry, fresh] = levels_.try_emplace(at);
     std::optional<SelectionLevel>& known = entry->second;

@@ -8,26 +8,6 @@
 
 namespace ostraka {
 
-namespace {
-
-Point image_in(const MirrorPlane& plane, const Point& p) {
-    const Vector n = plane.normal;
-    return p - 2 * ((p - plane.point) * n) / n.squared_length() * n;
-}
-
-/// Turned inside out by the mirror, and back by the order of its corners.
-Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane) {
-    TriangleSoup soup = to_soup(mesh);
-    for (auto& p : soup.points) {
-        const Point q = image_in(plane, Point(p[0], p[1], p[2]));
-        p = {q.x(), q.y(), q.z()};
-    }
-    for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-    return build_mesh(soup);
-}
-
-}  // namespace
-
 std::optional<MirrorPlane> symmetry_plane(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                           std::vector<int> annotations, const std::string& graph_name) {
     std::sort(annotations.begin(), annotations.end());
@@ -64,10 +44,10 @@ std::vector<PartCage> make_part_cages(const Mesh& mesh, const AnnotationSet& set
         for (std::size_t j = i + 1; j < parts.size() && !done[i]; ++j) {
             const auto plane = done[j] ? std::nullopt : symmetry_plane(mesh, set, graph, {id_of(i), id_of(j)}, graph_name);
             if (!plane) continue;
-            const Mesh other = mirrored(part[j], *plane);
+            const Mesh other = mirror_image(part[j], *plane);
             cages[i].made = make_cage(together({&part[i], &other}), options);
             cages[j].made = cages[i].made;
-            cages[j].made.cage = mirrored(cages[i].made.cage, *plane);
+            cages[j].made.cage = mirror_image(cages[i].made.cage, *plane);
             done[i] = done[j] = true;
         }
         if (!done[i]) cages[i].made = make_cage(part[i], options, {}, symmetry_plane(mesh, set, graph, {id_of(i)}, graph_name));

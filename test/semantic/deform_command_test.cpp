@@ -104,6 +104,25 @@ TEST(CageCommand, CagesWithinACageAreEditedLevelByLevel) {
     EXPECT_EQ(moves(1), 120U);
 }
 
+TEST(CageCommand, OnlyASymmetryOfTheWholeMirrorsTheCage) {
+    const Scratch scratch;
+    const auto at = [&](const std::string& name) { return (scratch / name).string(); };
+    ASSERT_EQ(run_command("cage make " + pot + at("plain.ply") + " --vertices 60 --annotations " + parts).code, 0);
+    const auto with_graph = [&](const std::string& members) {
+        const auto stated =
+            run_command("relation add " + pot + parts + at("s.graph.json") + " --type 'mirror symmetry' " + members);
+        EXPECT_EQ(stated.code, 0) << stated.err;
+        const auto made = run_command("cage make " + pot + at("c.ply") + " --vertices 60 --annotations " + parts + "--graph " +
+                                      at("s.graph.json"));
+        EXPECT_EQ(made.code, 0) << made.err;
+        return read_mesh(at("c.ply")).mesh;
+    };
+    const Mesh plain = read_mesh(at("plain.ply")).mesh;
+    // Two flowers mirror each other in a plane that says nothing of the pot.
+    EXPECT_EQ(mesh_checksum(with_graph("--annotation 7 --annotation 8")), mesh_checksum(plain));
+    EXPECT_NE(mesh_checksum(with_graph("--annotation 0")), mesh_checksum(plain));
+}
+
 TEST(CageCommand, BadInput) {
     const Scratch scratch;
     const std::string cage = (scratch / "cage.ply").string();

@@ -48,6 +48,9 @@ struct CageResult {
 CageResult make_cage(const Mesh& mesh, const CageOptions& options = {}, const CageDensity& density = {},
                      const std::optional<MirrorPlane>& mirror = {});
 
+/// The image of a closed mesh in a plane, oriented outward again, vertices and faces in their order.
+Mesh mirror_image(const Mesh& mesh, const MirrorPlane& plane);
+
 /// Cages of `levels` numbers of vertices, sorted from fine to coarse: the first around the mesh, each next around the one before.
 std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uint64_t> levels, const CageOptions& options = {},
                                           const CageDensity& density = {}, const std::optional<MirrorPlane>& mirror = {});
