@@ -1,9 +1,11 @@
 # `cpack` makes a Debian package: the command, manual pages, completion, the library with its headers, the conformance kit, the Python
-# module. Dependencies on shared libraries are found by dpkg-shlibdeps.
+# module, and the licences of all that is within (COPYRIGHT). Dependencies on shared libraries are found by dpkg-shlibdeps.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ostraka)
 set(CPACK_PACKAGE_VENDOR "The Ostraka developers")
-set(CPACK_PACKAGE_CONTACT "The Ostraka developers <ostraka@localhost>")
+# The developers have no common address: who hands the package on answers for it, and says who that is.
+set(OSTRAKA_CONTACT "The Ostraka developers" CACHE STRING "Who answers for the package: NAME <ADDRESS>")
+set(CPACK_PACKAGE_CONTACT "${OSTRAKA_CONTACT}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_SCRIPT "")
@@ -15,4 +17,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, make, libcgal-dev, libeigen3-dev, libboost-dev, rapidjson-dev, libembree-dev, libssl-dev, libsuitesparse-dev, libcairo2-dev, libpugixml-dev, libraptor2-dev, zlib1g-dev, libpng-dev, libmeshoptimizer-dev, libceres-dev")
 set(CPACK_DEB_COMPONENT_INSTALL OFF)
+install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/COPYRIGHT DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ostraka RENAME copyright)
 include(CPack)

@@ -23,7 +23,8 @@ if(missing)
   return()
 endif()
 
-Python3_add_library(ostraka_python MODULE WITH_SOABI apps/python/module.cpp apps/python/objects.cpp)
+Python3_add_library(ostraka_python MODULE WITH_SOABI apps/python/module.cpp apps/python/objects.cpp
+  apps/python/running.cpp apps/python/saved.cpp)
 target_include_directories(ostraka_python SYSTEM PRIVATE ${PYBIND11_INCLUDE})
 target_link_libraries(ostraka_python PRIVATE ostraka ostraka_flags)
 # Beside the package's own files, so that the folder can be imported from; what the library is made of stays within the module.

@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
     try {
         if (argc == 5 && std::string(argv[1]) == read_and_build_tree) return run_read_and_build_tree({argv + 2, argv + 5});
         if (argc == 3 && std::string(argv[1]) == read_mesh_only) return run_read_mesh(argv[2]);
+        if ((argc == 3 || argc == 4) && std::string(argv[1]) == measure_cancelling)
+            return run_cancelling(argv[2], argc == 4 ? argv[3] : "");
         register_command_benchmarks();
         register_bandwidth_benchmarks();
         register_query_benchmarks();

@@ -3,6 +3,7 @@
 
 #include "workbench.h"
 
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/file.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
@@ -13,14 +14,21 @@
 
 #include <CLI/CLI.hpp>
 
+#include <semaphore.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <map>
+#include <mutex>
+#include <thread>
 
 namespace ostraka::app {
 
@@ -336,6 +344,7 @@ struct Common {
     bool json = false, quiet = false;
     std::string show = "table";
     int threads = 0;
+    double memory = 0;
 };
 
 /// Declares the operation's flags. True where `take_positionals` is to take the arguments without flags, from `words`.
@@ -365,13 +374,72 @@ void check_standard_output() {
     if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
 }
 
-Watch* watch_of_signals = nullptr;
-void handle_signals(void (*handler)(int)) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, handler);
-}
-void cancel_on_signal(int /*signal*/) {
-    if (watch_of_signals != nullptr) watch_of_signals->cancel();
-    handle_signals(SIG_DFL);  // a second one ends the process
+/// Cancels the work on SIGINT, SIGTERM and SIGHUP. Work that has not ended by itself soon after is ended with the process: its
+/// temporary files, scratch folders and programs go, files that have their names stay.
+class SignalWatch {
+public:
+    explicit SignalWatch(Watch& watch) {
+        ::sem_init(&wanted_, 0, 0);
+        keeper_ = std::thread([this, &watch] { wait(watch); });
+        stop_wanted_ = &wanted_;
+        handle([](int) {
+            ::sem_post(stop_wanted_);
+            handle(SIG_DFL);  // a second one ends the process
+        });
+    }
+    ~SignalWatch() {
+        handle(SIG_DFL);
+        {
+            const std::lock_guard lock(mutex_);
+            has_ended_ = true;
+        }
+        ended_.notify_one();
+        ::sem_post(&wanted_);
+        keeper_.join();
+        ::sem_destroy(&wanted_);
+    }
+    SignalWatch(const SignalWatch&) = delete;
+    SignalWatch& operator=(const SignalWatch&) = delete;
+
+private:
+    static void handle(void (*handler)(int)) {
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, handler);
+    }
+
+    void wait(Watch& watch) {
+        while (::sem_wait(&wanted_) != 0) {
+        }
+        std::unique_lock lock(mutex_);
+        if (has_ended_) return;
+        watch.cancel();
+        if (ended_.wait_for(lock, patience, [this] { return has_ended_; })) return;
+        abandon_outputs();
+        kill_children();
+        constexpr std::string_view message = "ostraka: cancelled (nothing was written)\n";
+        static_cast<void>(::write(2, message.data(), message.size()) == 0);
+        std::_Exit(cancelled);
+    }
+
+    static constexpr std::chrono::milliseconds patience{700};
+    static inline sem_t* stop_wanted_ = nullptr;
+    sem_t wanted_{};
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    bool has_ended_ = false;
+    std::thread keeper_;
+};
+
+/// Allocations beyond the limit fail, whoever makes them: what the guesses of operations miss ends in words all the same. Stacks
+/// of threads count for the system, though hardly any of them is used: they come on top.
+void limit_allocations(double bytes) {
+    rlimit limit{};
+    if (bytes <= 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+    rlimit stack{};
+    constexpr rlim_t usual_stack = rlim_t{8} << 20;
+    const bool is_known = ::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur != RLIM_INFINITY;
+    const rlim_t stacks = (static_cast<rlim_t>(threads()) + 4) * (is_known ? stack.rlim_cur : usual_stack);
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, static_cast<rlim_t>(bytes) + stacks);
+    ::setrlimit(RLIMIT_DATA, &limit);
 }
 
 int run_call(Call& call, const Common& common) {
@@ -384,8 +452,9 @@ int run_call(Call& call, const Common& common) {
             if (share < 1) std::fprintf(stderr, "\r%s %3d %%\033[K", phase.c_str(), static_cast<int>(100 * share));
             else std::fprintf(stderr, "\r\033[K");
         };
-    watch_of_signals = &context.watch;
-    handle_signals(cancel_on_signal);
+    context.watch.memory_limit = common.memory * 1e9;
+    limit_allocations(context.watch.memory_limit);
+    const SignalWatch signals(context.watch);
     bool shown = false;
     const auto show = [&](const Report& report) {
         const ReportFormat format = common.json || common.show == "json" ? ReportFormat::json
@@ -399,7 +468,6 @@ int run_call(Call& call, const Common& common) {
         check_standard_output();
     };
     const Report report = call.run(context, show);
-    watch_of_signals = nullptr;
     if (!common.quiet && shown)
         if (const std::string times = report.times(); !times.empty()) std::cerr << "time: " << times << '\n';
     return report.holds() ? done : answer_is_no;
@@ -453,6 +521,8 @@ int run_command_line(int argc, char** argv) {
         command->add_flag("--quiet", common.quiet, "no notes and no progress bar");
         command->add_option("--threads", common.threads, "number of threads, 0 for all cores; results do not depend on it")
             ->check(CLI::Range(0, 1024));
+        command->add_option("--memory", common.memory, "memory that the work may take [GB]; 0: what the machine has")
+            ->check(CLI::Range(0.0, 1e6));
         by_count = add_parameters(*command, *call, words);
         command->allow_extras();
     }

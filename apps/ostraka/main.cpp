@@ -4,6 +4,7 @@
 #include "ostraka/core/words.h"
 
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <new>
 
@@ -17,11 +18,11 @@ int main(int argc, char** argv) {
         return app::run_command_line(argc, argv);
     } catch (const Error& error) {
         std::cerr << "ostraka: " << printable(error.what()) << '\n';
-        return error.kind() == ErrorKind::usage       ? app::wrong_usage
-               : error.kind() == ErrorKind::cancelled ? app::cancelled
-                                                      : app::failed;
+        // All is undone; work of other libraries that nobody waits for may still be under way (core/run_apart.h).
+        if (error.kind() == ErrorKind::cancelled) std::_Exit(app::cancelled);
+        return error.kind() == ErrorKind::usage ? app::wrong_usage : app::failed;
     } catch (const std::bad_alloc&) {
-        std::cerr << "ostraka: out of memory (close other programs or use a smaller mesh)\n";
+        std::cerr << "ostraka: out of memory (allow more by --memory, close other programs or use a smaller mesh)\n";
         return app::failed;
     } catch (const std::exception& error) {
         std::cerr << "ostraka: internal error: " << error.what() << " (please report it with the command that caused it)\n";

@@ -17,7 +17,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): not in every <unistd.h>
 
@@ -25,15 +28,110 @@ namespace ostraka::app {
 
 namespace {
 
-/// Shows an address in the browser of a desktop; silent where there is none.
-void show_in_browser(const std::string& address) {
-    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
-    std::string program = "xdg-open", argument = address;
-    char* arguments[]{program.data(), argument.data(), nullptr};
-    pid_t child = 0;
-    if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) return;
-    std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
-}
+/// Shows the workbench's address in the browser of a desktop; silent where there is none. Whoever is at work on the machine sees
+/// command lines, and the address holds a secret: the browser is given a page in the session's folder that only its owner can
+/// read, and that leads to the address. The page is gone as soon as it is not needed.
+class Doorway {
+public:
+    explicit Doorway(const Path& session) : file_(std::filesystem::absolute(session) / "ostraka-workbench.html") { close(); }
+    ~Doorway() { close(); }
+    Doorway(const Doorway&) = delete;
+    Doorway& operator=(const Doorway&) = delete;
+
+    void open(const std::string& address) const {
+        if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+        try {
+            write_file(file_,
+                       "<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">"
+                       "<title>Ostraka</title><meta http-equiv=\"refresh\" content=\"0; url=" +
+                           address + "\">\n",
+                       FileAccess::owner_only);
+        } catch (const Error&) {
+            return;  // the address stands on the standard output
+        }
+        if (!show()) close();
+    }
+    /// From any thread.
+    void close() const {
+        std::error_code ignored;
+        std::filesystem::remove(file_, ignored);
+    }
+
+private:
+    /// False where there is no program for it.
+    [[nodiscard]] bool show() const {
+        std::string program = "xdg-open", argument = file_.string();
+        char* arguments[]{program.data(), argument.data(), nullptr};
+        // A browser that begins here is not ended with the workbench, and heeds all signals.
+        posix_spawnattr_t attributes;
+        ::posix_spawnattr_init(&attributes);
+        sigset_t none;
+        sigemptyset(&none);
+        ::posix_spawnattr_setsigmask(&attributes, &none);
+        ::posix_spawnattr_setpgroup(&attributes, 0);
+        ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+        pid_t child = 0;
+        const bool is_begun = ::posix_spawnp(&child, program.c_str(), nullptr, &attributes, arguments, environ) == 0;
+        ::posix_spawnattr_destroy(&attributes);
+        if (is_begun) std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
+        return is_begun;
+    }
+
+    Path file_;
+};
+
+/// The signals that end a program: a thread of its own waits for them, and does what `stop` said. Before that is known, at a
+/// second signal, and where the work does not end within `patience`, the process ends at once: a session loses no step by that.
+class Signals {
+public:
+    Signals() {
+        sigset_t signals;
+        sigemptyset(&signals);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+        pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+        std::thread([shared = shared_, signals] { shared->wait(signals); }).detach();
+    }
+    ~Signals() {
+        const std::lock_guard lock(shared_->mutex);
+        shared_->stop = {};
+        shared_->is_over = true;
+    }
+    Signals(const Signals&) = delete;
+    Signals& operator=(const Signals&) = delete;
+
+    void stop(std::function<void()> how) const {
+        const std::lock_guard lock(shared_->mutex);
+        shared_->stop = std::move(how);
+    }
+
+private:
+    static constexpr timespec patience{0, 700'000'000};
+
+    struct Shared {
+        std::mutex mutex;
+        std::function<void()> stop;
+        bool is_over = false;
+
+        void wait(const sigset_t& signals) {
+            int signal = 0;
+            sigwait(&signals, &signal);
+            if (!begin_to_stop()) end();
+            sigtimedwait(&signals, nullptr, &patience);
+            const std::lock_guard lock(mutex);
+            if (!is_over) end();
+        }
+        bool begin_to_stop() {
+            const std::lock_guard lock(mutex);
+            if (stop) stop();
+            return stop || is_over;
+        }
+        [[noreturn]] static void end() {
+            abandon_outputs();
+            std::_Exit(cancelled);
+        }
+    };
+    std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+};
 
 }  // namespace
 
@@ -41,6 +139,7 @@ int run_workbench(const std::vector<std::string>& words) {
     CLI::App command(workbench_help, "ostraka workbench");
     std::string place = ".", session;
     int port = 0, threads = 0;
+    double memory = 0;
     bool no_browser = false;
     command.add_option("PLACE", place, "folder with meshes and templates, or one of them (else the current folder)");
     command.add_option("--session", session,
@@ -50,6 +149,8 @@ int run_workbench(const std::vector<std::string>& words) {
         ->capture_default_str();
     command.add_option("--threads", threads, "number of threads, 0 for all cores; results do not depend on it")
         ->check(CLI::Range(0, 1024));
+    command.add_option("--memory", memory, "memory that the workbench may take [GB]; 0: what the machine has")
+        ->check(CLI::Range(0.0, 1e6));
     command.add_flag("--no-browser", no_browser, "say the address only");
     try {
         std::vector<std::string> reversed(words.rbegin(), words.rend());
@@ -69,7 +170,8 @@ int run_workbench(const std::vector<std::string>& words) {
     if (stem.ends_with(".template")) stem.resize(stem.size() - std::string(".template").size());
     const Path folder = !session.empty() ? Path(session) : is_file ? root / (stem + "-session") : root / "session";
 
-    Workbench workbench(folder, root);
+    const Signals signals;
+    Workbench workbench(folder, root, memory * 1e9);
     if (is_file && workbench.session().steps().empty()) {
         Json request(rapidjson::kObjectType);
         request.AddMember("id", 0, request.GetAllocator());
@@ -82,23 +184,17 @@ int run_workbench(const std::vector<std::string>& words) {
     }
     WorkbenchServer server(workbench, static_cast<std::uint16_t>(port));
 
-    // Signals end it in order: a thread of its own waits for them.
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    std::thread([&server, signals] {
-        int signal = 0;
-        sigwait(&signals, &signal);
+    const Doorway doorway(folder);
+    server.on_first_page = [&doorway] { doorway.close(); };
+    signals.stop([&server, &doorway] {
+        doorway.close();
         server.stop();
-        sigwait(&signals, &signal);  // a second one does not wait for what is under way
-        std::_Exit(cancelled);
-    }).detach();
-
+    });
     std::cout << server.address() << std::endl;
     std::cerr << "session: " << folder.string() << " (Ctrl+C ends the workbench; the session stays)\n";
-    if (!no_browser) show_in_browser(server.address());
+    if (!no_browser) doorway.open(server.address());
     server.run();
+    signals.stop({});
     return done;
 }
 

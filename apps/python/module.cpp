@@ -3,8 +3,11 @@
 #include "objects.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
+#include "ostraka/operation/operation.h"
 #include "ostraka/operations/table.h"
 
 namespace ostraka::python {
@@ -115,12 +118,7 @@ void set_option(Call& call, const std::string& name, const py::handle& value) {
     }
 }
 
-/// Runs an operation. `options`: names and values; `inputs`: names of slots, each with a file's name (bytes), an object, or
-/// nothing where "none" holds a place; `outputs`: the same with a file's name or, of what stays in memory, what it is called.
-py::tuple run(const std::string& name, const py::dict& options, const py::list& inputs, const py::list& outputs,
-              const py::object& progress) {
-    Call call(find_operation(name));
-    for (const auto& [option, value] : options) set_option(call, option.cast<std::string>(), value);
+void set_inputs(Call& call, const py::list& inputs) {
     for (const auto given : inputs) {
         const auto [slot, value, label] = given.cast<std::tuple<std::string, py::object, std::string>>();
         if (py::isinstance<Held>(value)) {
@@ -134,6 +132,9 @@ py::tuple run(const std::string& name, const py::dict& options, const py::list& 
             call.set_file(slot, label.empty() ? file : Path(label + "=" + file.string()));
         }
     }
+}
+
+void set_outputs(Call& call, const py::list& outputs) {
     for (const auto given : outputs) {
         const auto [slot, value] = given.cast<std::pair<std::string, py::object>>();
         if (py::isinstance<py::bytes>(value)) {
@@ -144,11 +145,12 @@ py::tuple run(const std::string& name, const py::dict& options, const py::list& 
         const bool own = dynamic_cast<const FileOutput*>(&call.slot(slot)) != nullptr;
         call.want(slot, !value.is_none() ? value.cast<std::string>() : own ? "" : default_name(call.slot(slot)));
     }
-    const auto context = std::make_shared<Context>();
-    std::shared_ptr<Report> report;
-    run_watched(context->watch, progress, [&] { report = std::make_shared<Report>(call.run(*context)); });
+}
+
+/// What stayed in memory, by the names of the outputs.
+py::dict outputs_of(const Call& call, const std::shared_ptr<Context>& context) {
     py::dict made;
-    for (const Slot* slot : std::as_const(call).parameters().slots()) {
+    for (const Slot* slot : call.parameters().slots()) {
         if (slot->role != Role::output) continue;
         py::list objects;
         for (const Source& source : slot->sources) {
@@ -161,7 +163,29 @@ py::tuple run(const std::string& name, const py::dict& options, const py::list& 
         }
         if (!objects.empty()) made[py::str(slot->name)] = objects;
     }
-    return py::make_tuple(report, made);
+    return made;
+}
+
+/// Runs an operation. `options`: names and values; `inputs`: names of slots, each with a file's name (bytes), an object, or
+/// nothing where "none" holds a place; `outputs`: the same with a file's name or, of what stays in memory, what it is called.
+py::tuple run(const std::string& name, const py::dict& options, const py::list& inputs, const py::list& outputs,
+              const py::object& progress) {
+    const auto call = std::make_shared<Call>(find_operation(name));
+    for (const auto& [option, value] : options) set_option(*call, option.cast<std::string>(), value);
+    // The folders and templates that are given have their files in contexts of their own, which last as long.
+    std::vector<std::shared_ptr<Context>> contexts;
+    for (const auto given : inputs)
+        if (const auto value = given.cast<std::tuple<std::string, py::object, std::string>>();
+            py::isinstance<Held>(std::get<1>(value)))
+            contexts.push_back(std::get<1>(value).cast<const Held&>().context);
+    set_inputs(*call, inputs);
+    set_outputs(*call, outputs);
+    const auto context = std::make_shared<Context>();
+    const auto report = std::make_shared<std::shared_ptr<Report>>();
+    run_watched({context, &context->watch}, progress, [contexts = std::move(contexts), call, context, report] {
+        *report = std::make_shared<Report>(call->run(*context));
+    });
+    return py::make_tuple(*report, outputs_of(*call, context));
 }
 
 }  // namespace
@@ -179,6 +203,7 @@ PYBIND11_MODULE(_ostraka, module) {
         }
     });
     wanted_threads = threads();
+    stop_work_at_exit();
 
     add_objects(module);
     py::class_<Report, std::shared_ptr<Report>>(module, "Report")
@@ -187,6 +212,9 @@ PYBIND11_MODULE(_ostraka, module) {
         .def_property_readonly("holds", &Report::holds);
 
     module.def("version", version);
+    module.def("memory_limit", [] { return wanted_memory > 0 ? wanted_memory.load() : memory_limit(); });
+    module.def("set_memory_limit", [](double bytes) { wanted_memory = bytes; });
+    module.def("hold_spare_team", hold_spare_team);
     module.def("threads", [] { return wanted_threads.load(); });
     module.def("set_threads", [](int count) {
         set_threads(count);  // refuses what is no number of threads

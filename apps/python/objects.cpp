@@ -1,6 +1,8 @@
 // Objects of the toolkit as Python sees them: meshes and arrays, without a copy where the layout allows it.
 #include "objects.h"
 
+#include "saved.h"
+
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
@@ -27,31 +29,6 @@ Path path_of(const py::bytes& name) {
     return text;
 }
 
-namespace {
-
-/// Which class of Python shows it.
-std::string type_of(const Held& held) {
-    const Object& object = held.object;
-    if (object.as<MeshFile>() || object.as<PolygonSoup>() || object.as<Mesh>()) return "mesh";
-    if (object.as<AnnotationSet>()) return "annotations";
-    if (object.as<RelationGraph>() || object.as<Json>()) return "document";
-    if (object.as<std::vector<double>>() || object.as<Coordinates>() || object.as<IndexMap>()) return "array";
-    if (object.as<Path>()) return "folder";
-    if (object.as<std::string>()) return "bytes";
-    return "other";
-}
-
-/// A name for a file in memory whose folder is removed at the end.
-struct InMemory {
-    explicit InMemory(const std::string& name) : folder("memory:.python-" + std::to_string(++count)), file(folder / name) {}
-    ~InMemory() { forget_memory(folder); }
-    InMemory(const InMemory&) = delete;
-    InMemory& operator=(const InMemory&) = delete;
-    static inline std::atomic<std::size_t> count{0};
-    Path folder, file;
-};
-
-/// Writes the object as files, all together or not at all.
 void write_object(const Object& object, const Path& file) {
     OutputTransaction transaction;
     if (const auto folder = object.as<Path>()) {
@@ -66,17 +43,39 @@ void write_object(const Object& object, const Path& file) {
     } else {
         throw Error(ErrorKind::usage, object.name, "cannot be written as a file");
     }
+    check_cancelled();
     transaction.commit();
+}
+
+Object object_of_values(std::vector<double> list) {
+    const auto values = std::make_shared<const std::vector<double>>(std::move(list));
+    Object object(values);
+    object.write = [values](const Path& file) { write_values(file, *values); };
+    return object;
+}
+
+namespace {
+
+/// Which class of Python shows it.
+std::string type_of(const Held& held) {
+    const Object& object = held.object;
+    if (object.as<MeshFile>() || object.as<PolygonSoup>() || object.as<Mesh>()) return "mesh";
+    if (object.as<AnnotationSet>()) return "annotations";
+    if (object.as<RelationGraph>() || object.as<Json>()) return "document";
+    if (object.as<std::vector<double>>() || object.as<Coordinates>() || object.as<IndexMap>()) return "array";
+    if (object.as<Path>()) return "folder";
+    if (object.as<std::string>()) return "bytes";
+    return "other";
 }
 
 void save(const Held& held, const py::bytes& name) {
     const Path file = path_of(name);
-    unlocked([&] { return write_object(held.object, file), true; });
+    unlocked([held, file] { return write_object(held.object, file), true; });
 }
 
 py::bytes bytes_of(const Held& held) {
     if (const auto bytes = held.object.as<std::string>()) return *bytes;
-    return unlocked([&] {
+    return unlocked([held] {  // with the context that has its files
         const InMemory place(Path(held.object.name).filename().string());
         write_object(held.object, place.file);
         return read_file(place.file);
@@ -130,7 +129,7 @@ Object mesh_object(PolygonSoup soup, std::string name, const std::string& sha256
 
 Held read_mesh_object(const py::bytes& name) {
     const Path file = path_of(name);
-    return unlocked([&]() -> Held {
+    return unlocked([file]() -> Held {
         const ReadRecord record;
         PolygonSoup soup = read_polygons(file);
         return {mesh_object(std::move(soup), file.string(), record.files.at(0).sha256)};
@@ -192,7 +191,7 @@ Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>
     take_extra<Colour, std::uint8_t>(extras, "face_colours", faces, soup.extras.face_colours);
     take_extra<std::int32_t, std::int32_t>(extras, "vertex_labels", count, soup.extras.vertex_labels);
     take_extra<std::int32_t, std::int32_t>(extras, "face_labels", faces, soup.extras.face_labels);
-    return unlocked([&]() -> Held { return {mesh_object(std::move(soup), name, {})}; });
+    return unlocked([soup = std::move(soup), name]() mutable -> Held { return {mesh_object(std::move(soup), name, {})}; });
 }
 
 static_assert(sizeof(Point) == 3 * sizeof(double), "points of a mesh are shown as they lie in memory");
@@ -221,7 +220,7 @@ std::pair<py::array, py::array> polygons_of(const Held& held) {
     std::vector<Index> begin(file->mesh.number_of_faces() + 1), corner_list;
     corner_list.reserve(3 * file->mesh.number_of_faces());
     for (std::size_t i = 0; i < begin.size(); ++i) begin[i] = static_cast<Index>(3 * i);
-    for (const auto& triangle : unlocked([&] { return to_soup(file->mesh); }).triangles)
+    for (const auto& triangle : unlocked([file] { return to_soup(file->mesh); }).triangles)
         corner_list.insert(corner_list.end(), triangle.begin(), triangle.end());
     const py::ssize_t faces = size_of(begin.size()), corners = size_of(corner_list.size());
     return {array_of(std::move(begin), {faces}), array_of(std::move(corner_list), {corners})};
@@ -255,16 +254,17 @@ Held make_bytes(const py::bytes& bytes, const std::string& name) { return {Objec
 
 Held read_bytes(const py::bytes& name) {
     const Path file = path_of(name);
-    return unlocked([&]() -> Held { return {Object::of(read_file(file), file.string())}; });
+    return unlocked([file]() -> Held { return {Object::of(read_file(file), file.string())}; });
 }
 
-Held make_document(const std::string& text, const std::string& name) { return {Object::of(parse_json(text, name), name)}; }
+Held make_document(const std::string& text, const std::string& name) {
+    return unlocked([text, name]() -> Held { return {Object::of(parse_json(text, name), name)}; });
+}
 
 Held make_values(const Numbers<double>& array, const std::string& name) {
-    const auto values = std::make_shared<const std::vector<double>>(array.data(), array.data() + array.size());
-    Object object(values, name);
-    object.write = [values](const Path& file) { write_values(file, *values); };
-    return {object};
+    Object object = object_of_values({array.data(), array.data() + array.size()});
+    object.name = name;
+    return {std::move(object)};
 }
 
 py::array array_of_object(const Held& held) {
@@ -295,11 +295,19 @@ py::dict files_of(const Held& held) {
     return files;
 }
 
+py::bytes pickled(const Held& held) {
+    return unlocked([held] { return state_of(held); });
+}
+
+Held unpickled(const py::bytes& state) {
+    return unlocked([text = std::string(state)] { return held_of(text); });
+}
+
 /// The faces of each region, and a label per face: the id of the smallest region on it, -1 for none.
 std::pair<py::dict, py::array> faces_of(const Held& held, const Held& on) {
     const auto file = on.object.as<MeshFile>();
     if (!file) throw Error(ErrorKind::input, on.object.name, "is no oriented manifold of triangles", "use ostraka.mesh.repair");
-    auto [set, labels] = unlocked([&] {
+    auto [set, labels] = unlocked([held, file] {
         AnnotationSet read;
         if (const auto known = held.object.as<AnnotationSet>()) {
             check_annotations(*known, file->mesh, held.object.name);
@@ -331,6 +339,8 @@ void add_objects(py::module_& module) {
             [](Held& held, const std::string& name) { held.object.name = name; })
         .def("save", save)
         .def("bytes", bytes_of)
+        .def("state", pickled)
+        .def("copy", [](const Held& held) { return held; })
         .def("points", points_view)
         .def("polygons", polygons_of)
         .def("extras", extras_of)
@@ -339,6 +349,7 @@ void add_objects(py::module_& module) {
         .def("normals", normals_of_coordinates)
         .def("files", files_of)
         .def("faces", faces_of);
+    module.def("restore", unpickled);
     module.def("read_mesh", read_mesh_object);
     module.def("make_mesh", make_mesh_object);
     module.def("check_mesh_name", [](const std::string& name) { check_mesh_extension(name); });

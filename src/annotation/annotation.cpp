@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <numeric>
@@ -106,6 +107,7 @@ std::vector<Index> flagged(const std::vector<bool>& flags) {
 }
 
 std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotation) {
+    check_cancelled();
     std::vector<Index> vertices = annotation.points;
     for (const auto& polyline : annotation.polylines) vertices.insert(vertices.end(), polyline.begin(), polyline.end());
     for (const Index face : annotation.faces)

@@ -5,6 +5,8 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
 #include <cmath>
@@ -134,6 +136,7 @@ void check_selection(const Annotation& annotation, const Mesh& mesh, const std::
         try {
             settle_elements(mesh, again);
         } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled) throw;
             fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());
         }
         if (again.points != annotation.points || again.polylines != annotation.polylines || again.faces != annotation.faces)
@@ -158,6 +161,7 @@ void places::check_set(const AnnotationSet& set, const Mesh& mesh, const std::st
     }
     std::set<int> ids;
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        check_cancelled();
         const Annotation& annotation = set.annotations[i];
         const std::string at = "/annotations/" + to_string(i);
         if (!ids.insert(annotation.id).second)
@@ -181,13 +185,15 @@ std::vector<Finding> check_information(const AnnotationSet& set, const Path& fol
             const Information& one = set.annotations[i].information[k];
             if (!one.is_local()) continue;
             const std::string at = "/annotations/" + std::to_string(i) + "/information/" + std::to_string(k);
-            const Path given(one.value), file = given.is_absolute() ? given : folder / given;
+            const Path given(one.value), file = folder / given;
             const auto add = [&](bool defect, const std::string& what) {
                 findings.push_back({defect, at,
                                     name_of(set.annotations[i]) + " refers to the " + to_string(one.kind) + " '" +
                                         printable(one.value, 60) + "', " + what});
             };
-            if (!file_exists(file)) add(true, "which is not there");
+            // What a received file names outside of its folder is not read.
+            if (given.is_absolute() || !is_inside(file, folder)) add(true, "which leads out of the folder of the annotations");
+            else if (!file_exists(file)) add(true, "which is not there");
             else if (one.sha256.empty()) add(false, "whose checksum is not known");
             else if (sha256_of_file(file) != one.sha256) add(true, "which has changed since (its checksum differs)");
         }

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/shortest_path.h"
 
 #include <algorithm>
@@ -273,6 +274,7 @@ bool AnnotationTable::contains(std::uint32_t set, int id) const {
 }
 
 AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set) {
+    check_cancelled();
     if (mesh.has_garbage()) fail_work("mesh", "has removed elements", "collect its garbage before attaching annotations");
     AnnotationTable table;
     std::vector<std::pair<Index, int>> vertices, edges, faces, cuts;
@@ -296,6 +298,7 @@ AnnotationTable attach_annotations(Mesh& mesh, const AnnotationSet& set) {
 
 AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before,
                                   const std::vector<Index>& vertex_map) {
+    check_cancelled();
     if (mesh.has_garbage()) fail_work("mesh", "has removed elements", "collect its garbage before reading annotations back");
     Collector collector(mesh, table, before, vertex_map);
     AnnotationSet set = before;

@@ -235,6 +235,7 @@ bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& w
     try {
         settle_elements(mesh, annotation);
     } catch (const Error& error) {
+        if (error.kind() == ErrorKind::cancelled) throw;
         fail(where, at + "/curves", error.where() + ": " + error.problem(), error.remedy());
     }
     return true;
@@ -371,9 +372,17 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
     if (const JsonValue* up = find_member(document, "up")) set.up = triple_of(*up);
     if (const JsonValue* provenance = find_member(document, "provenance"))
         set.provenance.CopyFrom(*provenance, set.provenance.GetAllocator());
-    for (const auto& annotation : list_in(document, "annotations"))
-        set.annotations.push_back(
-            annotation_of(annotation, mesh, where, "/annotations/" + to_string(set.annotations.size()), set.notes));
+    const std::size_t most_held = 100 * mesh.number_of_faces() + 50'000'000;
+    std::size_t held = 0;
+    for (const auto& annotation : list_in(document, "annotations")) {
+        const std::string at = "/annotations/" + to_string(set.annotations.size());
+        set.annotations.push_back(annotation_of(annotation, mesh, where, at, set.notes));
+        // An outline of three vertices may enclose the whole mesh.
+        held += set.annotations.back().faces.size();
+        if (held > most_held)
+            fail(where, at, "the regions together hold more than " + to_string(most_held) + " faces",
+                 "give fewer at once, or a coarser mesh");
+    }
     places::check_set(set, mesh, where, true);
     return set;
 }

@@ -4,6 +4,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/polyline_distance.h"
 
@@ -79,6 +80,7 @@ public:
         responses_.resize(annotations.size());
         // An outline that would cross itself is left as it was, with all that shares strands with it.
         for (int round = 0; round < 20; ++round) {
+            check_cancelled();
             if (!options_.let_area_change)
                 for (int k = 0; k < 12; ++k)
                     if (!keep_areas(annotations, area)) break;
@@ -283,6 +285,7 @@ private:
         std::vector<Point> best = solved(std::pow(10, low));
         if (!near(best)) return;
         for (int round = 0; round < 12; ++round) {
+            check_cancelled();
             const double middle = (low + high) / 2;
             std::vector<Point> points = solved(std::pow(10, middle));
             if (near(points)) low = middle, best = std::move(points);

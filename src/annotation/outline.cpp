@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,7 @@ Halfedge following(const Mesh& mesh, const std::vector<bool>& selected, Halfedge
 
 template <class Faces>
 std::vector<Outline> outlines_of(const Mesh& mesh, const std::vector<bool>& selected, const Faces& faces) {
+    check_cancelled();
     std::vector<Outline> outlines;
     std::vector<Halfedge> start;
     for (const Face f : faces) {
@@ -85,6 +87,7 @@ std::map<Edge, int> net_edges(const Mesh& mesh, const std::vector<Halfedge>& edg
 }  // namespace
 
 Filling fill_outlines(const Mesh& mesh, const std::vector<Outline>& outlines) {
+    check_cancelled();
     std::vector<Halfedge> edges;
     for (std::size_t o = 0; o < outlines.size(); ++o) {
         const Outline& outline = outlines[o];
@@ -122,7 +125,9 @@ Filling fill_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
         wall[edge] = count != 0;
         if (count != 0) take(mesh.halfedge(edge, count > 0 ? 0 : 1));
     }
+    CancelCheck check;
     while (!stack.empty()) {
+        check();
         const Face f = stack.back();
         stack.pop_back();
         for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(f), mesh))
@@ -184,6 +189,7 @@ std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::ve
 }
 
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<Index>& faces) {
+    check_cancelled();
     RegionMeasures measures;
     measures.area = area_of(mesh, faces);
     for (const Outline& outline : extract_outlines(mesh, faces))

@@ -1,5 +1,6 @@
 #include "ostraka/annotation/smooth_regions.h"
 
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/chains.h"
 
 #include <algorithm>
@@ -47,7 +48,10 @@ public:
             for (const Vertex v : corners(mesh, face)) add_share(shares_[v.idx()], labels[face.idx()], area);
         }
         for (Shares& shares : shares_) normalise(shares);
-        for (int round = 0; round < rounds; ++round) smooth();
+        for (int round = 0; round < rounds; ++round) {
+            check_cancelled();
+            smooth();
+        }
         keep_what_would_vanish();
     }
 

@@ -70,6 +70,7 @@ std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Inde
         try {
             add();
         } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled) throw;
             add_none(name, error.problem());
         }
     };

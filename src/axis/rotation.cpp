@@ -4,6 +4,7 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/line_complex.h"
 #include "ostraka/stats/summary.h"
 
@@ -35,6 +36,7 @@ double score(const std::vector<Sample>& samples, std::size_t step, const Line& a
 /// Iteratively reweighted least squares with Cauchy's weights.
 Line reweighted(const std::vector<Sample>& samples, Line axis, int rounds) {
     for (int round = 0; round < rounds; ++round) {
+        check_cancelled();
         std::vector<double> sines(samples.size());
         for (std::size_t i = 0; i < samples.size(); ++i) sines[i] = std::abs(sine(samples[i], axis));
         const double sigma = std::max(1.4826 * upper_median(sines), 0.01);
@@ -63,7 +65,9 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     };
     for (const auto& d : moments.directions) consider({Vector3d::Zero(), eigen(d)});
     std::mt19937_64 random(options.seed);
+    CancelCheck check;
     for (int trial = 0; trial < options.trials; ++trial) {
+        check();
         LineComplex some;
         for (int k = 0; k < 6; ++k) {
             const Sample& s = samples[random() % samples.size()];
@@ -85,6 +89,7 @@ double off_profile(const std::vector<Sample>& samples, const Profile& profile, d
 
 Line refined(const std::vector<Sample>& samples, Line axis, int rounds) {
     for (int round = 0; round < rounds; ++round) {
+        check_cancelled();
         const Profile profile(samples, axis);
         const Refinement system(samples, axis, profile);
         if (!(system.weight > 0)) break;

@@ -2,6 +2,7 @@
 #include "axis_methods.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/run_apart.h"
 #include "ostraka/geom/submesh.h"
 
 // The library orders the edges of its working mesh by their addresses, so that its allocator decides the result. This one hands
@@ -73,11 +74,11 @@ Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& c
     return part;
 }
 
-/// Eigen's products on one thread while it stands.
+/// Eigen's products on one thread, this one, while it stands.
 class OneThread {
 public:
-    OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
-    ~OneThread() { Eigen::setNbThreads(before_); }
+    OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+    ~OneThread() { omp_set_num_threads(before_); }
     OneThread(const OneThread&) = delete;
     OneThread& operator=(const OneThread&) = delete;
 
@@ -142,21 +143,12 @@ std::vector<std::size_t> main_way(const Graph& graph) {
     }
 }
 
-}  // namespace
-
-Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
-    const AreaMoments moments = part_moments(mesh, faces, options);
-    const std::vector<Index> piece = largest_piece(mesh, faces);
-    if (piece.size() > 200000)
-        fail_input("part", "has " + std::to_string(piece.size()) + " faces, too many for a skeleton", "simplify the mesh first");
-    const Vector3d centre = eigen(moments.centroid);
-    const double scale = part_diagonal(mesh, piece);
-    const Mesh part = capped(mesh, piece, centre, scale);
-
+/// The skeleton of a closed mesh.
+Graph skeleton_of(const Mesh& part) {
     // The same sums in the same order, however many threads there are and whatever ran before.
     const OneThread one_thread;
     CGAL::get_default_random() = CGAL::Random(0);
-    const AscendingMemory memory(piece.size() * 2048 + (std::size_t{1} << 20U));
+    const AscendingMemory memory(part.number_of_faces() * 2048 + (std::size_t{1} << 20U));
     using Skeletonization = CGAL::Mean_curvature_flow_skeletonization<Mesh>;
     static_assert(std::is_same_v<Skeletonization::mTriangleMesh::Allocator, AscendingAllocator<int>>);
     Skeletonization::Skeleton skeleton;
@@ -174,6 +166,22 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         graph.links[b].emplace_back(a, length);
         graph.length += length;
     }
+    return graph;
+}
+
+}  // namespace
+
+Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options) {
+    const AreaMoments moments = part_moments(mesh, faces, options);
+    const std::vector<Index> piece = largest_piece(mesh, faces);
+    if (piece.size() > 200000)
+        fail_input("part", "has " + std::to_string(piece.size()) + " faces, too many for a skeleton", "simplify the mesh first");
+    const Vector3d centre = eigen(moments.centroid);
+    const double scale = part_diagonal(mesh, piece);
+    // The library's flow asks no watch.
+    using Job = std::pair<Mesh, Graph>;
+    const Graph graph =
+        run_apart_on(Job(capped(mesh, piece, centre, scale), {}), [](Job& job) { job.second = skeleton_of(job.first); }).second;
     Axis axis;
     const std::vector<std::size_t> way = graph.points.empty() ? std::vector<std::size_t>() : main_way(graph);
     double length = 0;

@@ -2,6 +2,7 @@
 #include "turned_profile.h"
 
 #include "ostraka/core/dense.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/stats/summary.h"
 
 #include <algorithm>
@@ -30,6 +31,7 @@ std::vector<RoundSample> take_samples(const Mesh& mesh, const std::vector<Index>
         total += n.norm();
     }
     for (int round = 0; round <= rounds; ++round) {
+        check_cancelled();
         for (auto& n : normals)
             if (n.norm() > 0) n.normalize();
         if (round == rounds) break;

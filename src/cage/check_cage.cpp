@@ -4,6 +4,7 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
+#include "ostraka/geom/watched_tree.h"
 #include "ostraka/io/diagnose.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
@@ -81,7 +82,7 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
     using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
     Tree tree(cage.faces().begin(), cage.faces().end(), cage);
-    tree.build();
+    build_watched(tree);
     const CGAL::Side_of_triangle_mesh<Mesh, Kernel> side(tree);
     const SurfaceSearch search(cage);
     const std::size_t count = mesh.number_of_vertices();

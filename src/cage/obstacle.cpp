@@ -1,4 +1,5 @@
 #include "ostraka/core/disjoint_sets.h"
+#include "ostraka/geom/watched_tree.h"
 #include "shrink.h"
 
 #include <CGAL/AABB_traits.h>
@@ -31,7 +32,7 @@ Obstacle::Obstacle(const TriangleSoup& soup) : tree_(new Tree) {
     for (Index v = 0; v < sets.size(); ++v)
         if (used[v] && sets.find(v) == v) pieces_.push_back(at(v));
     tree_->search.insert(tree_->triangles.begin(), tree_->triangles.end());
-    tree_->search.build();
+    build_watched(tree_->search);
 }
 Obstacle::~Obstacle() = default;
 

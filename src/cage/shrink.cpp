@@ -4,6 +4,7 @@
 
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/eigen.h"
 
 #include <CGAL/boost/graph/Euler_operations.h>
@@ -67,12 +68,16 @@ public:
             const Vector3d normal = area / size;
             for (const Vertex v : corners(mesh, f)) quadrics_[v].add_plane(normal, normal.dot(local(at[0])), size / 3);
         }
-        for (const Edge e : mesh.edges()) push(e, 0);
+        for (const Edge e : mesh.edges()) {
+            check_cancelled();
+            push(e, 0);
+        }
     }
 
     std::size_t run(std::size_t wanted) {
         std::size_t count = mirror_ ? whole_size(mesh_) : mesh_.number_of_vertices();
         while (count > wanted && !queue_.empty()) {
+            check_cancelled();
             const Entry entry = queue_.top();
             queue_.pop();
             const Edge e(entry.edge);

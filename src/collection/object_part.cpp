@@ -134,8 +134,8 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
     const bool named = !options_.annotations.empty() || !options_.without.empty();
     try {
         if (!object.annotations.empty()) set = read_annotations(object.annotations, file.mesh);
-    } catch (const Error&) {
-        if (named) throw;
+    } catch (const Error& error) {
+        if (named || error.kind() == ErrorKind::cancelled) throw;
         part.annotations_error = std::current_exception();
     }
     if (set) part.up = set->up;

@@ -2,8 +2,8 @@
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/inside.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
@@ -42,7 +42,8 @@ std::string checksum_of(const CollectionObject& object) {
             const std::string sum = file.empty() ? "-" : sha256_of_file(file);
             hash.update(sum.data(), sum.size());
         }
-    } catch (const Error&) {
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::cancelled) throw;
         return {};
     }
     return hash.hexadecimal();
@@ -106,8 +107,8 @@ Collection from_file(const Path& file) {
         const auto file_of = [&](const char* member) {
             const std::string name = text_in(objects[i], member);
             if (name.empty()) return Path();
-            require_file_name(name, file.string(), at + "/" + member);
-            return folder / name;
+            return file_inside(name, folder, file.string(), at + "/" + member, "the folder of the collection",
+                               "put the objects into the folder of the file that lists them");
         };
         CollectionObject object;
         object.mesh = file_of("mesh");

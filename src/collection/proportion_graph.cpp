@@ -117,7 +117,7 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
         } catch (const Refused& refused) {
             result.notes.push_back("not proposed: " + ratio.row.name + ": " + refused.why);
         } catch (const Error& error) {
-            if (error.kind() == ErrorKind::failure) throw;
+            if (error.kind() == ErrorKind::failure || error.kind() == ErrorKind::cancelled) throw;
             result.notes.push_back("not proposed: " + ratio.row.name + ": " + error.problem());
         }
     }

@@ -5,13 +5,18 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/provenance.h"
+#include "ostraka/core/safe_path.h"
 
 #include <new>
 
 namespace ostraka {
 
 ResultStore::ResultStore(Path folder, const Share& share) : folder_(std::move(folder)), share_(share) {
-    if (!folder_.empty()) remove_stale_temporaries(folder_);
+    if (folder_.empty()) return;
+    std::error_code code;
+    if (std::filesystem::is_symlink(folder_, code))
+        fail_input(folder_.string(), "is a link, and results are kept in a folder of their own", "remove it");
+    remove_stale_temporaries(folder_);
 }
 
 ResultStore ResultStore::part(const std::string& kind) const {
@@ -42,7 +47,8 @@ std::optional<Json> ResultStore::find(const std::string& name, const std::string
         Json copy;
         copy.CopyFrom(*result, copy.GetAllocator());
         return copy;
-    } catch (const Error&) {
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::cancelled) throw;
         return {};
     }
 }
@@ -50,6 +56,7 @@ std::optional<Json> ResultStore::find(const std::string& name, const std::string
 void ResultStore::keep(const std::string& name, const std::string& key, const JsonValue& result) const {
     if (folder_.empty()) return;
     make_folder(folder_);
+    require_writable_inside(folder_ / (name + ".json"), folder_);
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
     add_members(document, allocator, "format", "ostraka-study-result", "version", 1, "key", key, "checksum",
@@ -86,7 +93,7 @@ std::vector<ObjectResult> for_each_object(const Collection& collection, const Re
                     if (!object.checksum.empty()) store.keep(object.name, key, mine.result);
                 }
             } catch (const Error& error) {
-                if (error.kind() == ErrorKind::usage) throw;
+                if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::cancelled) throw;
                 mine.result.SetNull();
                 mine.problem = error.what();
             } catch (const std::bad_alloc&) {

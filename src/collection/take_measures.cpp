@@ -218,7 +218,7 @@ ObjectMeasures take(const Mesh* mesh, const AnnotationSet* set, const LandmarkSe
         } catch (const Missing& missing) {
             why = missing.why;
         } catch (const Error& error) {
-            if (error.kind() == ErrorKind::failure) throw;
+            if (error.kind() == ErrorKind::failure || error.kind() == ErrorKind::cancelled) throw;
             why = error.problem();
         }
         if (!value) result.notes.push_back("no '" + definition.name + "': " + why);

@@ -1,6 +1,7 @@
 #include "ostraka/conformance/kit.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
 #include <pugixml.hpp>
@@ -52,13 +53,64 @@ std::string file_of(const ConformanceCase& one, const std::string& what) {
     return slash == std::string::npos ? output->second : (Path(output->second) / what.substr(slash + 1)).string();
 }
 
+/// A name below a folder that is new, so that it holds no links.
+void require_below(const std::string& name, const std::string& where, const std::string& at) {
+    require_file_name(name, where, at);
+    const Path path(name);
+    if (name.empty() || path.is_absolute() ||
+        std::any_of(path.begin(), path.end(), [](const Path& part) { return part == ".."; }))
+        fail_input(where, "at " + at + ": '" + printable(name, 100) + "' leads out of the folder of the case",
+                   "give a relative name without '..'");
+}
+
+/// What a case names lies in the kit or in the folder of the case, and it sets nothing that is the caller's to set.
+void check_names(const ConformanceKit& kit, const ConformanceCase& one, const Call& call, const std::string& where) {
+    const std::string remedy = "put the file into the kit";
+    const auto require_in_kit = [&](const std::string& name, const std::string& at) {
+        static_cast<void>(file_inside(name, kit.folder, where, at, "the kit", remedy));
+    };
+    for (const auto& member : one.with->GetObject()) {
+        const std::string name = text_of(member.name), at = "/with/" + printable(name, 60);
+        const Slot* slot = call.parameters().slot(name);
+        const Option* option = slot == nullptr ? call.parameters().options.find(name) : nullptr;
+        if (option != nullptr && !option->from_files)
+            fail_input(where, "at " + at + ": only the caller may set it", "leave it out");
+        if (slot == nullptr) continue;
+        if (slot->role == Role::output) fail_input(where, "at " + at + ": is an output", "name it in 'outputs'");
+        const auto check = [&](const JsonValue& value) {
+            if (!value.IsString()) return;
+            std::string file = text_of(value);
+            if (slot->takes_none && file == "none") return;
+            if (const std::size_t equals = slot->is_named ? file.find('=') : std::string::npos; equals != std::string::npos)
+                file = file.substr(equals + 1);
+            require_in_kit(file.empty() ? "." : file, at);
+        };
+        check(member.value);
+        if (member.value.IsArray())
+            for (const auto& value : member.value.GetArray()) check(value);
+    }
+    for (const auto& [output, file] : one.outputs) require_below(file, where, "/outputs/" + printable(output, 60));
+    const Path expected = Path("expected") / one.id;
+    require_in_kit((expected / "report.json").string(), "/id");
+    for (const Comparison& comparison : one.comparisons) {
+        require_below(comparison.what, where, "/compare");
+        if (!comparison.mesh.empty()) require_in_kit(comparison.mesh, "/compare/mesh");
+        if (const std::string file = file_of(one, comparison.what); !file.empty())
+            require_in_kit((expected / file).string(), "/compare");
+    }
+}
+
 void check_case(const ConformanceKit& kit, const ConformanceCase& one, const FindOperation& find) {
     const std::string where = (kit.folder / "conformance.json").string() + ", case '" + one.id + "'";
+    if (one.operation.starts_with("conformance "))
+        fail_input(where, "runs a kit, which a case of a kit may not", "leave the case out");
     try {
         Call call(find(one.operation));
+        check_names(kit, one, call, where);
         const Json settings = settings_of(kit, one, "/nowhere", find);
         if (one.code != 2) call.set(settings);
     } catch (const Error& error) {
+        if (error.where() == where) throw;
         fail_input(where, error.problem(), error.remedy());
     }
     if ((one.code == 0 || one.code == 3) && one.comparisons.empty())

@@ -1,6 +1,7 @@
 #include "cage_interior.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/eigen.h"
 
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
@@ -23,6 +24,24 @@ using Eigen::Vector3d;
 namespace {
 
 using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel, Mesh>;
+
+/// The mesher asks it at every step, and it asks the watch.
+class WatchedDomain : public Domain {
+public:
+    using Domain::Domain;
+    [[nodiscard]] Is_in_domain is_in_domain_object() const {
+        check_();
+        return Domain::is_in_domain_object();
+    }
+    [[nodiscard]] Do_intersect_surface do_intersect_surface_object() const {
+        check_();
+        return Domain::do_intersect_surface_object();
+    }
+
+private:
+    mutable CancelCheck check_;
+};
+
 using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
@@ -59,7 +78,7 @@ bool CageInterior::fill(const Mesh& cage, double size, Mesher& mesher) {
     const Criteria criteria(params::edge_size = size, params::facet_angle = 25, params::facet_size = size,
                             params::facet_distance = 0.1 * size, params::cell_radius_edge_ratio = 2.5, params::cell_size = size);
     CGAL::Random random(1);
-    Domain domain(cage, &random);
+    WatchedDomain domain(cage, &random);
     std::vector<std::vector<Point>> edges;
     for (const Edge e : cage.edges()) edges.push_back({cage.point(cage.vertex(e, 0)), cage.point(cage.vertex(e, 1))});
     domain.add_features(edges.begin(), edges.end());

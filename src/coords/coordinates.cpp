@@ -4,6 +4,7 @@
 
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
 
@@ -72,6 +73,13 @@ Coordinates compute_coordinates(const std::string& name, const Mesh& cage, const
     check_cage(cage);
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i])) fail_input("point " + std::to_string(i), "is not finite", "mend the mesh");
+    // A number for each point and each vertex of the cage, and for each face of it where the kind follows faces.
+    const double columns =
+        static_cast<double>(cage.number_of_vertices()) + (kind.with_normals ? static_cast<double>(cage.number_of_faces()) : 0.0);
+    require_memory(8 * columns * static_cast<double>(points.size()),
+                   name + " coordinates of " + std::to_string(points.size()) + " points in a cage of " +
+                       std::to_string(cage.number_of_vertices()) + " vertices",
+                   "give a coarser cage or mesh");
     Coordinates result = kind.compute(cage, points, options);
     result.kind = name;
     return result;

@@ -44,7 +44,9 @@ std::vector<double> distances_from(const std::vector<std::vector<std::pair<Index
     std::vector<double> distance(edges.size(), std::numeric_limits<double>::infinity());
     std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
     queue.emplace(distance[start] = 0, start);
+    CancelCheck check;
     while (!queue.empty()) {
+        check();
         const auto [at, v] = queue.top();
         queue.pop();
         if (at > distance[v]) continue;

@@ -10,6 +10,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <thread>
 
 extern char** environ;
@@ -59,6 +61,24 @@ struct SpawnSettings {
     }
 };
 
+/// Groups of processes that run.
+struct RunningChildren {
+    std::mutex mutex;
+    std::set<int> groups;
+};
+RunningChildren& running_children() {
+    static RunningChildren children;
+    return children;
+}
+void add_running(int group) {
+    const std::lock_guard lock(running_children().mutex);
+    running_children().groups.insert(group);
+}
+void remove_running(int group) {
+    const std::lock_guard lock(running_children().mutex);
+    running_children().groups.erase(group);
+}
+
 }  // namespace
 
 ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& options) {
@@ -90,7 +110,10 @@ ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& o
     close_if_open(prints[1]);
     to_ = reads[1];
     from_ = prints[0];
-    if (failed == 0) return;
+    if (failed == 0) {
+        add_running(id_);
+        return;
+    }
     close_if_open(to_);
     close_if_open(from_);
     cannot_start(failed);
@@ -100,6 +123,7 @@ ChildProcess::~ChildProcess() {
     if (id_ != 0) {
         signal(SIGKILL);
         ::waitpid(id_, &status_, 0);
+        remove_running(id_);
     }
     close_if_open(to_);
     close_if_open(from_);
@@ -108,6 +132,7 @@ ChildProcess::~ChildProcess() {
 bool ChildProcess::wait(const std::function<bool()>& stop) {
     while (id_ != 0) {
         if (::waitpid(id_, &status_, WNOHANG) == id_) {
+            remove_running(id_);
             id_ = 0;
             break;
         }
@@ -129,6 +154,11 @@ std::string ChildProcess::ending() const {
 }
 
 void ChildProcess::close_input() { close_if_open(to_); }
+
+void kill_children() {
+    const std::lock_guard lock(running_children().mutex);
+    for (const int group : running_children().groups) ::kill(-group, SIGKILL);
+}
 
 Path own_program_folder() {
     std::error_code code;

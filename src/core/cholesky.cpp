@@ -1,6 +1,7 @@
 #include "ostraka/core/cholesky.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/run_apart.h"
 
 #include <dlfcn.h>
 #include <suitesparse/cholmod.h>
@@ -147,27 +148,50 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
 
 }  // namespace
 
+/// Calls work(state, matrix). CHOLMOD cannot be interrupted: where it takes long, it works apart, on a copy of the matrix. What
+/// is cancelled forgets the factor.
+template <class Work>
+void SparseCholesky::work_on(const LowerTriangle& matrix, Work work) {
+    constexpr Eigen::Index many = 20000;
+    if (matrix.rows() < many) return work(*state_, matrix);
+    using Job = std::pair<std::unique_ptr<State>, LowerTriangle>;
+    try {
+        Job job = run_apart_on(Job(std::move(state_), matrix), [work](Job& own) { work(*own.first, own.second); });
+        state_ = std::move(job.first);
+    } catch (...) {
+        state_ = std::make_unique<State>();
+        throw;
+    }
+}
+
 SparseCholesky::SparseCholesky() : state_(std::make_unique<State>()) {}
 SparseCholesky::~SparseCholesky() = default;
 
 void SparseCholesky::analyse(const LowerTriangle& matrix) {
     state_->forget();
     if (matrix.rows() == 0) return;
-    bool done = true;
-    std::vector<int> order = elimination_order(matrix, state_->common, done);
-    state_->check(done, "ordering the unknowns");
-    state_->common.nmethods = 1;
-    state_->common.method[0].ordering = CHOLMOD_GIVEN;
-    cholmod_sparse a = view(matrix);
-    state_->factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &state_->common);
-    state_->check(state_->factor != nullptr, "the symbolic factorisation");
+    work_on(matrix, [](State& state, const LowerTriangle& own) {
+        bool done = true;
+        std::vector<int> order = elimination_order(own, state.common, done);
+        state.check(done, "ordering the unknowns");
+        state.common.nmethods = 1;
+        state.common.method[0].ordering = CHOLMOD_GIVEN;
+        cholmod_sparse a = view(own);
+        state.factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &state.common);
+        state.check(state.factor != nullptr, "the symbolic factorisation");
+    });
 }
 
 bool SparseCholesky::factor(const LowerTriangle& matrix) {
     if (matrix.rows() == 0) return true;
-    cholmod_sparse a = view(matrix);
-    const auto lock = one_at_a_time();
-    const bool done = cholmod_factorize(&a, state_->factor, &state_->common) != 0;
+    if (state_->factor == nullptr) analyse(matrix);
+    const auto is_done = std::make_shared<bool>(false);
+    work_on(matrix, [is_done](State& state, const LowerTriangle& own) {
+        cholmod_sparse a = view(own);
+        const auto lock = one_at_a_time();
+        *is_done = cholmod_factorize(&a, state.factor, &state.common) != 0;
+    });
+    const bool done = *is_done;
     if (state_->common.status == CHOLMOD_NOT_POSDEF || (done && state_->factor->minor < state_->factor->n)) return false;
     state_->check(done, "the factorisation");
     return true;

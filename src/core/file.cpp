@@ -15,10 +15,14 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
+#include <shared_mutex>
+#include <utility>
 
 namespace ostraka {
 
@@ -65,6 +69,57 @@ void add_waiting(std::vector<std::pair<Path, Path>>& waiting, const Path& tempor
 }
 
 thread_local ReadRecord* open_record = nullptr;
+
+/// Held by who renames files to their names, and for good by who abandons all outputs.
+std::shared_mutex naming_mutex;
+
+/// Folders that go where the process ends at once: those that open transactions have made, and scratch folders.
+class PassingFolders {
+public:
+    void add_made(const Path& folder) {
+        change([&] { made_.insert(folder); });
+    }
+    void forget_made(const std::vector<Path>& folders) {
+        change([&] {
+            for (const Path& folder : folders) made_.erase(folder);
+        });
+    }
+    void add_scratch(const Path& folder) {
+        change([&] { scratch_.insert(folder); });
+    }
+    void forget_scratch(const Path& folder) {
+        change([&] { scratch_.erase(folder); });
+    }
+    void remove() {
+        change([&] {
+            std::error_code code;
+            for (const Path& folder : scratch_) std::filesystem::remove_all(folder, code);
+            for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
+        });
+    }
+
+private:
+    template <class Change>
+    void change(const Change& work) {
+        const std::lock_guard lock(mutex_);
+        work();
+    }
+    std::mutex mutex_;
+    std::set<Path> made_, scratch_;  ///< a folder stands before those in it
+};
+PassingFolders& passing_folders() {
+    static PassingFolders folders;
+    return folders;
+}
+
+/// The rights that a new file does not get. Asked of the system: setting the mask to learn it would let another thread's files be
+/// written with the wrong one.
+mode_t creation_mask() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("Umask:")) return static_cast<mode_t>(std::strtoul(line.c_str() + 6, nullptr, 8));
+    return 077;
+}
 
 /// Files in memory by their names without "." and "..".
 class MemoryFiles {
@@ -193,6 +248,7 @@ void make_folder(const Path& folder) {
     if (open_transaction != nullptr) {
         const std::lock_guard lock(waiting_mutex);
         open_transaction->made_.insert(open_transaction->made_.end(), made.rbegin(), made.rend());
+        for (const Path& one : made) passing_folders().add_made(one);
     }
     if (code || !std::filesystem::is_directory(folder, code))
         fail_work(folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""), "name another one");
@@ -256,7 +312,7 @@ std::string read_file(const Path& file) {
 }
 
 // A link keeps pointing where it points: what is replaced is the file behind it.
-AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : behind_links(std::move(file))) {
+AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? std::move(file) : behind_links(std::move(file))) {
     if (is_memory(file_)) return;
     std::error_code code;
     if (std::filesystem::is_directory(file_, code)) fail_work(file_.string(), "is a folder", "name a file to write");
@@ -267,11 +323,9 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
         return;
     }
     if (std::filesystem::is_symlink(file_, code)) fail_work(file_.string(), "is a link that leads to itself", "remove the link");
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    mode_t rights = 0666 & ~mask;
+    mode_t rights = access == FileAccess::owner_only ? 0600 : 0666 & ~creation_mask();
     if (struct stat present{}; ::stat(file_.c_str(), &present) == 0) {
-        rights = present.st_mode & 0777;
+        if (access == FileAccess::usual) rights = present.st_mode & 0777;
         if (::access(file_.c_str(), W_OK) != 0)
             fail_work(file_.string(), "cannot be written: " + reason(), "check its rights, or choose another name");
     }
@@ -285,16 +339,20 @@ AtomicFile::AtomicFile(Path file) : file_(is_memory(file) ? std::move(file) : be
     ::fchmod(descriptor, rights);
     stream_ = ::fdopen(descriptor, "wb");
     if (stream_ == nullptr) {
+        const std::string why = reason();
         ::close(descriptor);
         ::unlink(temporary_.c_str());
-        fail_work(file_.string(), "cannot be written: " + reason());
+        release_temporary(temporary_);
+        fail_work(file_.string(), "cannot be written: " + why);
     }
 }
 
 AtomicFile::~AtomicFile() {
     if (stream_ != nullptr) {
         std::fclose(stream_);
-        if (!temporary_.empty()) ::unlink(temporary_.c_str());
+        if (temporary_.empty()) return;
+        ::unlink(temporary_.c_str());
+        release_temporary(temporary_);
     }
 }
 
@@ -323,9 +381,14 @@ void AtomicFile::commit() {
     stream_ = nullptr;
     if (flushed && closed && !direct && open_transaction != nullptr)
         return add_waiting(open_transaction->waiting_, keep_temporary(temporary_, lock), file_);
-    const bool failed = !flushed || !closed || (!direct && ::rename(temporary_.c_str(), file_.c_str()) != 0);
+    bool failed = !flushed || !closed;
+    if (!failed && !direct) {
+        const std::shared_lock naming(naming_mutex);
+        failed = ::rename(temporary_.c_str(), file_.c_str()) != 0;
+    }
     const std::string cause = flushed ? reason() : why;
     if (failed && !direct) ::unlink(temporary_.c_str());
+    if (!direct) release_temporary(temporary_);
     if (lock >= 0) ::close(lock);
     if (failed)
         fail_work(file_.string(), "cannot be written: " + cause, "free some space; an earlier file of that name is untouched");
@@ -341,6 +404,7 @@ OutputTransaction::~OutputTransaction() {
     }
     std::error_code code;  // of those that are not empty
     for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
+    passing_folders().forget_made(made_);
 }
 
 OutputTransaction* current_transaction() { return open_transaction; }
@@ -384,6 +448,7 @@ void OutputTransaction::commit() {
     // Names in memory last: they can always be taken, so none of them has to come back.
     std::stable_partition(waiting_.begin(), waiting_.end(), [](const auto& names) { return !is_memory(names.second); });
     std::deque<Replaced> replaced;
+    std::shared_lock naming(naming_mutex);
     try {
         for (; !waiting_.empty(); waiting_.erase(waiting_.begin())) {
             const auto& [temporary, file] = waiting_.front();
@@ -397,7 +462,8 @@ void OutputTransaction::commit() {
             if (one->taken) one->restore();
         throw;
     }
-    made_.clear();
+    passing_folders().forget_made(std::exchange(made_, {}));
+    naming.unlock();
     for (OutputSweep& sweep : sweeps) sweep.remove_rest();
 }
 
@@ -406,10 +472,33 @@ void replace_outputs(const Path& folder, const std::string& owner) {
     if (!is_memory(folder)) open_transaction->replaced_.emplace_back(folder, owner);
 }
 
-void write_file(const Path& file, std::string_view bytes) {
-    AtomicFile output(file);
+void write_file(const Path& file, std::string_view bytes, FileAccess access) {
+    AtomicFile output(file, access);
     output.write(bytes);
     output.commit();
+}
+
+void abandon_outputs() {
+    // Never released: whoever is about to give a file its name waits until the process ends.
+    naming_mutex.lock();  // NOLINT(bugprone-*)
+    abandon_temporaries();
+    passing_folders().remove();
+}
+
+ScratchFolder::ScratchFolder(const std::string& purpose) {
+    std::error_code code;
+    const Path system = std::filesystem::temp_directory_path(code);
+    std::string pattern = ((code ? Path("/tmp") : system) / ("ostraka-" + purpose + "-XXXXXX")).string();
+    if (::mkdtemp(pattern.data()) == nullptr)
+        fail_work(pattern, "the folder cannot be made: " + reason(), "check the folder for temporary files (TMPDIR)");
+    path_ = pattern;
+    passing_folders().add_scratch(path_);
+}
+
+ScratchFolder::~ScratchFolder() {
+    std::error_code code;
+    std::filesystem::remove_all(path_, code);
+    passing_folders().forget_scratch(path_);
 }
 
 namespace {

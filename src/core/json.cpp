@@ -24,6 +24,9 @@ const std::map<std::string, std::string_view>& schema_texts();
 
 namespace {
 
+using TextBuffer = rapidjson::GenericStringBuffer<rapidjson::UTF8<>, JsonMemory>;
+using Schema = rapidjson::GenericSchemaDocument<JsonValue, JsonMemory>;
+
 std::string place(std::string_view text, std::size_t offset) {
     std::size_t line = 1, column = 1;
     for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
@@ -141,6 +144,9 @@ private:
 
 Json parse_json(std::string_view text, const std::string& where) {
     if (text.size() >= 3 && text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+    // RapidJSON takes a zero byte for the end of the text.
+    if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
+        fail_input(where + ", " + place(text, zero), "not valid JSON: a zero byte", "mend or regenerate the file");
     if (nested_too_deep(text)) fail_input(where, "the JSON is nested deeper than 200 levels", "flatten it");
     Json document;
     document.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
@@ -162,8 +168,8 @@ std::string to_text(const JsonValue& value) {
 }
 
 std::string to_compact_text(const JsonValue& value) {
-    rapidjson::StringBuffer buffer;
-    rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
+    TextBuffer buffer;
+    rapidjson::Writer<TextBuffer, rapidjson::UTF8<>, rapidjson::UTF8<>, JsonMemory> writer(buffer);
     value.Accept(writer);
     return {buffer.GetString(), buffer.GetSize()};
 }
@@ -172,22 +178,22 @@ void write_json(const Path& file, const JsonValue& value) { write_file(file, to_
 
 void validate(const JsonValue& value, const std::string& schema, const std::string& where) {
     static std::mutex mutex;
-    static std::map<std::string, std::unique_ptr<rapidjson::SchemaDocument>> compiled;
+    static std::map<std::string, std::unique_ptr<Schema>> compiled;
     const std::lock_guard lock(mutex);
     auto& entry = compiled[schema];
     if (!entry) {
         const auto found = schema_texts().find(schema);
         if (found == schema_texts().end()) throw std::logic_error("no schema named " + schema);
-        entry = std::make_unique<rapidjson::SchemaDocument>(parse_json(found->second, schema + ".schema.json"));
+        entry = std::make_unique<Schema>(parse_json(found->second, schema + ".schema.json"));
     }
-    rapidjson::SchemaValidator validator(*entry);
+    rapidjson::GenericSchemaValidator<Schema, rapidjson::BaseReaderHandler<>, JsonMemory> validator(*entry);
     if (value.Accept(validator)) return;
-    const auto text_of = [](const rapidjson::Pointer& pointer) {
-        rapidjson::StringBuffer buffer;
+    const auto text_of = [](const auto& pointer) {
+        TextBuffer buffer;
         pointer.Stringify(buffer);
         return std::string(buffer.GetString(), buffer.GetSize());
     };
-    const rapidjson::Pointer pointer = validator.GetInvalidDocumentPointer();
+    const auto pointer = validator.GetInvalidDocumentPointer();
     const std::string keyword = validator.GetInvalidSchemaKeyword();
     std::string expected = keyword;
     // The rule itself, from the schema's text, says best what was expected.
@@ -300,7 +306,10 @@ JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name) {
     return (value != nullptr && value->IsArray() ? *value : none).GetArray();
 }
 
-std::string text_of(const JsonValue& value) { return {value.GetString(), value.GetStringLength()}; }
+std::string text_of(const JsonValue& value) {
+    if (!value.IsString()) fail_input("the document", "a value is no text", "mend or regenerate the file");
+    return {value.GetString(), value.GetStringLength()};
+}
 
 std::array<double, 3> triple_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
 
@@ -311,5 +320,5 @@ void check_format(const JsonValue& document, const std::string& format, const st
 
 }  // namespace ostraka
 
-template class rapidjson::GenericValue<rapidjson::UTF8<>>;
-template class rapidjson::GenericDocument<rapidjson::UTF8<>>;
+template class rapidjson::GenericValue<rapidjson::UTF8<>, ostraka::JsonAllocator>;
+template class rapidjson::GenericDocument<rapidjson::UTF8<>, ostraka::JsonAllocator, ostraka::JsonMemory>;

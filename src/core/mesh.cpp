@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/file.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <bit>
@@ -103,6 +104,7 @@ void count_fans(const TriangleSoup& soup, Pairing& pairing) {
 
 ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
     mesh.clear();
+    check_cancelled();
     const std::size_t vertex_count = soup.points.size(), face_count = soup.triangles.size();
     if (vertex_count >= no_index / 8 || face_count >= no_index / 8)
         fail_work("mesh", "has more than 536 million vertices or triangles", "split it");
@@ -121,8 +123,10 @@ ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
     pairing.defects.repeated_corners = repeated.repeated_corners;
     if (pairing.defects.example_triangle == no_index) pairing.defects.example_triangle = repeated.example_triangle;
     if (pairing.defects.any()) return pairing.defects;
+    check_cancelled();
     count_fans(soup, pairing);
     if (pairing.defects.any()) return pairing.defects;
+    check_cancelled();
 
     const auto& opposite = pairing.opposite;
     const std::size_t count = 3 * face_count;
@@ -184,6 +188,7 @@ Mesh build_mesh(const TriangleSoup& soup) {
 
 TriangleSoup to_soup(const Mesh& mesh) {
     if (mesh.has_garbage()) throw std::logic_error("to_soup: collect the garbage first");
+    check_cancelled();
     TriangleSoup soup;
     soup.points.reserve(mesh.number_of_vertices());
     soup.triangles.reserve(mesh.number_of_faces());
@@ -208,6 +213,7 @@ Vector area_vector(const Mesh& mesh, Face face) {
 double face_area(const Mesh& mesh, Face face) { return std::sqrt(area_vector(mesh, face).squared_length()); }
 
 double surface_area(const Mesh& mesh) {
+    check_cancelled();
     double sum = 0;
     for (const Face f : mesh.faces()) sum += face_area(mesh, f);
     return sum;
@@ -263,6 +269,7 @@ Halfedge find_halfedge(const Mesh& mesh, Vertex a, Vertex b) {
 }
 
 std::string mesh_checksum(const Mesh& mesh) {
+    check_cancelled();
     Sha256 hash;
     const std::uint64_t counts[2] = {mesh.number_of_vertices(), mesh.number_of_faces()};
     hash.update(counts, sizeof counts);

@@ -1,6 +1,7 @@
 #include "output_sweep.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 
 #include <algorithm>
@@ -75,7 +76,9 @@ std::string OutputSweep::text() const {
 
 void OutputSweep::write_list() const {
     std::error_code code;
-    if (!now_.empty() || fs::exists(list_, code)) write_file(list_, text());
+    if (now_.empty() && !fs::exists(list_, code)) return;
+    require_writable_inside(list_, folder_);
+    write_file(list_, text());
 }
 
 void OutputSweep::remove_rest() {

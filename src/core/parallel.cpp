@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <limits>
 
@@ -24,11 +25,12 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
     block = std::max<std::size_t>(block, 1);
     const auto blocks = static_cast<long long>((count + block - 1) / block);
     std::exception_ptr first;
-    long long first_block = std::numeric_limits<long long>::max();
+    std::atomic<long long> first_block = std::numeric_limits<long long>::max();
     Watch* const watch = current_watch();
     OutputTransaction* const transaction = current_transaction();
 #pragma omp parallel for schedule(dynamic, 1) if (blocks > 1)
     for (long long b = 0; b < blocks; ++b) {
+        if (b > first_block) continue;  // an earlier block has failed: this one is of no use
         const std::size_t begin = static_cast<std::size_t>(b) * block;
         try {
             const WatchScope watched(watch);

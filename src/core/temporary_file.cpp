@@ -30,12 +30,6 @@ bool is_named(const std::string& name, std::string_view beginning) {
     return name.size() == beginning.size() + letters && name.starts_with(beginning);
 }
 
-TemporaryFile make_in(const Path& folder, std::string_view beginning) {
-    std::string pattern = (folder / (std::string(beginning) + std::string(letters, 'X'))).string();
-    const int descriptor = ::mkostemp(pattern.data(), O_CLOEXEC);
-    return {descriptor < 0 ? Path() : Path(pattern), descriptor};
-}
-
 /// The lock is ours and the file still has its name: nobody took it for one of a killed run in between.
 bool is_there(int descriptor) {
     struct stat status {};
@@ -64,10 +58,24 @@ public:
     }
     void release(const Path& name) {
         const std::lock_guard lock(mutex_);
+        names_.erase(name.native());
         const auto found = descriptors_.find(name.native());
         if (found == descriptors_.end()) return;
         ::close(found->second);
         descriptors_.erase(found);
+    }
+    /// A file of this name was made. False where none may be made any more: it is removed.
+    bool made(const Path& name) {
+        const std::lock_guard lock(mutex_);
+        if (abandoned_) ::unlink(name.c_str());
+        else names_.insert(name.native());
+        return !abandoned_;
+    }
+    void abandon() {
+        const std::lock_guard lock(mutex_);
+        abandoned_ = true;
+        for (const std::string& name : names_) ::unlink(name.c_str());
+        names_.clear();
     }
     /// True once for each folder.
     bool first(const Path& folder) {
@@ -79,11 +87,22 @@ public:
 private:
     std::mutex mutex_;
     std::map<std::string, int> descriptors_;
-    std::set<std::string> folders_;
+    std::set<std::string> folders_, names_;
+    bool abandoned_ = false;
 };
 Kept& kept() {
     static Kept all;
     return all;
+}
+
+TemporaryFile make_in(const Path& folder, std::string_view beginning) {
+    std::string pattern = (folder / (std::string(beginning) + std::string(letters, 'X'))).string();
+    const int descriptor = ::mkostemp(pattern.data(), O_CLOEXEC);
+    if (descriptor < 0) return {{}, descriptor};
+    if (kept().made(pattern)) return {pattern, descriptor};
+    ::close(descriptor);
+    errno = ECANCELED;
+    return {{}, -1};
 }
 
 }  // namespace
@@ -97,6 +116,7 @@ TemporaryFile open_temporary(const Path& folder) {
         if (locked && is_there(made.descriptor)) return made;
         const bool knows_none = !locked && errno != EWOULDBLOCK;
         ::unlink(made.name.c_str());
+        kept().release(made.name);
         ::close(made.descriptor);
         if (knows_none) break;
     }
@@ -109,14 +129,21 @@ Path keep_temporary(const Path& name, int descriptor) {
     if (is_named(name.filename().string(), locked_beginning))
         if (const TemporaryFile other = make_in(name.parent_path(), free_beginning); other.descriptor >= 0) {
             ::close(other.descriptor);
-            if (::rename(name.c_str(), other.name.c_str()) == 0) free = other.name;
-            else ::unlink(other.name.c_str());
+            if (::rename(name.c_str(), other.name.c_str()) == 0) {
+                free = other.name;
+                kept().release(name);
+            } else {
+                ::unlink(other.name.c_str());
+                kept().release(other.name);
+            }
         }
     if (descriptor >= 0) ::close(descriptor);
     return free;
 }
 
 void release_temporary(const Path& name) { kept().release(name); }
+
+void abandon_temporaries() { kept().abandon(); }
 
 std::size_t remove_stale_temporaries(const Path& folder) {
     using namespace std::chrono_literals;

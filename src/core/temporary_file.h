@@ -19,6 +19,10 @@ TemporaryFile open_temporary(const Path& folder);
 /// For a file that waits to be renamed: keeps it locked by this descriptor, which now belongs to it, until release_temporary.
 /// Returns its name from now on: another one where no more descriptors can be kept, which says that it is not locked.
 Path keep_temporary(const Path& name, int descriptor);
+/// The file has another name now, or is gone.
 void release_temporary(const Path& name);
+
+/// Removes all that are open or kept; from here on none can be made.
+void abandon_temporaries();
 
 }  // namespace ostraka

@@ -3,6 +3,7 @@
 #include "ostraka/core/angles.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/fields/statistics.h"
 #include "ostraka/geom/neighbourhood.h"
 
@@ -133,6 +134,7 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
                 result.gaussian[i] = shares.gaussian[i] / shares.area[i];
                 return;
             }
+            check_cancelled();  // a ball may be large
             const double squared_radius = radius * radius;
             Vector h(0, 0, 0), a(0, 0, 0);
             double gaussian = 0, area = 0;

@@ -3,6 +3,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/neighbourhood.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/summary.h"
@@ -47,6 +48,7 @@ std::vector<Vector> smooth_normals(const Mesh& mesh, double radius) {
     parallel_for(
         result.size(),
         [&](std::size_t f) {
+            check_cancelled();  // a ball may be large
             this_threads_neighbourhood().walk(
                 mesh, centroids, Face(static_cast<Index>(f)), radius,
                 [&](Face face, double squared) { result[f] += (1 - squared / (radius * radius)) * own[face]; });

@@ -2,6 +2,7 @@
 #include "ostraka/fracture/facet_graph.h"
 
 #include "ostraka/core/disjoint_sets.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,9 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
     for (std::size_t a = 0; a < n; ++a)
         for (const auto& [b, boundary] : around[a])
             if (a < b) offer(a, b, boundary);
+    CancelCheck check;
     while (!queue.empty()) {
+        check();
         const Pair pair = queue.top();
         queue.pop();
         if (changes[pair.a] != pair.when_a || changes[pair.b] != pair.when_b || sets.find(pair.a) != pair.a ||

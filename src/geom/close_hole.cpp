@@ -1,8 +1,21 @@
 #include "ostraka/geom/submesh.h"
 
+#include "ostraka/core/progress.h"
+
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 
 namespace ostraka {
+
+namespace {
+
+/// Asks the watch at every step of the library.
+struct WatchedFilling : CGAL::Polygon_mesh_processing::Hole_filling::Default_visitor {
+    void quadratic_step() { check(); }
+    void cubic_step() { check(); }
+    CancelCheck check;
+};
+
+}  // namespace
 
 std::vector<Halfedge> holes_of(const Mesh& mesh) {
     std::vector<Halfedge> holes;
@@ -17,7 +30,9 @@ std::vector<Halfedge> holes_of(const Mesh& mesh) {
 
 std::size_t close_hole(Mesh& mesh, Halfedge border) {
     std::vector<Face> patch;
-    CGAL::Polygon_mesh_processing::triangulate_hole(mesh, border, std::back_inserter(patch));
+    WatchedFilling watched;
+    CGAL::Polygon_mesh_processing::triangulate_hole(mesh, border, std::back_inserter(patch),
+                                                    CGAL::parameters::visitor(std::ref(watched)));
     return patch.size();
 }
 

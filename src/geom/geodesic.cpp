@@ -1,10 +1,10 @@
 #include "ostraka/geom/geodesic.h"
 
+#include "exact_search.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/shortest_path.h"
 #include "surface_patch.h"
-
-#include <CGAL/Surface_mesh_shortest_path.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace ostraka {
 
 namespace {
 
-using PathTraits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
-using ExactSearch = CGAL::Surface_mesh_shortest_path<PathTraits>;
+using detail::ExactSearch;
+using PathTraits = detail::WatchedTraits;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
@@ -75,7 +75,9 @@ std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair
         front.emplace(length, v);
     };
     for (const auto& [v, length] : start) meet(v, length);
+    CancelCheck check;
     while (!front.empty()) {
+        check();
         const auto [length, index] = front.top();
         front.pop();
         if (length > lengths[index] || mesh.is_isolated(Vertex(index))) continue;
@@ -117,7 +119,9 @@ std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index
     search.build_sequence_tree();
     const std::vector<double> along_edges = edge_distances(mesh, gates, limit);
     for (std::size_t v = 0; v < result.size(); ++v) result[v] = std::min(result[v], along_edges[v]);
+    CancelCheck check;
     for (const Vertex v : patch.mesh.vertices()) {
+        check();
         const double exact = patch.scale * search.shortest_distance_to_source_points(v).first;
         if (exact >= 0 && exact <= limit) result[patch.vertices[v]] = std::min(result[patch.vertices[v]], exact);
     }

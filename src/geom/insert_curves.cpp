@@ -2,6 +2,7 @@
 
 #include "face_cutter.h"
 #include "ostraka/geom/shortest_path.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +81,9 @@ double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 
         stack.push_back(t);
     }
     if (stack.empty()) return -1;
+    CancelCheck check;
     while (!stack.empty()) {
+        check();
         const std::size_t t = stack.back();
         stack.pop_back();
         for (int k = 0; k < 3; ++k) {

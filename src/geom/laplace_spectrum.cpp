@@ -4,6 +4,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/sparse.h"
 
 #include <cmath>
@@ -92,6 +93,7 @@ std::vector<double> laplace_spectrum(const Mesh& mesh, int count) {
         for (Eigen::Index i = 0; i < n; ++i) x(i, j) = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
     Eigen::VectorXd values;
     for (int round = 0; round < rounds; ++round) {
+        check_cancelled();
         x = solver.solve(system.mass.asDiagonal() * x);
         const Eigen::MatrixXd inner = x.transpose() * (system.mass.asDiagonal() * x), outer = x.transpose() * (shifted * x);
         const SymmetricEigenX ritz = generalised_eigen(outer, inner);

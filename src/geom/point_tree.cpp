@@ -1,5 +1,7 @@
 #include "ostraka/geom/point_tree.h"
 
+#include "ostraka/core/progress.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -26,7 +28,16 @@ struct PointTree::Tree {
     };
     std::vector<Place> places;  ///< in the order of the tree
     std::vector<Index> order;
-    std::vector<Box> boxes;  ///< of the ranges, from 1
+    std::vector<Box> boxes;     ///< of the ranges, from 1
+    std::vector<Index> lowest;  ///< index in each range
+
+    /// What still counts: points nearer than this, and those as near of a lower index. So heaps of points at one place are not
+    /// looked through for each of them.
+    struct Limit {
+        double squared = std::numeric_limits<double>::infinity();
+        Index index = no_index;
+        [[nodiscard]] bool allows(double other, Index i) const { return other < squared || (other == squared && i < index); }
+    };
 
     static Place place_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
     static double squared_length(const Place& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
@@ -35,10 +46,12 @@ struct PointTree::Tree {
     }
 
     void build(const std::vector<Place>& given, std::size_t range, std::size_t begin, std::size_t end) {
-        if (boxes.size() <= range) boxes.resize(2 * range);
+        if (end - begin > 4096) check_cancelled();
+        if (boxes.size() <= range) boxes.resize(2 * range), lowest.resize(2 * range, no_index);
         Box& box = boxes[range];
         box.low.fill(std::numeric_limits<double>::infinity());
         box.high.fill(-std::numeric_limits<double>::infinity());
+        if (begin < end) lowest[range] = *std::min_element(order.data() + begin, order.data() + end);
         for (std::size_t i = begin; i < end; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 box.low[k] = std::min(box.low[k], given[order[i]][k]);
@@ -57,20 +70,21 @@ struct PointTree::Tree {
 
     /// Calls visit(index, squared distance, limit) for points within the limit, which visit may lower.
     template <class Visit>
-    void walk(const Point& from, double limit, Visit&& visit) const {
+    void walk(const Point& from, Limit limit, Visit&& visit) const {
         const Place place = place_of(from);
         const auto into = [&](const auto& self, std::size_t range, std::size_t begin, std::size_t end) -> void {
             if (end - begin <= leaf) {
                 for (std::size_t i = begin; i < end; ++i)
-                    if (const double squared = squared_distance(i, place); squared <= limit) visit(order[i], squared, limit);
+                    if (const double squared = squared_distance(i, place); limit.allows(squared, order[i]))
+                        visit(order[i], squared, limit);
                 return;
             }
             const std::size_t middle = begin + (end - begin) / 2, lower = 2 * range, upper = lower + 1;
             const double below = boxes[lower].nearest(place), above = boxes[upper].nearest(place);
             const bool first = below <= above;
-            if (first && below <= limit) self(self, lower, begin, middle);
-            if (above <= limit) self(self, upper, middle, end);
-            if (!first && below <= limit) self(self, lower, begin, middle);
+            if (first && limit.allows(below, lowest[lower])) self(self, lower, begin, middle);
+            if (limit.allows(above, lowest[upper])) self(self, upper, middle, end);
+            if (!first && limit.allows(below, lowest[lower])) self(self, lower, begin, middle);
         };
         into(into, 1, 0, order.size());
     }
@@ -109,10 +123,9 @@ std::size_t PointTree::size() const { return tree_->order.size(); }
 
 PointTree::Near PointTree::nearest(const Point& place, double search_radius) const {
     Near near;
-    tree_->walk(place, search_radius * search_radius, [&](Index i, double squared, double& limit) {
-        if (squared == near.squared && i > near.index) return;
+    tree_->walk(place, {search_radius * search_radius}, [&](Index i, double squared, Tree::Limit& limit) {
         near = {i, squared};
-        limit = squared;
+        limit = {squared, i};
     });
     return near;
 }
@@ -123,14 +136,14 @@ std::vector<PointTree::Near> PointTree::neighbours(const Point& place, std::size
     };
     std::vector<Near> nearest;  // a heap, the farthest in front
     if (count == 0) return nearest;
-    tree_->walk(place, std::numeric_limits<double>::infinity(), [&](Index i, double squared, double& limit) {
+    tree_->walk(place, {}, [&](Index i, double squared, Tree::Limit& limit) {
         nearest.push_back({i, squared});
         std::push_heap(nearest.begin(), nearest.end(), before);
         if (nearest.size() > count) {
             std::pop_heap(nearest.begin(), nearest.end(), before);
             nearest.pop_back();
         }
-        if (nearest.size() == count) limit = nearest.front().squared;
+        if (nearest.size() == count) limit = {nearest.front().squared, nearest.front().index};
     });
     std::sort_heap(nearest.begin(), nearest.end(), before);
     return nearest;
@@ -138,7 +151,7 @@ std::vector<PointTree::Near> PointTree::neighbours(const Point& place, std::size
 
 void PointTree::within(const Point& place, double search_radius, std::vector<Index>& found) const {
     found.clear();
-    tree_->walk(place, search_radius * search_radius, [&](Index i, double, double&) { found.push_back(i); });
+    tree_->walk(place, {search_radius * search_radius}, [&](Index i, double, Tree::Limit&) { found.push_back(i); });
     std::sort(found.begin(), found.end());
 }
 

@@ -1,5 +1,7 @@
 #include "ostraka/geom/polyline_distance.h"
 
+#include "ostraka/geom/watched_tree.h"
+
 #include <CGAL/AABB_segment_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -20,7 +22,7 @@ double one_sided(const Segments& from, const Segments& to) {
     segments.reserve(to.size());
     for (const auto& [p, q] : to) segments.emplace_back(p, q);
     SegmentTree tree(segments.begin(), segments.end());
-    tree.build();
+    build_watched(tree);
     double worst = 0;
     const Point* last = nullptr;
     for (const auto& [p, q] : from) {

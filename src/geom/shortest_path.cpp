@@ -1,6 +1,7 @@
 #include "ostraka/geom/shortest_path.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +88,9 @@ std::vector<Index> PathSearch::search(Vertex from, const std::function<bool(Vert
     record(from).cost = 0;
     queue.emplace(bound(from), from);
     Vertex reached = Mesh::null_vertex();
+    CancelCheck check;
     while (!queue.empty()) {
+        check();
         const Vertex v(std::get<1>(queue.top()));
         queue.pop();
         Record& current = record(v);

@@ -1,5 +1,7 @@
 #include "surface_patch.h"
 
+#include "ostraka/core/progress.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,10 +16,13 @@ std::vector<Index> grow_faces(const Mesh& mesh, const std::vector<Face>& start, 
         if (inside(face)) faces.push_back(face);
     };
     for (const Face face : start) meet(face);
+    CancelCheck check;
     std::size_t next = 0;  // the list grows while it is worked off
-    while (next < faces.size())
+    while (next < faces.size()) {
+        check();
         for (const Vertex v : corners(mesh, Face(faces[next++])))
             for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) meet(face);
+    }
     std::sort(faces.begin(), faces.end());
     return faces;
 }
@@ -30,6 +35,7 @@ bool may_hold_near(const Mesh& mesh, Face face, const PointTree& points, double 
 }
 
 SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& origin) {
+    check_cancelled();
     SurfacePatch patch;
     patch.faces = std::move(faces);
     std::vector<bool> selected(mesh.number_of_faces(), false);

@@ -9,6 +9,13 @@
 
 namespace ostraka::interchange {
 
+namespace {
+/// What the features of a corner come to, and what it costs to look at it once more.
+constexpr double bytes_of_corner = 4;
+/// A text without letters, in a list.
+constexpr double bytes_of_text = sizeof(std::string);
+}  // namespace
+
 FeatureFile::FeatureFile(const std::string& bytes, const std::string& where) : file(bytes, where) {
     refuse_what_is_not_read();
     read_primitives();
@@ -39,7 +46,7 @@ const JsonValue* FeatureFile::extras() const {
 std::size_t FeatureFile::triangles() const {
     std::size_t count = 0;
     for (const Primitive& p : primitives)
-        if (p.mode == glb::triangles_mode) count += p.corners.size() / 3;
+        if (p.mode == glb::triangles_mode) count += p.corners() / 3;
     return count;
 }
 
@@ -67,23 +74,22 @@ void FeatureFile::read_primitive(const JsonValue& object, const std::string& at)
     const std::size_t position = accessors == nullptr ? absent : file.number(*accessors, "POSITION", at + "/attributes", absent);
     if (position == absent) file.fail(at, "has no positions");
     primitive.positions = file.accessor(position, 3, at + "/attributes/POSITION");
-    const std::size_t count = primitive.positions.size() / 3;
-    for (const double x : primitive.positions)
+    const std::size_t count = primitive.vertices();
+    for (const double x : *primitive.positions)
         if (!std::isfinite(x)) file.fail(at + "/attributes/POSITION", "a coordinate is not finite");
     if (const std::size_t origin = file.number(*accessors, "_VERTEX", at, absent); origin != absent) {
         primitive.origins = file.accessor(origin, 1, at + "/attributes/_VERTEX");
-        if (primitive.origins.size() != count) file.fail(at + "/attributes/_VERTEX", "has another count than the positions");
+        if (primitive.origins->size() != count) file.fail(at + "/attributes/_VERTEX", "has another count than the positions");
     }
     if (const std::size_t indices = file.number(object, "indices", at, absent); indices != absent) {
-        for (const double value : file.accessor(indices, 1, at + "/indices")) {
-            if (!(value >= 0 && value < static_cast<double>(count))) file.fail(at + "/indices", "an index is out of range");
-            primitive.corners.push_back(static_cast<std::size_t>(value));
-        }
-    } else {
-        for (std::size_t i = 0; i < count; ++i) primitive.corners.push_back(i);
+        primitive.indices = file.accessor(indices, 1, at + "/indices");
+        for (const double value : *primitive.indices)
+            if (!(value >= 0 && value < static_cast<double>(count)) || value != std::floor(value))
+                file.fail(at + "/indices", "an index is out of range");
     }
-    if (primitive.corners.size() % (mode == glb::triangles_mode ? 3 : mode == glb::lines_mode ? 2 : 1) != 0)
+    if (primitive.corners() % (mode == glb::triangles_mode ? 3 : mode == glb::lines_mode ? 2 : 1) != 0)
         file.fail(at + "/indices", "do not come out even");
+    file.charge(bytes_of_corner * static_cast<double>(primitive.corners()), at);
     const JsonValue* extensions = find_member(object, "extensions");
     const JsonValue* extension = extensions == nullptr ? nullptr : find_member(*extensions, "EXT_mesh_features");
     if (extension != nullptr) {
@@ -103,9 +109,10 @@ void FeatureFile::read_ids(const JsonValue& set, const JsonValue& accessors, Pri
     const std::string name = "_FEATURE_ID_" + std::to_string(number);
     const std::size_t accessor = file.number(accessors, name.c_str(), at, absent);
     if (accessor == absent) file.fail(at, "names the attribute " + name + ", which the primitive does not have");
-    std::vector<double> values = file.accessor(accessor, 1, at);
-    if (values.size() != primitive.positions.size() / 3) file.fail(at, "has another count than the positions");
-    for (const double id : values)
+    glb::Reader::Values values = file.accessor(accessor, 1, at);
+    file.charge(bytes_of_corner * static_cast<double>(primitive.corners()), at);
+    if (values->size() != primitive.vertices()) file.fail(at, "has another count than the positions");
+    for (const double id : *values)
         if (!(id >= 0 && id < 4294967296.0) || id != static_cast<double>(static_cast<std::uint32_t>(id)))
             file.fail(at, "a feature id is not a whole number from 0");
     primitive.features.push_back(std::move(values));
@@ -151,6 +158,7 @@ std::vector<int> FeatureFile::numbers(const JsonValue& properties, const char* n
     if (property == nullptr) file.fail(here, "the property is missing");
     const std::string_view bytes = file.view(file.number(*property, "values", here, absent), here);
     if (bytes.size() < rows * width * sizeof(T)) file.fail(here, "has fewer values than the table has rows");
+    file.charge(static_cast<double>(rows * width * sizeof(int)), here);
     std::vector<int> values;
     for (std::size_t i = 0; i < rows * width; ++i) {
         T value;
@@ -176,6 +184,7 @@ std::vector<std::string> FeatureFile::texts(const JsonValue& properties, const c
             value |= static_cast<std::uint64_t>(static_cast<unsigned char>(offsets[i * width + k])) << (8 * k);
         return value;
     };
+    file.charge(bytes_of_text * static_cast<double>(rows) + static_cast<double>(bytes.size()), here);
     for (std::size_t i = 0; i < rows; ++i) {
         const std::uint64_t begin = offset(i), end = offset(i + 1);
         if (begin > end || end > bytes.size()) file.fail(here + "/stringOffsets", "point beyond the texts");
@@ -189,13 +198,13 @@ void FeatureFile::collect(const Primitive& primitive, std::size_t number) {
     for (std::size_t s = 0; s < primitive.features.size(); ++s) {
         const auto& set = primitive.features[s];
         const auto of = [&](std::size_t corner) -> std::size_t {
-            const auto id = static_cast<std::size_t>(set[primitive.corners[corner]]);
+            const auto id = static_cast<std::size_t>((*set)[primitive.corner(corner)]);
             if (id == primitive.nulls[s]) return absent;
             if (table_ != absent && id >= rows) file.fail("/extensions/EXT_structural_metadata", "has no row for a feature id");
             return id;
         };
         if (primitive.mode == glb::triangles_mode) {
-            for (std::size_t t = 0; 3 * t < primitive.corners.size(); ++t) {
+            for (std::size_t t = 0; 3 * t < primitive.corners(); ++t) {
                 const std::size_t x = of(3 * t), y = of(3 * t + 1), z = of(3 * t + 2), id = y == z ? y : x;
                 if (id == absent) continue;
                 auto& faces = features[id].faces;
@@ -203,8 +212,8 @@ void FeatureFile::collect(const Primitive& primitive, std::size_t number) {
                 faces->push_back(static_cast<std::uint32_t>(t + offset_));
             }
         } else if (primitive.mode == glb::lines_mode) {
-            for (std::size_t c = 0; c + 1 < primitive.corners.size(); c += 2) {
-                const std::size_t id = of(c), from = primitive.corners[c], to = primitive.corners[c + 1];
+            for (std::size_t c = 0; c + 1 < primitive.corners(); c += 2) {
+                const std::size_t id = of(c), from = primitive.corner(c), to = primitive.corner(c + 1);
                 if (id == absent) continue;
                 Feature& feature = features[id];
                 feature.line_primitive = number;
@@ -212,15 +221,15 @@ void FeatureFile::collect(const Primitive& primitive, std::size_t number) {
                 feature.polylines.back().push_back(to);
             }
         } else {
-            for (std::size_t c = 0; c < primitive.corners.size(); ++c) {
+            for (std::size_t c = 0; c < primitive.corners(); ++c) {
                 const std::size_t id = of(c);
                 if (id == absent) continue;
                 features[id].point_primitive = number;
-                features[id].points.push_back(primitive.corners[c]);
+                features[id].points.push_back(primitive.corner(c));
             }
         }
     }
-    if (primitive.mode == glb::triangles_mode) offset_ += primitive.corners.size() / 3;
+    if (primitive.mode == glb::triangles_mode) offset_ += primitive.corners() / 3;
 }
 
 }  // namespace ostraka::interchange

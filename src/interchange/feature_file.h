@@ -19,16 +19,20 @@ struct Feature {
     std::size_t line_primitive = absent, point_primitive = absent;
 };
 
+/// Primitives that name the same accessors share what those hold.
 struct Primitive {
-    std::vector<double> positions;     ///< three a vertex
-    std::vector<double> origins;       ///< _VERTEX, or empty
-    std::vector<std::size_t> corners;  ///< indices, or 0, 1, 2 ...
-    std::vector<std::vector<double>> features;
+    glb::Reader::Values positions;              ///< three a vertex
+    glb::Reader::Values origins;                ///< _VERTEX, or none
+    glb::Reader::Values indices;                ///< or none: 0, 1, 2 ...
+    std::vector<glb::Reader::Values> features;  ///< by vertex
     std::vector<std::size_t> nulls;
     int mode = glb::triangles_mode;
 
+    [[nodiscard]] std::size_t vertices() const { return positions->size() / 3; }
+    [[nodiscard]] std::size_t corners() const { return indices ? indices->size() : vertices(); }
+    [[nodiscard]] std::size_t corner(std::size_t c) const { return indices ? static_cast<std::size_t>((*indices)[c]) : c; }
     [[nodiscard]] std::array<double, 3> position(std::size_t vertex) const {
-        return {positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]};
+        return {(*positions)[3 * vertex], (*positions)[3 * vertex + 1], (*positions)[3 * vertex + 2]};
     }
 };
 

@@ -10,12 +10,15 @@
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
+#include <span>
 
 namespace ostraka {
 
@@ -55,12 +58,14 @@ private:
     /// The file's triangle nearest to each face's centroid; no_index where it is too far.
     const std::vector<Index>& nearest_triangles() {
         if (!nearest_.empty()) return nearest_;
+        require_memory(600.0 * static_cast<double>(file_.triangles()),
+                       "to search the file's " + counted(file_.triangles(), "triangle"), "give a coarser one");
         TriangleSoup soup;  // each triangle by itself, as split vertices need not make a manifold
         for (const Primitive& primitive : file_.primitives) {
             if (primitive.mode != glb::triangles_mode) continue;
-            for (std::size_t c = 0; c < primitive.corners.size(); c += 3) {
+            for (std::size_t c = 0; c < primitive.corners(); c += 3) {
                 const auto first = static_cast<Index>(soup.points.size());
-                for (std::size_t k = 0; k < 3; ++k) soup.points.push_back(primitive.position(primitive.corners[c + k]));
+                for (std::size_t k = 0; k < 3; ++k) soup.points.push_back(primitive.position(primitive.corner(c + k)));
                 soup.triangles.push_back({first, first + 1, first + 2});
             }
         }
@@ -84,11 +89,27 @@ private:
         return nearest_;
     }
 
+    /// Faces of the mesh to which this triangle of the file is the nearest.
+    std::span<const Index> faces_at(std::size_t triangle) {
+        if (faces_begin_.empty()) {
+            const std::vector<Index>& nearest = nearest_triangles();
+            faces_begin_.assign(file_.triangles() + 1, 0);
+            for (const Index t : nearest)
+                if (t != no_index) ++faces_begin_[t + 1];
+            std::partial_sum(faces_begin_.begin(), faces_begin_.end(), faces_begin_.begin());
+            faces_.resize(faces_begin_.back());
+            std::vector<Index> next = faces_begin_;
+            for (Index f = 0; f < nearest.size(); ++f)
+                if (nearest[f] != no_index) faces_[next[nearest[f]]++] = f;
+        }
+        return std::span(faces_).subspan(faces_begin_[triangle], faces_begin_[triangle + 1] - faces_begin_[triangle]);
+    }
+
     /// The vertex of the mesh for a vertex of a primitive; no_index if it is too far and such are left out.
     Index vertex_of(const Primitive& primitive, std::size_t vertex, PlacedAnnotation& placement) {
         ++placement.points;
-        if (same_mesh_ && !primitive.origins.empty()) {
-            const double origin = primitive.origins[vertex];
+        if (same_mesh_ && primitive.origins) {
+            const double origin = (*primitive.origins)[vertex];
             if (!(origin >= 0 && origin < static_cast<double>(mesh_.number_of_vertices())))
                 file_.file.fail("/meshes/0/primitives", "a value of _VERTEX is no vertex of the mesh");
             return static_cast<Index>(origin);
@@ -153,11 +174,12 @@ private:
                 std::sort(faces.begin(), faces.end());
                 faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
             } else {
-                const std::vector<Index>& nearest = nearest_triangles();
-                std::vector<bool> mine(file_.triangles(), false);
-                for (const Index t : *feature.faces) mine[t] = true;
-                for (std::size_t f = 0; f < nearest.size(); ++f)
-                    if (nearest[f] != no_index && mine[nearest[f]]) faces.push_back(static_cast<Index>(f));
+                for (const std::uint32_t t : *feature.faces) {
+                    const auto range = faces_at(t);
+                    faces.insert(faces.end(), range.begin(), range.end());
+                }
+                std::sort(faces.begin(), faces.end());
+                faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
                 placement.to_surface = to_surface_;
             }
             if (faces.empty()) return false;
@@ -223,10 +245,10 @@ private:
     const std::map<Index, Point>& positions() {
         if (positions_.empty())
             for (const Primitive& primitive : file_.primitives)
-                for (std::size_t i = 0; i < primitive.origins.size(); ++i) {
+                for (std::size_t i = 0; primitive.origins && i < primitive.origins->size(); ++i) {
                     const auto p = primitive.position(i);
-                    if (primitive.origins[i] >= 0 && primitive.origins[i] < 16777217.0)
-                        positions_.try_emplace(static_cast<Index>(primitive.origins[i]), p[0], p[1], p[2]);
+                    if (const double origin = (*primitive.origins)[i]; origin >= 0 && origin < 16777217.0)
+                        positions_.try_emplace(static_cast<Index>(origin), p[0], p[1], p[2]);
                 }
         return positions_;
     }
@@ -239,6 +261,7 @@ private:
     bool same_mesh_ = false;
     std::vector<std::string> notes_;
     std::vector<Index> nearest_;
+    std::vector<Index> faces_begin_, faces_;  ///< faces of the mesh in the order of their nearest triangles
     double to_surface_ = 0;
     std::map<Index, Point> positions_;
     std::set<int> used_;

@@ -1,5 +1,6 @@
 #include "ostraka/io/diagnose.h"
 
+#include "ostraka/core/progress.h"
 #include "repair_steps.h"
 #include "soup_edges.h"
 #include "soup_geometry.h"
@@ -146,6 +147,7 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
         at_fan.emplace_back(border[i].second_fan, i);
     }
     std::sort(at_fan.begin(), at_fan.end());
+    std::vector<Index> walked(at_fan.size() + 1, 0);  // by the first entry of a fan
     struct Step {
         Index vertex;
         BorderLoop leaving;  ///< the edge taken from here
@@ -180,12 +182,13 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
                 on_walk[at] = 1;
             }
             edge = no_index;
-            for (auto i = std::lower_bound(at_fan.begin(), at_fan.end(), std::pair<Index, Index>{fan, 0});
-                 i != at_fan.end() && i->first == fan; ++i)
-                if (!border[i->second].used) {
-                    edge = i->second;
-                    break;
-                }
+            // What was used once stays so: each list is walked once, however many edges meet at a fan.
+            const auto list = std::lower_bound(at_fan.begin(), at_fan.end(), std::pair<Index, Index>{fan, 0});
+            auto& passed = walked[static_cast<std::size_t>(list - at_fan.begin())];
+            auto i = list + passed;
+            while (i != at_fan.end() && i->first == fan && border[i->second].used) ++i;
+            passed = static_cast<Index>(i - list);
+            if (i != at_fan.end() && i->first == fan) edge = i->second;
             if (edge == no_index) break;
             const bool forward = border[edge].first_fan == fan;
             fan = forward ? border[edge].second_fan : border[edge].first_fan;
@@ -312,6 +315,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
     MeshDiagnosis diagnosis;
     auto started = std::chrono::steady_clock::now();
     const auto lap = [&](const char* part) {
+        check_cancelled();
         const auto now = std::chrono::steady_clock::now();
         diagnosis.seconds.emplace_back(part, std::chrono::duration<double>(now - started).count());
         started = now;

@@ -141,7 +141,8 @@ std::string Builder::head(const std::string& where, const std::string& remedy) {
     return file;
 }
 
-Reader::Reader(const std::string& bytes, const std::string& where) : where_(where) {
+Reader::Reader(const std::string& bytes, const std::string& where)
+    : where_(where), allowed_(6.0 * static_cast<double>(bytes.size()) + 128e6) {
     const std::string_view all(bytes);
     const auto damaged = [&](const std::string& what) { fail_input(where_, what, "give a binary glTF 2.0 file (.glb)"); };
     if (all.size() < 20 || value_at<std::uint32_t>(all, 0) != magic) damaged("is no GLB file");
@@ -193,7 +194,22 @@ std::string_view Reader::view(std::size_t index, const std::string& pointer) con
     return binary_.substr(offset, length);
 }
 
-std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const std::string& pointer) const {
+void Reader::charge(double bytes, const std::string& pointer) const {
+    charged_ += bytes;
+    if (charged_ > allowed_)
+        fail_input(where_,
+                   "at " + pointer + ": the file would take more than " + digits(allowed_ / 1e6, 3) +
+                       " MB, many times its size, as its parts name the same data again and again",
+                   "export each surface once, without copies of it");
+}
+
+Reader::Values Reader::accessor(std::size_t index, std::size_t width, const std::string& pointer) const {
+    Values& values = read_[{index, width}];
+    if (!values) values = std::make_shared<const std::vector<double>>(read_accessor(index, width, pointer));
+    return values;
+}
+
+std::vector<double> Reader::read_accessor(std::size_t index, std::size_t width, const std::string& pointer) const {
     const JsonValue& entry = element("accessors", index, pointer);
     const std::string here = "/accessors/" + std::to_string(index);
     if (find_member(entry, "sparse") != nullptr) fail(here + "/sparse", "sparse accessors are not read");
@@ -217,6 +233,7 @@ std::vector<double> Reader::accessor(std::size_t index, std::size_t width, const
     if (offset > bytes.size() || element_size > bytes.size() - offset ||
         (count - 1) > (bytes.size() - offset - element_size) / stride)
         fail(here, "reaches beyond its view");
+    charge(8.0 * static_cast<double>(count * width), here);
     std::vector<double> values;
     values.reserve(count * width);
     for (std::size_t i = 0; i < count; ++i)

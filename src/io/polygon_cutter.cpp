@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ostraka::io {
 
@@ -12,8 +13,14 @@ namespace {
 using Point2 = std::array<double, 2>;
 using Point3 = std::array<double, 3>;
 
-/// Orientation of a, b, c, exact: 1 is to the left.
-int orientation(const Point2& a, const Point2& b, const Point2& c) {
+/// Orientation of a, b, c, exact: 1 is to the left. `exact` counts those that floating point does not decide.
+int orientation(const Point2& a, const Point2& b, const Point2& c, std::size_t& exact) {
+    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
+    if ((ux == 0 && vx == 0) || (uy == 0 && vy == 0)) return 0;  // of equal numbers the difference is exactly 0
+    const double left = ux * vy, right = uy * vx, size = std::fabs(left) + std::fabs(right);
+    // Shewchuk 1997: the error is below (3 + 16 e) e times the sum of the magnitudes, e = 2^-53, where nothing underflows.
+    if (size > 1e-250 && std::fabs(left - right) > 4e-16 * size) return left > right ? 1 : -1;
+    ++exact;
     using Flat = Kernel::Point_2;
     return CGAL::orientation(Flat(a[0], a[1]), Flat(b[0], b[1]), Flat(c[0], c[1]));
 }
@@ -53,6 +60,14 @@ CutResult PolygonCutter::cut(const std::vector<Point3>& points, const std::uint3
     }
     project(points, corners);
     if (is_strictly_convex()) {
+        // A vertex that very many triangles share would be slow for whatever follows.
+        constexpr std::size_t large = 1000;
+        if (kept_.size() > large) {
+            std::vector<std::uint32_t> ring(kept_.size());
+            std::iota(ring.begin(), ring.end(), 0U);
+            halve(std::move(ring), corners, triangles);
+            return CutResult::clean;
+        }
         for (std::size_t i = 1; i + 1 < kept_.size(); ++i) triangles.push_back({kept_[0], kept_[i], kept_[i + 1]});
         return CutResult::clean;
     }
@@ -123,13 +138,29 @@ void PolygonCutter::project(const std::vector<Point3>& points, const std::uint32
     }
 }
 
+/// Cuts off every second corner until none is left: no corner is in more triangles than the logarithm of their number.
+void PolygonCutter::halve(std::vector<std::uint32_t> ring, const std::uint32_t* corners, std::vector<Triple>& triangles) const {
+    std::vector<std::uint32_t> left;
+    while (ring.size() > 2) {
+        left.clear();
+        for (std::size_t i = 0; i < ring.size(); i += 2) {
+            left.push_back(ring[i]);
+            if (i + 1 == ring.size()) continue;
+            const Triple piece{kept_[ring[i]], kept_[ring[i + 1]], kept_[ring[i + 2 < ring.size() ? i + 2 : 0]]};
+            const auto u = corners[piece[0]], v = corners[piece[1]], w = corners[piece[2]];
+            if (u != v && v != w && w != u) triangles.push_back(piece);
+        }
+        ring.swap(left);
+    }
+}
+
 /// Left turns only, and the direction runs around once: from rightward to leftward and back.
 bool PolygonCutter::is_strictly_convex() const {
     const std::size_t count = flat_.size();
-    std::size_t reversals = 0;
+    std::size_t reversals = 0, exact = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Point2 &a = flat_[i], &b = flat_[(i + 1) % count], &c = flat_[(i + 2) % count];
-        if (orientation(a, b, c) <= 0) return false;
+        if (orientation(a, b, c, exact) <= 0) return false;
         reversals += (a < b) != (b < c);
     }
     return reversals == 2;
@@ -146,7 +177,7 @@ std::array<std::size_t, 2> PolygonCutter::cell_of(const Point2& point) const {
 
 /// Only corners that are not strictly convex can lie inside an ear, and clipping never makes a convex corner reflex.
 void PolygonCutter::build_grid(std::uint32_t start) {
-    std::size_t count = 0;
+    std::size_t count = 0, exact = 0;
     Point2 high = flat_[start];
     grid_low_ = flat_[start];
     reflex_.clear();
@@ -156,7 +187,7 @@ void PolygonCutter::build_grid(std::uint32_t start) {
             grid_low_[k] = std::min(grid_low_[k], flat_[i][k]);
             high[k] = std::max(high[k], flat_[i][k]);
         }
-        if (orientation(flat_[previous_[i]], flat_[i], flat_[next_[i]]) <= 0) reflex_.push_back(i);
+        if (orientation(flat_[previous_[i]], flat_[i], flat_[next_[i]], exact) <= 0) reflex_.push_back(i);
         ++count;
         i = next_[i];
     } while (i != start);
@@ -174,10 +205,18 @@ void PolygonCutter::build_grid(std::uint32_t start) {
     for (const std::uint32_t r : reflex_) cell_items_[fill[index(r)]++] = r;
 }
 
+int PolygonCutter::turn(const Point2& a, const Point2& b, const Point2& c) {
+    constexpr std::size_t work_of_exact = 16;  // in tests in floating point
+    std::size_t exact = 0;
+    const int result = orientation(a, b, c, exact);
+    budget_ -= std::min(budget_, work_of_exact * exact);
+    return result;
+}
+
 /// A strictly convex tip whose closed triangle holds no other corner (corners at the same place as one of the three aside).
 bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint32_t next) {
     const Point2 &a = flat_[previous], &b = flat_[tip], &c = flat_[next];
-    if (orientation(a, b, c) <= 0) return false;
+    if (turn(a, b, c) <= 0) return false;
     const auto [left, bottom] = cell_of({std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})});
     const auto [right, top] = cell_of({std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})});
     for (std::size_t y = bottom; y <= top; ++y) {
@@ -188,7 +227,7 @@ bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint3
             const std::uint32_t i = cell_items_[k];
             const Point2& p = flat_[i];
             if (alive_[i] == 0 || p == a || p == b || p == c) continue;
-            if (orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0) return false;
+            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
         }
         if (budget_ == 0) return false;
     }
@@ -204,7 +243,8 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
         next_[i] = i + 1 == left ? 0 : i + 1;
         previous_[i] = i == 0 ? left - 1 : i - 1;
     }
-    budget_ = 1000000 + 200 * static_cast<std::size_t>(left);
+    const std::size_t count = left;
+    budget_ = std::clamp<std::size_t>(count * count, 1'000'000, 20'000'000) + 200 * count;
     build_grid(0);
     std::uint32_t in_grid = left;
     CutResult result = CutResult::clean;
@@ -239,9 +279,14 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
     while (left > 3) {
         ++round;
         waiting_.clear();
-        if (budget_ == 0 || (candidates_.empty() && clipped_since_scan == 0)) {
-            // The polygon crosses or touches itself, or the budget is spent: whatever stands next is cut off.
-            result = budget_ == 0 ? CutResult::gave_up : CutResult::crossing;
+        if (budget_ == 0) {
+            std::vector<std::uint32_t> ring;
+            for (std::uint32_t i = last, n = 0; n < left; i = next_[i], ++n) ring.push_back(i);
+            halve(std::move(ring), corners, triangles);
+            return CutResult::gave_up;
+        }
+        if (candidates_.empty() && clipped_since_scan == 0) {
+            result = CutResult::crossing;  // the polygon crosses or touches itself: whatever stands next is cut off
             clip_and_note(last);
         } else {
             if (candidates_.empty()) {

@@ -293,6 +293,8 @@ private:
     /// Each strip is a row of vertices, every three in a row a triangle, every second one turned; -1 starts afresh.
     void strips(const PlyElement& element) {
         const Plan plan(element, face_role);
+        if (element.count > 0 && !plan.with(Role::corners))
+            fail_input(file_, "the triangle strips have no list vertex_indices", "export it again with faces");
         note_unused(element, plan);
         for (std::size_t i = 0; i < element.count; ++i) {
             rows_.begin(element, i);

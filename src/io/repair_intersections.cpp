@@ -1,5 +1,7 @@
 // Self-intersections removed: folds are relaxed; what is left is cut out and the gaps are closed.
 #include "repair_steps.h"
+
+#include "ostraka/core/progress.h"
 #include "soup_geometry.h"
 
 namespace ostraka::detail {
@@ -110,6 +112,7 @@ void smooth(TriangleSoup& soup, const Folds& folds) {
     constexpr int passes = 5;
     std::vector<std::array<double, 3>> next(folds.moved.size());
     for (int pass = 0; pass < passes; ++pass) {
+        check_cancelled();
         for (std::size_t i = 0; i < next.size(); ++i) {
             next[i] = {0, 0, 0};
             for (const Index n : folds.neighbours[i])

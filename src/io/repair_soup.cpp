@@ -1,5 +1,6 @@
 // The soup under repair: bookkeeping, merging of points, triangles that cannot stay, components.
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/point_tree.h"
 #include "repair_steps.h"
 #include "soup_geometry.h"
@@ -349,6 +350,7 @@ Counts sew_junctions(Worksoup& work, double tolerance) {
     std::size_t sewn = 0;
     constexpr int max_passes = 8;  // a triangle is split at one of its sides in each
     for (int pass = 0; pass < max_passes; ++pass) {
+        check_cancelled();
         const SoupEdges edges = group_edges(soup);
         std::vector<Index> sides, vertices;
         for (std::size_t e = 0; e < edges.count(); ++e) {

@@ -1,4 +1,5 @@
-// Self-intersections: candidates from the box tree, decided by exact orientation predicates.
+// Self-intersections: candidates from the box tree, decided by exact orientation predicates. Triangles around a vertex that has
+// many of them all meet there: of those, only pairs whose directions from the vertex meet are candidates.
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/diagnose.h"
 #include "soup_edges.h"
@@ -7,23 +8,44 @@
 
 #include <CGAL/intersections.h>
 
+#include <cmath>
+
 namespace ostraka {
 
 namespace {
 
 using detail::point;
 
+/// The side of d relative to the plane of a, b and c, exact; `exact` counts those that floating point does not decide.
+CGAL::Orientation side_of(const Point& a, const Point& b, const Point& c, const Point& d, std::size_t& exact) {
+    const double ux = b.x() - a.x(), uy = b.y() - a.y(), uz = b.z() - a.z(), vx = c.x() - a.x(), vy = c.y() - a.y(),
+                 vz = c.z() - a.z(), wx = d.x() - a.x(), wy = d.y() - a.y(), wz = d.z() - a.z();
+    // Of equal numbers the difference is exactly 0.
+    if ((ux == 0 && vx == 0 && wx == 0) || (uy == 0 && vy == 0 && wy == 0) || (uz == 0 && vz == 0 && wz == 0))
+        return CGAL::COPLANAR;
+    const double p = vy * wz, q = vz * wy, r = vz * wx, s = vx * wz, t = vx * wy, u = vy * wx;
+    const double value = ux * (p - q) + uy * (r - s) + uz * (t - u);
+    const double size = std::fabs(ux) * (std::fabs(p) + std::fabs(q)) + std::fabs(uy) * (std::fabs(r) + std::fabs(s)) +
+                        std::fabs(uz) * (std::fabs(t) + std::fabs(u));
+    // Shewchuk 1997: the error is below (7 + 56 e) e times the sum of the magnitudes, e = 2^-53, where nothing underflows.
+    if (size > 1e-250 && std::fabs(value) > 1e-15 * size) return value > 0 ? CGAL::POSITIVE : CGAL::NEGATIVE;
+    ++exact;
+    return CGAL::orientation(a, b, c, d);
+}
+
 /// Does segment pq, whose end points lie on the sides `p_side` and `q_side` of the triangle's plane, meet the triangle?
 bool segment_meets(const Point& p, const Point& q, CGAL::Orientation p_side, CGAL::Orientation q_side,
-                   const std::array<Point, 3>& t) {
+                   const std::array<Point, 3>& t, std::size_t& exact) {
     if (p_side == q_side && p_side != CGAL::COPLANAR) return false;
-    if (p_side == CGAL::COPLANAR && q_side == CGAL::COPLANAR)
+    if (p_side == CGAL::COPLANAR && q_side == CGAL::COPLANAR) {
+        exact += 4;
         return CGAL::do_intersect(Kernel::Segment_3(p, q), Kernel::Triangle_3(t[0], t[1], t[2]));
+    }
     // The line of the segment meets the plane in one point; that point lies in the triangle if the line passes its three
     // sides on the same hand.
     bool positive = false, negative = false;
     for (std::size_t k = 0; k < 3; ++k) {
-        const CGAL::Orientation side = CGAL::orientation(p, q, t[k], t[(k + 1) % 3]);
+        const CGAL::Orientation side = side_of(p, q, t[k], t[(k + 1) % 3], exact);
         positive = positive || side == CGAL::POSITIVE;
         negative = negative || side == CGAL::NEGATIVE;
         if (positive && negative) return false;
@@ -35,29 +57,32 @@ bool on_one_side(const std::array<CGAL::Orientation, 3>& sides) {
     return sides[0] != CGAL::COPLANAR && sides[0] == sides[1] && sides[1] == sides[2];
 }
 
-bool disjoint_triangles_meet(const std::array<Point, 3>& s, const std::array<Point, 3>& t) {
+bool disjoint_triangles_meet(const std::array<Point, 3>& s, const std::array<Point, 3>& t, std::size_t& exact) {
     std::array<CGAL::Orientation, 3> s_sides, t_sides;  // of the corners of s relative to the plane of t, and the other way
-    for (std::size_t k = 0; k < 3; ++k) s_sides[k] = CGAL::orientation(t[0], t[1], t[2], s[k]);
+    for (std::size_t k = 0; k < 3; ++k) s_sides[k] = side_of(t[0], t[1], t[2], s[k], exact);
     if (on_one_side(s_sides)) return false;
-    for (std::size_t k = 0; k < 3; ++k) t_sides[k] = CGAL::orientation(s[0], s[1], s[2], t[k]);
+    for (std::size_t k = 0; k < 3; ++k) t_sides[k] = side_of(s[0], s[1], s[2], t[k], exact);
     if (on_one_side(t_sides)) return false;
-    if (s_sides == std::array{CGAL::COPLANAR, CGAL::COPLANAR, CGAL::COPLANAR})
+    if (s_sides == std::array{CGAL::COPLANAR, CGAL::COPLANAR, CGAL::COPLANAR}) {
+        exact += 8;
         return CGAL::do_intersect(Kernel::Triangle_3(s[0], s[1], s[2]), Kernel::Triangle_3(t[0], t[1], t[2]));
+    }
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3;
-        if (segment_meets(s[k], s[l], s_sides[k], s_sides[l], t) || segment_meets(t[k], t[l], t_sides[k], t_sides[l], s))
+        if (segment_meets(s[k], s[l], s_sides[k], s_sides[l], t, exact) ||
+            segment_meets(t[k], t[l], t_sides[k], t_sides[l], s, exact))
             return true;
     }
     return false;
 }
 
 /// s[0] and t[0] are the same place. Whatever else the triangles share reaches the opposite side of one of them.
-bool triangles_at_vertex_meet(const std::array<Point, 3>& s, const std::array<Point, 3>& t) {
-    const CGAL::Orientation s1 = CGAL::orientation(t[0], t[1], t[2], s[1]), s2 = CGAL::orientation(t[0], t[1], t[2], s[2]);
+bool triangles_at_vertex_meet(const std::array<Point, 3>& s, const std::array<Point, 3>& t, std::size_t& exact) {
+    const CGAL::Orientation s1 = side_of(t[0], t[1], t[2], s[1], exact), s2 = side_of(t[0], t[1], t[2], s[2], exact);
     if (s1 == s2 && s1 != CGAL::COPLANAR) return false;
-    const CGAL::Orientation t1 = CGAL::orientation(s[0], s[1], s[2], t[1]), t2 = CGAL::orientation(s[0], s[1], s[2], t[2]);
+    const CGAL::Orientation t1 = side_of(s[0], s[1], s[2], t[1], exact), t2 = side_of(s[0], s[1], s[2], t[2], exact);
     if (t1 == t2 && t1 != CGAL::COPLANAR) return false;
-    return segment_meets(s[1], s[2], s1, s2, t) || segment_meets(t[1], t[2], t1, t2, s);
+    return segment_meets(s[1], s[2], s1, s2, t, exact) || segment_meets(t[1], t[2], t1, t2, s, exact);
 }
 
 /// Decides whether two triangles without collinear corners share more than what joins them.
@@ -65,7 +90,8 @@ class PairTest {
 public:
     PairTest(const TriangleSoup& soup, const std::vector<Index>& place) : soup_(soup), place_(place) {}
 
-    bool operator()(Index first, Index second) const {
+    /// `exact` counts predicates that took exact arithmetic.
+    bool operator()(Index first, Index second, std::size_t& exact) const {
         auto s = soup_.triangles[first], t = soup_.triangles[second];
         // Shared places are turned to the front of both.
         int shared = 0;
@@ -80,9 +106,9 @@ public:
         if (shared == 3) return true;
         const std::array<Point, 3> a{corner(s[0]), corner(s[1]), corner(s[2])}, b{corner(t[0]), corner(t[1]), corner(t[2])};
         if (shared == 2)
-            return CGAL::orientation(a[0], a[1], a[2], b[2]) == CGAL::COPLANAR &&
+            return side_of(a[0], a[1], a[2], b[2], exact) == CGAL::COPLANAR &&
                    CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::POSITIVE;
-        return shared == 1 ? triangles_at_vertex_meet(a, b) : disjoint_triangles_meet(a, b);
+        return shared == 1 ? triangles_at_vertex_meet(a, b, exact) : disjoint_triangles_meet(a, b, exact);
     }
 
 private:
@@ -90,6 +116,132 @@ private:
     const TriangleSoup& soup_;
     const std::vector<Index>& place_;
 };
+
+/// Vertices (places) that more triangles share than this are hubs.
+constexpr std::size_t many_triangles = 256;
+
+/// For each triangle 1 + the corner's place that has the most triangles, where those are many, else 0; left out of the tree where
+/// it has no area.
+std::vector<Index> hubs_of(const TriangleSoup& soup, const std::vector<Index>& place,
+                           const std::vector<std::uint8_t>& without_area) {
+    std::vector<Index> count(soup.points.size(), 0), hubs(soup.triangles.size(), detail::TriangleTree::left_out);
+    for (std::size_t t = 0; t < hubs.size(); ++t)
+        if (without_area[t] == 0)
+            for (const Index v : soup.triangles[t]) ++count[place[v]];
+    for (std::size_t t = 0; t < hubs.size(); ++t) {
+        if (without_area[t] != 0) continue;
+        Index best = place[soup.triangles[t][0]];
+        for (const Index v : soup.triangles[t])
+            if (count[place[v]] > count[best]) best = place[v];
+        hubs[t] = count[best] > many_triangles ? best + 1 : 0;
+    }
+    return hubs;
+}
+
+/// A triangle over the box of the directions from `hub` to the opposite side of a triangle, on the unit sphere.
+void add_directions(const TriangleSoup& soup, const std::vector<Index>& place, Index hub, Index triangle, TriangleSoup& arcs) {
+    std::array<std::array<double, 3>, 2> ends{};
+    std::size_t end = 0;
+    for (const Index v : soup.triangles[triangle]) {
+        if (place[v] == hub || end == 2) continue;
+        Vector d = point(soup, v) - point(soup, hub);
+        const double largest = std::max({std::fabs(d.x()), std::fabs(d.y()), std::fabs(d.z())});
+        d = d / largest;
+        d = d / std::sqrt(d.squared_length());
+        ends[end++] = {d.x(), d.y(), d.z()};
+    }
+    double half = 0;  // of the chord, squared
+    for (std::size_t k = 0; k < 3; ++k) half += (ends[1][k] - ends[0][k]) * (ends[1][k] - ends[0][k]) / 4;
+    const double beyond = half / (1 + std::sqrt(std::max(0.0, 1 - half))) + 1e-9;  // the arc's height over its chord; rounding
+    std::array<double, 3> low{}, high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(ends[0][k], ends[1][k]) - beyond;
+        high[k] = std::max(ends[0][k], ends[1][k]) + beyond;
+    }
+    const auto first = static_cast<Index>(arcs.points.size());
+    arcs.points.insert(arcs.points.end(), {low, high});
+    arcs.triangles.push_back({first, first + 1, first + 1});
+}
+
+/// Tests the pairs that a tree names, within bounds that do not depend on the threads.
+class BoundedSearch {
+public:
+    BoundedSearch(const TriangleSoup& soup, const std::vector<Index>& place, std::size_t limit)
+        : meets_(soup, place), limit_(limit), most_work_(200 * soup.triangles.size() + 100'000'000) {}
+
+    /// `triangle`: the soup's triangle for one of the tree, in the order of the tree's soup; all of them where it is empty.
+    void search(const detail::TriangleTree& tree, const std::vector<Index>& triangle) {
+        const std::size_t leaves = tree.leaf_count();
+        for (std::size_t begin = 0; begin < leaves && result.complete;) {
+            // What a batch may take at most is about what is left.
+            const std::size_t room = std::min((most_work_ - std::min(work_, most_work_)) / work_of_leaf,
+                                              (limit_ - result.pairs.size()) / pairs_of_leaf);
+            const std::size_t count = std::min(std::clamp<std::size_t>(room, 64, 8192), leaves - begin);
+            search_leaves(tree, triangle, begin, count);
+            begin += count;
+            result.complete = result.complete && result.pairs.size() <= limit_ && (work_ < most_work_ || begin == leaves);
+        }
+    }
+
+    SelfIntersections result;
+
+private:
+    // A unit of work is a test in floating point, some hundred nanoseconds.
+    static constexpr std::size_t work_of_leaf = 1 << 18, pairs_of_leaf = 4096, boxes_of_test = 16, tests_of_exact = 16;
+
+    struct Leaf {
+        std::vector<std::pair<Index, Index>> pairs;
+        std::size_t work = 0;
+    };
+
+    void search_leaf(const detail::TriangleTree& tree, const std::vector<Index>& triangle, Index number, Leaf& leaf) const {
+        leaf.pairs.clear();
+        leaf.work = 0;
+        std::size_t exact = 0;
+        const std::size_t boxes = tree.pairs_of_leaf(number, boxes_of_test * work_of_leaf, [&](Index a, Index b) {
+            if (!triangle.empty()) a = triangle[a], b = triangle[b];
+            if (meets_(a, b, exact)) leaf.pairs.emplace_back(std::min(a, b), std::max(a, b));
+            return ++leaf.work + tests_of_exact * exact < work_of_leaf && leaf.pairs.size() < pairs_of_leaf;
+        });
+        leaf.work += tests_of_exact * exact + boxes / boxes_of_test;
+    }
+
+    void search_leaves(const detail::TriangleTree& tree, const std::vector<Index>& triangle, std::size_t begin,
+                       std::size_t count) {
+        leaves_.resize(std::max(leaves_.size(), count));
+        parallel_for(
+            count, [&](std::size_t i) { search_leaf(tree, triangle, static_cast<Index>(begin + i), leaves_[i]); }, 16);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Leaf& leaf = leaves_[i];
+            result.pairs.insert(result.pairs.end(), leaf.pairs.begin(), leaf.pairs.end());
+            work_ += leaf.work;
+            result.complete = result.complete && leaf.work < work_of_leaf && leaf.pairs.size() < pairs_of_leaf;
+        }
+    }
+
+    PairTest meets_;
+    std::size_t limit_, most_work_, work_ = 0;
+    std::vector<Leaf> leaves_;
+};
+
+/// Pairs of triangles of one hub, hub after hub.
+void search_hubs(const TriangleSoup& soup, const std::vector<Index>& place, const std::vector<Index>& hubs,
+                 BoundedSearch& search) {
+    std::vector<Index> at_hubs;
+    for (Index t = 0; t < hubs.size(); ++t)
+        if (hubs[t] != 0 && hubs[t] != detail::TriangleTree::left_out) at_hubs.push_back(t);
+    std::stable_sort(at_hubs.begin(), at_hubs.end(), [&](Index a, Index b) { return hubs[a] < hubs[b]; });
+    for (std::size_t i = 0; i < at_hubs.size() && search.result.complete;) {
+        const Index hub = hubs[at_hubs[i]] - 1;
+        TriangleSoup arcs;
+        std::vector<Index> triangle;
+        for (; i < at_hubs.size() && hubs[at_hubs[i]] == hub + 1; ++i) {
+            add_directions(soup, place, hub, at_hubs[i], arcs);
+            triangle.push_back(at_hubs[i]);
+        }
+        search.search(detail::TriangleTree(arcs), triangle);
+    }
+}
 
 }  // namespace
 
@@ -99,37 +251,11 @@ SelfIntersections self_intersections(const TriangleSoup& soup, std::size_t limit
 
 SelfIntersections detail::self_intersections(const TriangleSoup& soup, const std::vector<Index>& place,
                                              const std::vector<std::uint8_t>& without_area, std::size_t limit) {
-    SelfIntersections result;
-    const TriangleTree tree(soup);
-    const PairTest meets(soup, place);
-    // Fixed batches and fixed budgets: where the search is given up does not depend on the threads.
-    constexpr std::size_t batch = 8192, tests_of_leaf = 1 << 17, pairs_of_leaf = 4096;
-    const std::size_t max_tests = 400 * soup.triangles.size() + 50'000'000;
-    const std::size_t leaves = tree.leaf_count();
-    std::vector<std::vector<std::pair<Index, Index>>> found(std::min(batch, leaves));
-    std::vector<std::size_t> tested(found.size());
-    std::size_t tests = 0;
-    for (std::size_t begin = 0; begin < leaves && result.complete; begin += batch) {
-        const std::size_t count = std::min(batch, leaves - begin);
-        parallel_for(
-            count,
-            [&](std::size_t i) {
-                found[i].clear();
-                tested[i] = 0;
-                tree.pairs_of_leaf(static_cast<Index>(begin + i), [&](Index a, Index b) {
-                    if (without_area[a] != 0 || without_area[b] != 0) return true;
-                    if (meets(a, b)) found[i].emplace_back(std::min(a, b), std::max(a, b));
-                    return ++tested[i] < tests_of_leaf && found[i].size() < pairs_of_leaf;
-                });
-            },
-            64);
-        for (std::size_t i = 0; i < count; ++i) {
-            result.pairs.insert(result.pairs.end(), found[i].begin(), found[i].end());
-            tests += tested[i];
-            result.complete = result.complete && tested[i] < tests_of_leaf && found[i].size() < pairs_of_leaf;
-        }
-        result.complete = result.complete && result.pairs.size() <= limit && (tests < max_tests || begin + count == leaves);
-    }
+    const std::vector<Index> hubs = hubs_of(soup, place, without_area);
+    BoundedSearch search(soup, place, limit);
+    search.search(TriangleTree(soup, hubs), {});
+    search_hubs(soup, place, hubs, search);
+    SelfIntersections result = std::move(search.result);
     std::sort(result.pairs.begin(), result.pairs.end());
     if (result.pairs.size() > limit) result.pairs.resize(limit);
     return result;

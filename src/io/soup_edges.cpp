@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 
 #include <bit>
 #include <cmath>
@@ -19,6 +20,7 @@ DisjointSets joined_vertices(const TriangleSoup& soup) {
 }
 
 SoupEdges group_edges(const TriangleSoup& soup) {
+    check_cancelled();
     const auto count = static_cast<Index>(3 * soup.triangles.size());
     std::vector<Index> bucket_begin(soup.points.size() + 1, 0);
     const auto each_halfedge = [&](const auto& visit) {
@@ -51,6 +53,7 @@ SoupEdges group_edges(const TriangleSoup& soup) {
 }
 
 std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points) {
+    check_cancelled();
     const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(16, 2 * points.size()));
     std::vector<Index> slots(capacity, no_index), lowest(points.size());
     for (Index v = 0; v < points.size(); ++v) {
@@ -69,6 +72,7 @@ std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points) 
 }
 
 void check_soup(const TriangleSoup& soup) {
+    check_cancelled();
     if (soup.points.size() >= no_index / 8 || soup.triangles.size() >= no_index / 8)
         fail_work("mesh", "has more than 536 million vertices or triangles", "split it");
     for (std::size_t t = 0; t < soup.triangles.size(); ++t)
@@ -84,6 +88,7 @@ void check_soup(const TriangleSoup& soup) {
 }
 
 DisjointSets fans_of_corners(const TriangleSoup& soup, const SoupEdges& edges) {
+    check_cancelled();
     DisjointSets fans(3 * soup.triangles.size());
     for (std::size_t e = 0; e < edges.count(); ++e) {
         const Index* h = edges.first(e);

@@ -37,12 +37,13 @@ double diagonal(const CGAL::Bbox_3& box) {
 }
 
 namespace {
-/// Crossings of the segment with each component but its own, by parity; false if the segment touches an edge or a vertex.
+/// Crossings of the segment with each component but its own, by parity; false if the segment touches an edge or a vertex. Only
+/// the first `most` boxes of the tree that it meets are looked into.
 bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const std::vector<Index>& component, Index own,
-                     const Point& from, const Point& to, std::vector<std::pair<Index, bool>>& parity) {
+                     const Point& from, const Point& to, std::size_t most, std::vector<std::pair<Index, bool>>& parity) {
     bool clean = true;
     std::vector<Index> hits;
-    tree.along_segment(from, to, [&](Index t) {
+    tree.along_segment(from, to, most, [&](Index t) {
         if (!clean || component[t] == no_index || component[t] == own) return;
         const auto& [a, b, c] = soup.triangles[t];
         const Point p = point(soup, a), q = point(soup, b), r = point(soup, c);
@@ -81,6 +82,8 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
         for (const Index v : soup.triangles[t]) boxes[c] += point(soup, v).bbox();
     }
     const TriangleTree tree(soup);
+    // Thousands of shells around each other would take the square of their number.
+    const std::size_t most = std::max<std::size_t>(20'000, 200'000'000 / inner.size());
     const double ray_length = 2 * diagonal(box_of_triangles(soup));
     parallel_for(
         inner.size(),
@@ -95,7 +98,7 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
                 const double r = std::sqrt(1 - z * z);
                 const Point end = start + ray_length * Vector(r * std::cos(s), r * std::sin(s), z);
                 std::vector<std::pair<Index, bool>> parity;
-                if (!crossing_parity(soup, tree, component_of_triangle, own, start, end, parity) && attempt < 15) continue;
+                if (!crossing_parity(soup, tree, component_of_triangle, own, start, end, most, parity) && attempt < 15) continue;
                 bool inside = false;
                 for (const auto& [other, odd] : parity) {
                     if (!odd || !closed[other]) continue;

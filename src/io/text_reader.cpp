@@ -22,6 +22,7 @@ bool TextReader::next_line() {
 }
 
 bool TextReader::skip_space() {
+    check_();
     started_ = true;
     for (;;) {
         skip_blanks();

@@ -1,6 +1,8 @@
 // Walks over the text of a mesh file: lines, words and numbers, with errors that name file and line.
 #pragma once
 
+#include "ostraka/core/progress.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -77,6 +79,7 @@ private:
     std::string file_;
     char comment_;
     bool started_ = false;
+    CancelCheck check_;
 };
 
 /// A word as it can stand in a message: printable, at most 40 characters.

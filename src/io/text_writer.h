@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ostraka/core/file.h"
+#include "ostraka/core/progress.h"
 
 #include <charconv>
 #include <string>
@@ -51,6 +52,7 @@ public:
 private:
     static constexpr std::size_t block = 1 << 20;
     void flush() {
+        check_cancelled();
         file_.write(buffer_);
         buffer_.clear();
     }

@@ -39,44 +39,59 @@ std::vector<Index> sorted_by_code(std::vector<std::pair<std::uint64_t, Index>>& 
 
 }  // namespace
 
-TriangleTree::TriangleTree(const TriangleSoup& soup) : soup_(soup) {
-    const std::size_t count = soup.triangles.size();
-    if (count == 0) return;
+TriangleTree::TriangleTree(const TriangleSoup& soup, std::vector<Index> groups) : soup_(soup), groups_(std::move(groups)) {
+    if (soup.triangles.empty()) return;
+    find_frame();
+    order_triangles();
+    if (order_.empty()) return;
+    find_boxes();
+    if (!groups_.empty()) group_nodes();
+}
+
+void TriangleTree::find_frame() {
     std::array<double, 3> low, high;
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
-    for (const auto& t : soup.triangles)
+    for (const auto& t : soup_.triangles)
         for (const Index v : t)
             for (std::size_t a = 0; a < 3; ++a) {
-                low[a] = std::min(low[a], soup.points[v][a]);
-                high[a] = std::max(high[a], soup.points[v][a]);
+                low[a] = std::min(low[a], soup_.points[v][a]);
+                high[a] = std::max(high[a], soup_.points[v][a]);
             }
     corner_ = low;
     const double side = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
     scale_ = side > 1e-290 ? 1 / side : 1;
+}
 
-    std::vector<std::pair<std::uint64_t, Index>> codes(count);
+void TriangleTree::order_triangles() {
+    const std::array<double, 3>& low = corner_;
+    std::vector<std::pair<std::uint64_t, Index>> codes(soup_.triangles.size());
     parallel_for(
-        count,
+        codes.size(),
         [&](std::size_t t) {
-            const auto& [a, b, c] = soup.triangles[t];
+            const auto& [a, b, c] = soup_.triangles[t];
             std::uint64_t code = 0;
             for (std::size_t k = 0; k < 3; ++k) {
                 const double middle =
-                    (soup.points[a][k] - low[k]) / 3 + (soup.points[b][k] - low[k]) / 3 + (soup.points[c][k] - low[k]) / 3;
+                    (soup_.points[a][k] - low[k]) / 3 + (soup_.points[b][k] - low[k]) / 3 + (soup_.points[c][k] - low[k]) / 3;
                 code |= spread(static_cast<std::uint64_t>(std::clamp(middle * scale_, 0.0, 1.0) * 65535)) << k;
             }
             codes[t] = {code, static_cast<Index>(t)};
         },
         4096);
+    if (!groups_.empty()) std::erase_if(codes, [&](const auto& item) { return groups_[item.second] == left_out; });
     order_ = sorted_by_code(codes);
+    if (std::any_of(order_.begin(), order_.end(), [&](Index t) { return !groups_.empty() && groups_[t] != 0; }))
+        std::stable_sort(order_.begin(), order_.end(), [&](Index a, Index b) { return groups_[a] < groups_[b]; });
+}
 
-    boxes_.resize(count);
+void TriangleTree::find_boxes() {
+    boxes_.resize(order_.size());
     parallel_for(
-        count,
+        order_.size(),
         [&](std::size_t i) {
-            const auto& [a, b, c] = soup.triangles[order_[i]];
-            const auto &p = soup.points[a], &q = soup.points[b], &r = soup.points[c];
+            const auto& [a, b, c] = soup_.triangles[order_[i]];
+            const auto &p = soup_.points[a], &q = soup_.points[b], &r = soup_.points[c];
             std::array<double, 3> from, to;
             for (std::size_t k = 0; k < 3; ++k) {
                 from[k] = std::min({p[k], q[k], r[k]});
@@ -102,6 +117,21 @@ TriangleTree::TriangleTree(const TriangleSoup& soup) : soup_(soup) {
     } while (below->size() > 1);
 }
 
+void TriangleTree::group_nodes() {
+    std::vector<Index> below;
+    for (const Index t : order_) below.push_back(groups_[t]);
+    for (const auto& boxes : levels_) {
+        std::vector<Index> level(boxes.size());
+        for (std::size_t n = 0; n < level.size(); ++n) {
+            const auto first = below.begin() + static_cast<std::ptrdiff_t>(n * fan),
+                       last = below.begin() + static_cast<std::ptrdiff_t>(std::min(below.size(), (n + 1) * fan));
+            level[n] = std::all_of(first, last, [&](Index g) { return g == *first; }) ? *first : 0;
+        }
+        below = level;
+        level_groups_.push_back(std::move(level));
+    }
+}
+
 TriangleTree::Box TriangleTree::scaled_box(const std::array<double, 3>& low, const std::array<double, 3>& high) const {
     // Subtraction, multiplication and rounding to single precision never change an order; stepping outwards by one
     // unit makes up for the rounding.
@@ -118,33 +148,44 @@ bool TriangleTree::overlap(const Box& a, const Box& b) {
            a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
-void TriangleTree::pairs_of_leaf(Index leaf, const std::function<bool(Index, Index)>& visit) const {
+std::size_t TriangleTree::pairs_of_leaf(Index leaf, std::size_t most, const std::function<bool(Index, Index)>& visit) const {
     const Index count = static_cast<Index>(order_.size());
     const Box& own = levels_[0][leaf];
     const Index own_begin = leaf * fan, own_end = std::min(count, own_begin + fan);
+    const bool grouped = !groups_.empty();
+    const Index own_group = grouped ? level_groups_[0][leaf] : 0;
+    const auto of_one_group = [&](Index i, Index j) {
+        return grouped && groups_[order_[i]] != 0 && groups_[order_[i]] == groups_[order_[j]];
+    };
     struct Node {
         Index level, number;
     };
+    std::size_t compared = 0;
     std::vector<Node> stack{{static_cast<Index>(levels_.size() - 1), 0}};
-    while (!stack.empty()) {
+    while (!stack.empty() && compared < most) {
         const Node node = stack.back();
         stack.pop_back();
         const auto& below = node.level == 0 ? boxes_ : levels_[node.level - 1];
         const Index begin = node.number * fan, end = std::min(static_cast<Index>(below.size()), begin + fan);
         if (node.level == 0) {
+            compared += fan * fan;
             for (Index i = own_begin; i < own_end; ++i)
                 for (Index j = std::max(begin, i + 1); j < end; ++j)
-                    if (overlap(boxes_[i], boxes_[j]) && !visit(order_[i], order_[j])) return;
+                    if (overlap(boxes_[i], boxes_[j]) && !of_one_group(i, j) && !visit(order_[i], order_[j])) return compared;
             continue;
         }
+        compared += fan;
         const unsigned span = 2 * (node.level - 1);  // a node of that level covers 4^level leaves
         for (Index i = end; i-- > begin;)
-            if ((static_cast<std::uint64_t>(i + 1) << span) > leaf && overlap(own, below[i]))
+            if ((static_cast<std::uint64_t>(i + 1) << span) > leaf && overlap(own, below[i]) &&
+                (own_group == 0 || level_groups_[node.level - 1][i] != own_group))
                 stack.push_back({node.level - 1, i});
     }
+    return compared;
 }
 
-void TriangleTree::along_segment(const Point& from, const Point& to, const std::function<void(Index)>& visit) const {
+void TriangleTree::along_segment(const Point& from, const Point& to, std::size_t most,
+                                 const std::function<void(Index)>& visit) const {
     if (levels_.empty()) return;
     std::array<double, 3> start, step;
     for (int k = 0; k < 3; ++k) {
@@ -166,7 +207,7 @@ void TriangleTree::along_segment(const Point& from, const Point& to, const std::
         return enter <= leave;
     };
     std::vector<std::pair<Index, Index>> stack{{static_cast<Index>(levels_.size()), 0}};  // level + 1, number
-    while (!stack.empty()) {
+    for (std::size_t boxes = 0; !stack.empty() && boxes < most; ++boxes) {
         const auto [level, number] = stack.back();
         stack.pop_back();
         if (!meets(level == 0 ? boxes_[number] : levels_[level - 1][number])) continue;

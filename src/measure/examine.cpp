@@ -1,6 +1,7 @@
 #include "ostraka/measure/examine.h"
 
 #include "ostraka/annotation/curves.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
 
@@ -25,7 +26,9 @@ std::size_t count_patches(const Mesh& mesh, const std::vector<Index>& faces) {
         ++patches;
         seen[first] = true;
         front.assign(1, first);
+        CancelCheck check;
         while (!front.empty()) {
+            check();
             const Face face(front.back());
             front.pop_back();
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
@@ -143,6 +146,7 @@ private:
 }  // namespace
 
 AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation) {
+    check_cancelled();
     AnnotationSummary summary;
     switch (annotation.type) {
         case AnnotationType::point:

@@ -1,5 +1,7 @@
 #include "ostraka/measure/solid.h"
 
+#include "ostraka/core/progress.h"
+
 #include <CGAL/convex_hull_3.h>
 
 #include <cmath>
@@ -10,6 +12,7 @@
 namespace ostraka {
 
 HullSize hull_size(const std::vector<Point>& points) {
+    check_cancelled();
     if (points.size() < 4) return {};
     // Near the origin, so that nothing is lost; a plane hull has no inside.
     std::vector<Point> near;

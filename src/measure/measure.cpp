@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/ids.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_trace.h"
@@ -269,6 +270,7 @@ std::string descriptor_unit(const std::string& descriptor, const std::string& un
 }
 
 std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, const std::array<double, 3>& direction) {
+    check_cancelled();
     const std::vector<Index> vertices = touched_vertices(mesh, annotation);
     if (vertices.empty()) fail_input(name_of(annotation), "has no elements to measure", "select some first");
     const Vector along = scaled_vector({direction[0], direction[1], direction[2]});
@@ -371,6 +373,7 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
                     measure.stale = false;
                     ++result.computed;
                 } catch (const Error& error) {
+                    if (error.kind() == ErrorKind::cancelled) throw;
                     stays_stale(attribute.measure.stale, annotation, attribute, error.problem());
                 }
             } else if (attribute.type == AttributeType::descriptor) {

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/fields/statistics.h"
 
 #include <cmath>
@@ -87,6 +88,7 @@ Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
 }
 
 RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
+    check_cancelled();
     check_region(mesh, faces);
     RegionSolid result;
     if (faces.empty()) return result;

@@ -18,26 +18,27 @@ std::shared_ptr<Object::Made> Object::make_made() { return std::make_shared<Made
 
 const Object::Checksums& Object::checksums() const {
     const std::lock_guard lock(made_->mutex);
-    const auto [place, is_new] = made_->of.try_emplace(name);
-    Checksums& sums = place->second;
-    if (!is_new) return sums;
-    sums.sha256 = sha256;
+    if (const auto known = made_->of.find(name); known != made_->of.end()) return known->second;
+    Checksums sums{sha256, {}};  // kept once they are complete: writing may be cancelled
     if (sums.sha256.empty() && write) {
         static std::atomic<std::size_t> count{0};
-        const Path file = "memory:.checksum/" + std::to_string(++count) + "/" + Path(name).filename().string();
+        struct Folder {
+            const Path path = "memory:.checksum/" + std::to_string(++count);
+            ~Folder() { forget_memory(path); }
+        } const folder;
+        const Path file = folder.path / Path(name).filename();
         OutputTransaction own;
         write(file);
         own.commit();
         sums.sha256 = sha256_of_file(file);
-        for (const std::string& one : files_in(file.parent_path()))  // such as the header of coordinates
-            if (one != file.filename()) sums.beside.emplace_back(one, sha256_of_file(file.parent_path() / one));
-        forget_memory(file.parent_path());
+        for (const std::string& one : files_in(folder.path))  // such as the header of coordinates
+            if (one != file.filename()) sums.beside.emplace_back(one, sha256_of_file(folder.path / one));
     } else if (const auto bytes = as<std::string>(); sums.sha256.empty() && bytes) {
         sums.sha256 = ostraka::sha256(*bytes);
     } else if (const auto document = as<Json>(); sums.sha256.empty() && document) {
         sums.sha256 = ostraka::sha256(to_text(*document));
     }
-    return sums;
+    return made_->of.emplace(name, std::move(sums)).first->second;
 }
 
 const std::string& Context::CallState::know(const Slot& slot, std::size_t i) {

@@ -1,5 +1,6 @@
 #include "call_state.h"
 
+#include "ostraka/core/memory.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/transaction.h"
 
@@ -285,6 +286,10 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     context.run_ = &run;
     const WatchScope watch(&context.watch);
     check_cancelled();
+    // Where somebody set a limit, what cannot keep it is refused before it begins.
+    if (context.watch.memory_limit > 0)
+        require_memory(operation_->memory_needed(input_bytes()), std::string("'") + entry_->name + "'",
+                       "allow more, or use smaller meshes");
     OutputTransaction outputs;
     operation_->run(context, report);
     report.set_provenance(context.provenance());
@@ -300,6 +305,14 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     outputs.commit();
     for (Slot* slot : parameters_.slots()) slot->finish();
     return report;
+}
+
+double Call::input_bytes() const {
+    double bytes = 0;
+    for (const Slot* slot : parameters_.slots())
+        for (const Source& source : slot->sources)
+            if (slot->role == Role::input && !source.file.empty()) bytes += static_cast<double>(size_of_file(source.file));
+    return bytes;
 }
 
 std::string Call::usual_ending(const std::string& output) const {

@@ -1,6 +1,7 @@
 #include "polygons.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/operation/operation.h"
 #include "ostraka/render/values.h"
 
@@ -230,6 +231,7 @@ const Path& FolderOutput::open(std::size_t i, bool replaces) const {
 
 Path FolderOutput::in(const std::string& file, std::size_t i) const {
     const Path path = open(i) / file;
+    require_writable_inside(path, open(i));  // somebody else may have put links into the folder
     context->check_output(path);
     return path;
 }

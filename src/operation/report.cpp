@@ -3,6 +3,7 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
+#include "ostraka/report/markdown.h"
 #include "ostraka/report/table.h"
 
 #include <algorithm>
@@ -267,7 +268,8 @@ std::string Report::to_text(ReportFormat format) const {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         const Block& block = blocks_[i];
         if (block.kind == Block::Kind::line) {
-            if (format != ReportFormat::csv) text += block.text + "\n";
+            if (format == ReportFormat::markdown) text += markdown_paragraphs(block.text) + "\n";
+            else if (format != ReportFormat::csv) text += block.text + "\n";
         } else if (block.kind == Block::Kind::table || block.kind == Block::Kind::text_table) {
             const TextTable* own = block.text_table.get();
             const std::string shown = own == nullptr                  ? shown_table(tables_[block.table], format)

@@ -8,8 +8,6 @@
 #include "ostraka/core/transaction.h"
 #include "ostraka/operations/command_words.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 namespace ostraka {
@@ -55,14 +53,7 @@ struct Conformance : Operation {
     }
 
     void judge(const ConformanceKit& known, Backend& backend, const std::string& name, bool record, Report& report) const {
-        const Path scratch = std::filesystem::temp_directory_path() / ("ostraka-conformance-" + std::to_string(::getpid()));
-        struct Remove {
-            const Path& folder;
-            ~Remove() {
-                std::error_code code;
-                std::filesystem::remove_all(folder, code);
-            }
-        } const remove{scratch};
+        const ScratchFolder scratch("conformance");
         std::vector<CaseResult> results(known.cases.size());
         Progress progress("cases", known.cases.size());
         parallel_for(
@@ -70,8 +61,8 @@ struct Conformance : Operation {
             [&](std::size_t i) {
                 // What they write is their own business, and not part of what this operation commits.
                 const TransactionScope none(nullptr);
-                if (record) record_case(known, known.cases[i], backend, scratch, find_operation);
-                results[i] = run_case(known, known.cases[i], backend, scratch, find_operation);
+                if (record) record_case(known, known.cases[i], backend, scratch.path(), find_operation);
+                results[i] = run_case(known, known.cases[i], backend, scratch.path(), find_operation);
                 progress.advance();
             },
             1);

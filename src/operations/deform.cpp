@@ -204,6 +204,7 @@ struct Deform final : Operation {
                     subject.around = &own_cage;
                     subject.coordinates = &own_weights;
                 } catch (const Error& error) {
+                    if (error.kind() == ErrorKind::cancelled) throw;
                     why_not = error.what();  // those of another cage, perhaps
                 }
             }

@@ -152,6 +152,7 @@ struct Fit final : Operation {
                 report.note(std::to_string(damaged) + " searches in " + file.string() +
                             " were changed since they were made: they are made anew");
         } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled) throw;
             report.note(file.string() + " is not used, and written anew: " + error.problem());
         }
     }

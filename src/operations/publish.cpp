@@ -75,7 +75,8 @@ struct Publish final : AnnotatedMeshOperation {
     void check() const override {
         for (const auto& [name, value, wanted] : {std::tuple("address", address, true), std::tuple("rights", rights, false)}) {
             const bool good = (value.starts_with("https://") || value.starts_with("http://")) &&
-                              value.find_first_of(" <>\"\\^`{|}#?\n\t") == std::string::npos && value.size() > 8;
+                              value.find_first_of(" <>\"\\^`{|}#?\x7f") == std::string::npos && value.size() > 8 &&
+                              std::all_of(value.begin(), value.end(), [](unsigned char c) { return c >= 32; });
             if (!good && (wanted || !value.empty()))
                 fail_usage("--" + std::string(name) + " '" + value + "' is no address of the web",
                            "give one that begins with https:// and has neither blanks nor # and ?");

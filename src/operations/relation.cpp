@@ -112,6 +112,7 @@ struct RelationExtract final : RelationOperation {
             const auto known = std::find_if(list.begin(), list.end(), [&](const auto& one) { return one.id == id; });
             report.note("relationship " + std::to_string(id) + " (" + known->type + ") is stated already");
         }
+        for (const std::string& note : found.notes) report.note(note);
         if (vocabulary)
             for (Relationship& part :
                  part_relationships(found.order, set(), vocabulary.load<Vocabulary>(read_vocabulary), free_id(found.graph)))
@@ -197,6 +198,7 @@ struct RelationAdd final : RelationOperation {
             try {
                 check_constraint(mesh->mesh, set(), relationship, output.file());
             } catch (const Error& error) {
+                if (error.kind() == ErrorKind::cancelled) throw;
                 report.note(std::string("'deform' will refuse this as it is: ") + error.what());
             }
         }

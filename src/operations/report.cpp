@@ -280,6 +280,7 @@ struct MakeReport final : Operation {
         try {
             return read_json(file);
         } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled) throw;
             made->note(file.filename().string() + " is left out: " + error.problem());
             return Json();
         }

@@ -3,10 +3,10 @@
 
 #include "ostraka/core/child_process.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/safe_path.h"
+#include "ostraka/core/words.h"
 #include "ostraka/workflow/collect.h"
 #include "ostraka/workflow/crate.h"
-
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -38,6 +38,32 @@ void report_steps(Report& report, const StudyPlan& plan, const std::vector<Insta
                                                                                              all[InstanceState::skipped]);
 }
 
+/// The words of a program, each apart from the next; those that are known only when it runs by their names.
+std::string program_text(const StudyPlan& plan, const StudyInstance& instance) {
+    std::string text;
+    auto input = instance.inputs.begin();
+    for (std::string word : instance.program) {
+        if (word.empty()) {
+            const StudyStep& from = plan.study.steps[plan.instances[input->instance].step];
+            word = "${" + from.name + "." + input->output + "}";
+            ++input;
+        }
+        text += (text.empty() ? "'" : " '") + printable(word) + "'";
+    }
+    return text;
+}
+
+/// Programs that steps start and that are not the toolkit's own: they are shown before anything runs.
+void show_programs(Context& context, Report& report, const StudyPlan& plan, bool allowed) {
+    for (const StudyInstance& instance : plan.instances) {
+        if (instance.program.empty() || is_own_program(instance.program.front())) continue;
+        const std::string words = program_text(plan, instance);
+        context.note(instance.title(plan.study) + (allowed ? " starts the program: " : " would start the program: ") + words);
+        report.row("programs")("step", instance.title(plan.study))("words", words);
+        if (!allowed) report.answer_no();
+    }
+}
+
 struct Run final : Operation {
     void describe(Parameters& p) override {
         p.input("study", Kind::study, study, "steps, parameters, tables and plots (.study.json)");
@@ -48,11 +74,12 @@ struct Run final : Operation {
         p.options("dry-run", dry_run, "check the study, and say what would run and why").unrecorded();
         p.options("explain", explain, "why this step would run again").unrecorded();
         p.options("again", again, "run all steps, whether they have changed or not").unrecorded();
-        p.options("memory", memory, "below this, further steps start beside others; 0: no limit", Range{0, 1e6}, "GB")
-            .unrecorded();
         p.options("shard", shard, "K/N: the K-th of N parts of the work, for a machine of its own; without it all is gathered")
             .unrecorded();
-        p.options("programs", programs, "folder of the programs that steps name; else that of this command").unrecorded();
+        p.options("reads", reads, "further folder that inputs may lie in, beside the study's own; may be given more than once")
+            .only_by_caller();
+        p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
+        p.options("programs", programs, "folder of the programs that steps name; else that of this command").only_by_caller();
         p.report.values(text("output"), integer("instances", "steps to run"), integer("done", "done"),
                         integer("wouldRun", "would run"), integer("unchanged", "unchanged"), integer("failed", "failed"),
                         integer("skipped", "skipped"));
@@ -60,6 +87,7 @@ struct Run final : Operation {
                        integer("done", "done"), integer("unchanged", "unchanged"), integer("failed", "failed"),
                        integer("skipped", "skipped"));
         p.report.table("reasons", text("step", "step"), text("state", "state"), text("why", "why"));
+        p.report.table("programs", text("step", "step"), text("words", "program"));
         p.report.table("failures", text("step", "step"), text("problem", "problem"));
     }
 
@@ -68,12 +96,13 @@ struct Run final : Operation {
         static_cast<void>(share_from_text(shard));
     }
 
+    [[nodiscard]] double memory_needed(double /*input_bytes*/) const override { return 0; }  // steps are judged one by one
+
     void run(Context& context, Report& report) override {
         RunStudyOptions options;
         options.only = only;
         options.dry_run = dry_run || !explain.empty();
         options.again = again;
-        options.memory = memory * 1e9;
         options.share = share_from_text(shard);
         options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
         if (!explain.empty()) options.only = {explain};
@@ -81,10 +110,13 @@ struct Run final : Operation {
         StudyOptions reading;
         reading.quick = quick;
         reading.set = set;
+        reading.reads.assign(reads.begin(), reads.end());
+        reading.allow_programs = allow_programs || dry_run;  // a dry run shows them
         std::optional<StudyPlan> plan;
         context.record([&] { plan.emplace(read_study(file, find_operation, reading)); });
         check_collected(*plan);
-        check_programs(*plan, options);
+        show_programs(context, report, *plan, allow_programs);
+        if (!dry_run || allow_programs) check_programs(*plan, options);
         if (!dry_run && explain.empty()) {
             if (!output) output.sources.push_back({run_folder(file), {}});
             output.open();
@@ -92,7 +124,7 @@ struct Run final : Operation {
         const Path folder = output ? output.path() : run_folder(file);
         for (const StudyInstance& instance : plan->instances)
             for (const StudyInput& input : instance.inputs)
-                if (!input.file.empty() && is_within(input.file, folder))
+                if (!input.file.empty() && is_inside(input.file, folder) && !is_inside(folder, input.file))
                     throw Error(ErrorKind::input, plan->study.file.string(),
                                 "'" + input.file.string() + "' is an input, and lies in the run folder " + folder.string(),
                                 "name another run folder (--output)");
@@ -125,12 +157,6 @@ struct Run final : Operation {
     }
 
 private:
-    static bool is_within(const Path& file, const Path& folder) {
-        const auto full = [](const Path& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
-        const std::string relative = full(file).lexically_relative(full(folder)).generic_string();
-        return !relative.empty() && relative != "." && !relative.starts_with("..");
-    }
-
     void check_programs(const StudyPlan& plan, const RunStudyOptions& options) const {
         for (const StudyStep& step : plan.study.steps)
             if (step.operation == nullptr)
@@ -147,10 +173,9 @@ private:
 
     FileInput study;
     FolderOutput output;
-    bool quick = false, dry_run = false, again = false;
-    std::vector<std::string> set, only;
+    bool quick = false, dry_run = false, again = false, allow_programs = false;
+    std::vector<std::string> set, only, reads;
     std::string explain, shard, programs;
-    double memory = 0;
 };
 
 /// Of a report all but what may differ between two runs.
@@ -166,37 +191,45 @@ struct Replay final : Operation {
     void describe(Parameters& p) override {
         p.input("crate", Kind::folder, crate, "the folder of a run");
         p.output_option("output", Kind::folder, output, "where the run is repeated; else nothing of it is kept");
-        p.options("inputs", inputs, "folder that stands for that of the study, whose inputs are found from there").unrecorded();
-        p.options("programs", programs, "folder of the programs that steps name; else that of this command").unrecorded();
+        p.options("inputs", inputs, "folder that stands for that of the study, whose inputs are found from there")
+            .only_by_caller();
+        p.options("reads", reads, "further folder that inputs may lie in; may be given more than once").only_by_caller();
+        p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
+        p.options("programs", programs, "folder of the programs that steps name; else that of this command").only_by_caller();
         p.report.values(integer("steps", "steps repeated"), integer("outputs", "outputs compared"),
                         integer("same", "same to the bit"), integer("different", "different"));
+        p.report.table("programs", text("step", "step"), text("words", "program"));
         p.report.table("differences", text("step", "step"), text("output", "output"), text("before"), text("now"),
                        text("what", "what differs"));
     }
 
+    [[nodiscard]] double memory_needed(double /*input_bytes*/) const override { return 0; }
+
     void run(Context& context, Report& report) override {
         const Path folder = crate.path();
+        for (const char* name : {"run.json", "run.study.json"}) require_writable_inside(folder / name, folder);
         const RunRequest request = read_run_request(folder);
         StudyOptions reading;
         reading.quick = request.quick;
         reading.set = request.set;
+        reading.set_from_file = true;
         reading.folder = inputs.empty() ? (folder / request.study_folder).lexically_normal() : Path(inputs);
+        // The folder that the run itself names is read only where the caller names it too.
+        reading.reads_folder = !inputs.empty();
+        reading.reads.assign(reads.begin(), reads.end());
+        reading.reads.push_back(folder);
+        reading.allow_programs = allow_programs;
         std::optional<StudyPlan> plan;
         context.record([&] { plan.emplace(read_study(folder / "run.study.json", find_operation, reading)); });
+        show_programs(context, report, *plan, true);
+        check_run_folder(*plan, folder);
         RunStudyOptions options;
         options.only = request.only;
         options.again = true;
         options.program_folder = programs.empty() ? own_program_folder() : Path(programs);
-        const bool kept = static_cast<bool>(output);
-        const Path repeated =
-            kept ? output.open() : std::filesystem::temp_directory_path() / ("ostraka-replay-" + std::to_string(::getpid()));
-        struct Remove {
-            Path folder;
-            ~Remove() {
-                std::error_code code;
-                if (!folder.empty()) std::filesystem::remove_all(folder, code);
-            }
-        } const remove{kept ? Path() : repeated};
+        std::optional<ScratchFolder> scratch;
+        if (!output) scratch.emplace("replay");
+        const Path repeated = output ? output.open() : scratch->path();
         const auto results = run_study(*plan, repeated, options);
         std::size_t steps = 0, compared = 0, same = 0;
         for (std::size_t i = 0; i < results.size(); ++i) {
@@ -240,6 +273,8 @@ struct Replay final : Operation {
 
     FileInput crate;
     FolderOutput output;
+    bool allow_programs = false;
+    std::vector<std::string> reads;
     std::string inputs, programs;
 };
 

@@ -4,6 +4,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/report/slice_drawing.h"
 #include "ostraka/slicing/silhouette.h"
 
@@ -201,6 +202,10 @@ struct SliceObject final : Operation {
                 const auto along = direction_of(direction, "--direction");
                 options.up = {along[0], along[1], along[2]};
             }
+            // A slice crosses about three times the square root of the faces, with points and descriptors for each.
+            const double crossed = 3 * std::sqrt(static_cast<double>(on().number_of_faces()));
+            require_memory(200 * crossed * static_cast<double>(count.value_or(50)),
+                           std::to_string(count.value_or(50)) + " slices", "ask for fewer (--count)");
             cut = cut_object(on(), faces, options);
         }
         if (!residues.empty()) add_medial_axes(cut, residues);

@@ -98,10 +98,10 @@ constexpr OperationEntry entries[]{
     {"render", "make a picture of meshes, their annotations and maps", make_render},
     {"publish", "write an annotated object as a folder that any web server serves: IIIF manifest, GLB with features, annotations, a page", make_publish},
     {"report", "make one HTML page of results that opens anywhere: objects in 3D, tables, drawings", make_report, 2},
-    {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run},
-    {"replay", "repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs", make_replay},
-    {"conformance run", "give the golden cases to another program, and say where it agrees (exit code 3: somewhere it does not)", make_conformance_run},
-    {"conformance self", "the golden cases by this command; exit code 3 if one differs", make_conformance_self},
+    {"run", "run the steps of a study file; what has not changed is not run again (exit code 3: a step failed)", make_run, 1, true},
+    {"replay", "repeat a run of a study and compare all that it made, to the bit; exit code 3 if something differs", make_replay, 1, true},
+    {"conformance run", "give the golden cases to another program, and say where it agrees (exit code 3: somewhere it does not)", make_conformance_run, 1, true},
+    {"conformance self", "the golden cases by this command; exit code 3 if one differs", make_conformance_self, 1, true},
     {"operations", "what the toolkit can do: every operation with its inputs, outputs, options, ranges, defaults and units", make_operations},
 };
 // clang-format on

@@ -1,8 +1,11 @@
 #include "viewer.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+#include "ostraka/page/content_policy.h"
 
-#include <string_view>
+#include <algorithm>
+#include <cstdint>
 
 // The built page (web/README.md) as it lies in the project.
 asm(".section .rodata\n"
@@ -22,27 +25,84 @@ extern const char ostraka_viewer_end[];
 
 namespace ostraka {
 
+namespace {
+
+std::string_view built_page() {
+    return {ostraka_viewer_begin, static_cast<std::size_t>(ostraka_viewer_end - ostraka_viewer_begin)};
+}
+
+std::string bytes_of_hexadecimal(const std::string& digits) {
+    std::string bytes;
+    for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+    return bytes;
+}
+
+/// Whether a browser runs the text of a script with these attributes.
+bool runs(std::string_view attributes) {
+    if (attributes.find(" src=") != std::string_view::npos) return false;
+    return attributes.find("type=") == std::string_view::npos || attributes.find("type=\"module\"") != std::string_view::npos;
+}
+
+/// What stands before the data, the same in every page but for `beside`.
+std::string sources(std::string_view element, bool beside) {
+    return (beside ? "'self' " : "") + inline_hashes(built_page(), element) + " ";
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+    static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const auto byte = [&](std::size_t k) {
+            return i + k < bytes.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) : 0U;
+        };
+        const std::uint32_t word = byte(0) << 16U | byte(1) << 8U | byte(2);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += i + k <= bytes.size() ? letters[word >> (18U - 6U * static_cast<unsigned>(k)) & 63U] : '=';
+    }
+    return text;
+}
+
+std::string inline_hashes(std::string_view page, std::string_view element) {
+    const std::string begin = "<" + std::string(element), end = "</" + std::string(element);
+    std::string hashes;
+    for (std::size_t at = page.find(begin); at != std::string_view::npos; at = page.find(begin, at)) {
+        const std::size_t text = std::min(page.find('>', at), page.size() - 1) + 1;
+        const std::size_t stop = std::min(page.find(end, text), page.size());
+        if (element != "script" || runs(page.substr(at, text - at)))
+            hashes += (hashes.empty() ? "'sha256-" : " 'sha256-") +
+                      base64(bytes_of_hexadecimal(sha256(page.substr(text, stop - text)))) + "'";
+        at = stop;
+    }
+    return hashes;
+}
+
 std::string viewer_with(const std::string& data, const std::string& bytes, bool beside) {
-    const std::string_view page(ostraka_viewer_begin, static_cast<std::size_t>(ostraka_viewer_end - ostraka_viewer_begin));
-    // What a policy says of scripts and pictures, and what it says where there is a folder beside the page.
-    constexpr std::string_view scripts = "script-src ", pictures = "img-src ";
+    static const std::string own[] = {sources("script", false), sources("script", true), sources("style", false)};
+    // What the policy says of scripts, styles and pictures.
+    constexpr std::string_view scripts = "script-src ", styles = "style-src ", pictures = "img-src ";
     struct Place {
         std::string_view mark;
-        std::string text;
+        std::string_view kept, text;
     };
-    const std::string allowed = beside ? "'self' " : "";
-    const Place places[] = {{scripts, std::string(scripts) + allowed},
-                            {pictures, std::string(pictures) + allowed},
-                            {"@OSTRAKA-DATA@", data},
-                            {"@OSTRAKA-BYTES@", bytes}};
+    const Place places[] = {{scripts, scripts, own[beside ? 1 : 0]},
+                            {styles, styles, own[2]},
+                            {pictures, pictures, beside ? "'self' " : ""},
+                            {"@OSTRAKA-DATA@", "", data},
+                            {"@OSTRAKA-BYTES@", "", bytes}};
+    const std::string_view page = built_page();
     std::string made;
-    made.reserve(page.size() + data.size() + bytes.size());
+    made.reserve(page.size() + data.size() + bytes.size() + 1000);
     std::size_t at = 0;
-    for (const auto& [mark, text] : places) {
+    for (const auto& [mark, kept, text] : places) {
         const std::size_t place = page.find(mark, at);
         if (place == std::string_view::npos || page.find(mark, place + mark.size()) != std::string_view::npos)
             fail_work("the viewer", "has not one place '" + std::string(mark) + "'", "build it again (web/README.md)");
         made += page.substr(at, place - at);
+        made += kept;
         made += text;
         at = place + mark.size();
     }

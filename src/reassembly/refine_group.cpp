@@ -1,5 +1,7 @@
 #include "refine_group.h"
 
+#include "ostraka/core/progress.h"
+
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/manifold.h>
@@ -54,6 +56,7 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
     // Of large groups fewer, each fragment being held by several neighbours.
     const std::size_t samples = std::clamp<std::size_t>(200 * 25 / n, 40, 200);
     for (int round = 0; round < rounds; ++round) {
+        check_cancelled();
         const double wide = rounds > 1 ? 2 - static_cast<double>(round) / (rounds - 1) : 1;
         ceres::Problem::Options ownership;
         ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

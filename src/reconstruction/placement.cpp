@@ -2,6 +2,7 @@
 #include "ostraka/core/dense.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/random.h"
@@ -173,6 +174,7 @@ public:
         // Beside those that agree, a wrong one is off by far more than they are.
         const double spread = std::sqrt(moments().spread_from / static_cast<double>(n));
         for (int round = 0; round < 10; ++round) {
+            check_cancelled();
             const std::vector<bool> before = used;
             std::vector<double> off;
             for (std::size_t i = 0; i < n; ++i) off.push_back(distance(chosen, i) / chosen.scale);

@@ -4,6 +4,7 @@
 #include "reconstruction_verdict.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
@@ -249,6 +250,7 @@ private:
     void take_shape_of_class() {
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
+            check_cancelled();
             result_.prior = fit_prior(scaled_, prepared_.set, placed_, *prepared_.prior, prepared_.options.prior);
             scaled_ = result_.prior->mesh;
             shaped_ = true;

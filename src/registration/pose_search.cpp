@@ -5,6 +5,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/plane_motion.h"
@@ -89,6 +90,7 @@ double score_on(const detail::NearestGrid& grid, const SurfacePoints& part, cons
 Motion refined_on(const detail::NearestGrid& grid, const SurfacePoints& part, Motion pose, double tolerance, int rounds,
                   bool scale) {
     for (int round = 0; round < rounds; ++round) {
+        check_cancelled();
         const double t = static_cast<double>(round) / std::max(1, rounds - 1);
         const double search_radius =
             std::pow(grid.search_radius(), 1 - t) * std::pow(std::min(grid.search_radius(), 1.5 * tolerance), t);

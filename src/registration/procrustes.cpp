@@ -3,6 +3,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 
 #include <Eigen/LU>
 
@@ -94,6 +95,7 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
     double before = std::numeric_limits<double>::infinity(), all = 0;
     for (const Landmarks& x : centred) all += x.squaredNorm();
     while (result.iterations < max_iterations && !result.converged) {
+        check_cancelled();
         ++result.iterations;
         parallel_for(n, [&](std::size_t i) {
             rotations[i] = best_rotation(centred[i], result.mean, options.reflection).rotation;

@@ -99,11 +99,14 @@ std::vector<RelationCheck> check_relations(const Mesh& given_mesh, const Annotat
     const Mesh& mesh = along_edges.mesh();
     const AnnotationSet& set = along_edges.annotations();
     const bool cut = along_edges.cut().has_value();
-    SharedLengths adjacent;
+    SharedLengths stated, adjacent;  // of all the pairs only those that are asked for
+    for (const auto& relationship : graph.relationships)
+        if (relationship.annotations.size() == 2)
+            stated[std::minmax(relationship.annotations[0], relationship.annotations[1])] = 0;
     const Topology found = topology(given_mesh, given);
     for (const auto& pair : found.adjacent) {
-        const int a = set.annotations[pair.a].id, b = set.annotations[pair.b].id;
-        adjacent[std::minmax(a, b)] = pair.length;
+        const std::pair<int, int> ids = std::minmax(set.annotations[pair.a].id, set.annotations[pair.b].id);
+        if (stated.contains(ids)) adjacent[ids] = pair.length;
     }
     RelationMeter meter(mesh, set, options);
     std::vector<RelationCheck> checks;

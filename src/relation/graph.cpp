@@ -187,6 +187,20 @@ const Relationship* find_twin(const RelationGraph& graph, const Relationship& re
     return nullptr;
 }
 
+struct Twins::Said {
+    std::map<Statement, int> ids;
+};
+
+Twins::Twins(const RelationGraph& graph) : said_(std::make_unique<Said>()) {
+    for (const auto& known : graph.relationships) said_->ids.emplace(statement(known), known.id);
+}
+Twins::~Twins() = default;
+
+std::optional<int> Twins::find(const Relationship& relationship) const {
+    const auto found = said_->ids.find(statement(relationship));
+    return found == said_->ids.end() ? std::nullopt : std::optional(found->second);
+}
+
 void check_graph(const RelationGraph& graph, const AnnotationSet& set, const std::string& where) {
     std::set<int> ids;
     std::map<Statement, int> said;

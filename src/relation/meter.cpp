@@ -35,7 +35,7 @@ std::vector<Part*> parts_of(const std::vector<int>& ids, const std::function<Par
     std::vector<Part*> parts;
     for (const int id : ids) parts.push_back(&part(id));
     for (Part* one : parts)
-        if (one->cloud().points.empty()) throw Unknown{"'" + one->annotation().tag + "' is empty"};
+        if (one->empty()) throw Unknown{"'" + one->annotation().tag + "' is empty"};
     return parts;
 }
 
@@ -170,50 +170,101 @@ Part& RelationMeter::State::part(int id) {
     return parts.try_emplace(id, mesh, *annotation).first->second;
 }
 
-const Contacts& RelationMeter::State::all_contacts() {
-    if (contacts) return *contacts;
-    Contacts found;
-    const Topology known = topology(mesh, set);
+void RelationMeter::State::used(const std::vector<int>& ids) {
+    constexpr std::size_t most_faces = 300'000;  // some hundred bytes each
+    for (const int id : ids) {
+        if (const auto at = recent_place.find(id); at != recent_place.end()) recent.erase(at->second);
+        else recent_faces += part(id).annotation().faces.size();
+        recent_place[id] = recent.insert(recent.end(), id);
+    }
+    while (recent_faces > most_faces && recent.size() > ids.size()) {
+        Part& oldest = part(recent.front());
+        recent_faces -= oldest.annotation().faces.size();
+        oldest.forget();
+        recent_place.erase(recent.front());
+        recent.pop_front();
+    }
+}
+
+namespace {
+
+/// The pairs of the longest borders, as many as leave the contacts' edges bounded; all of them where they are few.
+std::vector<AdjacentPair> longest_borders(std::vector<AdjacentPair> pairs) {
+    constexpr std::size_t most_pairs = 20'000, most_edges = 4'000'000;
+    std::size_t edges = 0;
+    for (const AdjacentPair& pair : pairs) edges += pair.edges;
+    if (pairs.size() <= most_pairs && edges <= most_edges) return pairs;
+    std::sort(pairs.begin(), pairs.end(), [](const AdjacentPair& x, const AdjacentPair& y) {
+        return std::tuple(-x.length, x.a, x.b) < std::tuple(-y.length, y.a, y.b);
+    });
+    std::size_t kept = 0;
+    for (edges = 0; kept < std::min(most_pairs, pairs.size()); ++kept)
+        if (edges += pairs[kept].edges; edges > most_edges && kept > 0) break;
+    pairs.resize(kept);
+    return pairs;
+}
+
+/// Middles of the edges between two regions. Only those on one side of an edge count: a region on both overlaps the others there.
+void add_contacts(const Mesh& mesh, const AnnotationSet& set, Contacts& found) {
     std::vector<std::vector<int>> regions(mesh.number_of_faces());
     for (const auto& annotation : set.annotations)
         for (const Index f : annotation.faces) regions[f].push_back(annotation.id);
-    for (const auto& pair : known.adjacent) {
-        const int a = set.annotations[pair.a].id, b = set.annotations[pair.b].id;
-        found[std::minmax(a, b)];
-    }
+    for (auto& list : regions) std::sort(list.begin(), list.end());
+    std::vector<int> of_f, of_g;
     for (const Edge e : mesh.edges()) {
         const Halfedge h = mesh.halfedge(e);
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
         if (f == Mesh::null_face() || g == Mesh::null_face() || regions[f] == regions[g]) continue;
+        of_f.clear(), of_g.clear();
+        std::set_difference(regions[f].begin(), regions[f].end(), regions[g].begin(), regions[g].end(), std::back_inserter(of_f));
+        std::set_difference(regions[g].begin(), regions[g].end(), regions[f].begin(), regions[f].end(), std::back_inserter(of_g));
         const Vector3d p = eigen(mesh.point(mesh.source(h))), q = eigen(mesh.point(mesh.target(h)));
-        for (const int a : regions[f])
-            for (const int b : regions[g])
-                if (const auto entry = found.find(std::minmax(a, b)); a != b && entry != found.end()) {
+        for (const int a : of_f)
+            for (const int b : of_g)
+                if (const auto entry = found.find(std::minmax(a, b)); entry != found.end()) {
                     entry->second.points.emplace_back((p + q) / 2);
                     entry->second.weights.push_back((q - p).norm());
                 }
     }
+}
+
+}  // namespace
+
+const Contacts& RelationMeter::State::all_contacts() {
+    if (contacts) return *contacts;
+    const std::vector<AdjacentPair> adjacent = topology(mesh, set).adjacent;
+    const std::vector<AdjacentPair> kept = longest_borders(adjacent);
+    contacts_left_out = kept.size() < adjacent.size();
+    Contacts found;
+    for (const auto& pair : kept) found[std::minmax(set.annotations[pair.a].id, set.annotations[pair.b].id)];
+    add_contacts(mesh, set, found);
     return contacts.emplace(std::move(found));
 }
 
 const Cloud* RelationMeter::State::contact(int a, int b) {
     const auto entry = all_contacts().find(std::minmax(a, b));
-    return entry == contacts->end() ? nullptr : &entry->second;
+    if (entry != contacts->end()) return &entry->second;
+    if (!contacts_left_out) return nullptr;
+    Contacts one;  // that was left out, perhaps
+    one[std::minmax(a, b)];
+    add_contacts(mesh, set, one);
+    const auto& cloud = one.begin()->second;
+    return cloud.points.empty() ? nullptr : &contacts->insert_or_assign(std::minmax(a, b), cloud).first->second;
 }
 
-std::optional<double> RelationMeter::State::attribute(int id, const std::string& name) const {
-    const Annotation* annotation = set.find(id);
-    for (const auto& attribute : annotation->attributes) {
+std::optional<double> RelationMeter::State::attribute(const Annotation& annotation, const std::string& name) const {
+    for (const auto& attribute : annotation.attributes) {
         if (attribute.name != name) continue;
         if (attribute.type == AttributeType::measure) {
             try {
-                return evaluate(mesh, *annotation, attribute.measure);
-            } catch (const Error&) {
+                return evaluate(mesh, annotation, attribute.measure);
+            } catch (const Error& error) {
+                if (error.kind() == ErrorKind::cancelled) throw;
                 return {};  // pins without a way between them, say
             }
         }
         if (attribute.type == AttributeType::descriptor) {
-            if (const auto value = evaluate(mesh, *annotation, name)) return value;
+            if (const auto value = evaluate(mesh, annotation, name)) return value;
             if (attribute.descriptor.values.size() == 1 && !attribute.descriptor.stale)
                 return attribute.descriptor.values.front();
         }
@@ -225,7 +276,7 @@ std::vector<double> RelationMeter::State::values(const Relationship& stated) con
     const std::string& name = stated.parameters.attribute;
     std::vector<double> list;
     for (const int id : stated.annotations) {
-        const auto value = attribute(id, name);
+        const auto value = attribute(*set.find(id), name);
         if (!value) throw Unknown{"annotation " + std::to_string(id) + " has no number '" + name + "'"};
         list.push_back(*value);
     }
@@ -233,7 +284,7 @@ std::vector<double> RelationMeter::State::values(const Relationship& stated) con
 }
 
 RelationMeter::RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options)
-    : state_(new State{mesh, set, options, box_diagonal(mesh), {}, {}}) {
+    : state_(new State{mesh, set, options, box_diagonal(mesh), {}, {}, false, {}, {}, 0}) {
     check_options(options, "relation");
 }
 RelationMeter::~RelationMeter() = default;
@@ -241,6 +292,7 @@ RelationMeter::~RelationMeter() = default;
 void RelationMeter::State::measure(GeometricRelation kind, Findings& findings) {
     using enum GeometricRelation;
     const Relationship& stated = findings.stated;
+    used(stated.annotations);
     const std::vector<Part*> members = parts_of(stated.annotations, [&](int id) -> Part& { return part(id); });
     switch (kind) {
         case mirror_symmetry:

@@ -5,6 +5,9 @@
 
 #include "ostraka/relation/geometric.h"
 
+#include <list>
+#include <unordered_map>
+
 namespace ostraka {
 
 /// Edges between two regions without a common face: their middles, weighted by length.
@@ -51,12 +54,20 @@ struct RelationMeter::State {
     double diagonal = 0;
     std::map<int, detail::Part> parts;
     std::optional<Contacts> contacts;
+    bool contacts_left_out = false;  ///< of the many there are, those of the shortest borders
+    std::list<int> recent;           ///< parts in use, the last used at the end
+    std::unordered_map<int, std::list<int>::iterator> recent_place;
+    std::size_t recent_faces = 0;
 
     detail::Part& part(int id);
     const detail::Cloud* contact(int a, int b);  ///< nullptr: not adjacent
+    /// Of the pairs with the longest shared borders, where there are very many.
     const Contacts& all_contacts();
+    /// To be called before parts are measured: frees what others used longest ago hold, so that many regions that overlap take no
+    /// more memory than a few.
+    void used(const std::vector<int>& ids);
     /// The value of an attribute by its name, its unit after it; nothing if there is no single number.
-    [[nodiscard]] std::optional<double> attribute(int id, const std::string& name) const;
+    [[nodiscard]] std::optional<double> attribute(const Annotation& annotation, const std::string& name) const;
     /// Of the stated attribute. Throws Unknown.
     [[nodiscard]] std::vector<double> values(const Relationship& stated) const;
     /// Throws Unknown.

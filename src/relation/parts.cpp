@@ -28,6 +28,12 @@ Cloud::Plane Cloud::plane() const {
     return plane;
 }
 
+bool Part::empty() const {
+    return annotation_.faces.empty() && annotation_.points.empty() &&
+           std::all_of(annotation_.polylines.begin(), annotation_.polylines.end(),
+                       [](const auto& polyline) { return polyline.size() < 2; });
+}
+
 const Cloud& Part::cloud() {
     if (cloud_) return *cloud_;
     Cloud cloud;
@@ -53,10 +59,11 @@ const Vector3d& Part::centroid() {
 }
 
 double Part::area() {
+    if (area_) return *area_;
     double sum = 0;
     if (annotation_.type == AnnotationType::region)
         for (const double weight : cloud().weights) sum += weight;
-    return sum;
+    return area_.emplace(sum);
 }
 
 const std::vector<Vector3d>& Part::samples() {
@@ -129,6 +136,13 @@ Vector3d Part::closest(const Vector3d& query) {
         search_ = std::make_unique<SurfaceSearch>(*own_);
     }
     return eigen(search_->closest(point_of(query)).point);
+}
+
+void Part::forget() {
+    cloud_.reset();
+    samples_.reset();
+    search_.reset();
+    own_.reset();
 }
 
 namespace {

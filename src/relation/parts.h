@@ -41,6 +41,7 @@ public:
     Part(const Mesh& mesh, const Annotation& annotation) : mesh_(mesh), annotation_(annotation) {}
 
     [[nodiscard]] const Annotation& annotation() const { return annotation_; }
+    [[nodiscard]] bool empty() const;
     const Cloud& cloud();                    ///< all of it
     const std::vector<Vector3d>& samples();  ///< of a region: 500 at most, spread by area
     const Vector3d& centroid();
@@ -51,12 +52,15 @@ public:
     const std::vector<double>& shape();
     /// The region's nearest point.
     Vector3d closest(const Vector3d& query);
+    /// Frees what takes as much memory as the region; it is made again when asked for.
+    void forget();
 
 private:
     const Mesh& mesh_;
     const Annotation& annotation_;
     std::optional<Cloud> cloud_;
     std::optional<Vector3d> centroid_;
+    std::optional<double> area_;
     std::optional<std::vector<Vector3d>> samples_;
     std::optional<std::vector<double>> shape_;
     std::optional<PartAxis> axis_;

@@ -1,7 +1,13 @@
 #include "ostraka/relation/topology.h"
 
+#include "bit_table.h"
+
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/memory.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 
 #include <bit>
 #include <numeric>
@@ -11,37 +17,8 @@ namespace ostraka {
 
 namespace {
 
+using detail::BitTable;
 using Bits = std::vector<std::uint64_t>;
-
-/// A square table of bits.
-class BitTable {
-public:
-    BitTable(std::size_t rows, std::size_t columns) : words_((columns + 63) / 64), bits_(rows * words_, 0) {}
-    [[nodiscard]] std::uint64_t* row(std::size_t r) { return bits_.data() + r * words_; }
-    [[nodiscard]] const std::uint64_t* row(std::size_t r) const { return bits_.data() + r * words_; }
-    [[nodiscard]] bool test(std::size_t r, std::size_t c) const { return (row(r)[c / 64] >> (c % 64) & 1U) != 0; }
-    void set(std::size_t r, std::size_t c) { row(r)[c / 64] |= std::uint64_t{1} << (c % 64); }
-    void clear(std::size_t r, std::size_t c) { row(r)[c / 64] &= ~(std::uint64_t{1} << (c % 64)); }
-    void fill(std::size_t r) { std::fill_n(row(r), words_, ~std::uint64_t{0}); }
-    void zero(std::size_t r) { std::fill_n(row(r), words_, 0); }
-    void keep(std::size_t r, const Bits& mask) {
-        for (std::size_t w = 0; w < words_; ++w) row(r)[w] &= mask[w];
-    }
-    void add(std::size_t r, const std::uint64_t* mask) {
-        for (std::size_t w = 0; w < words_; ++w) row(r)[w] |= mask[w];
-    }
-    [[nodiscard]] std::size_t words() const { return words_; }
-    template <class Visit>
-    void each(std::size_t r, Visit&& visit) const {
-        for (std::size_t w = 0; w < words_; ++w)
-            for (std::uint64_t left = row(r)[w]; left != 0; left &= left - 1)
-                visit(w * 64 + static_cast<std::size_t>(std::countr_zero(left)));
-    }
-
-private:
-    std::size_t words_;
-    std::vector<std::uint64_t> bits_;
-};
 
 void mark(Bits& bits, std::size_t i) { bits[i / 64] |= std::uint64_t{1} << (i % 64); }
 
@@ -144,19 +121,27 @@ Containments contain(const Mesh& mesh, const AnnotationSet& set, const FaceClass
     const std::size_t words = contains.words();
     for (std::size_t a = 0; a < n; ++a) contains.fill(a);
 
-    // Regions in regions: the intersection of the sets of all their faces.
+    // Regions in regions: the intersection of the sets of all their faces. A thread has columns of its own.
     std::vector<bool> used(classes.parent.size(), false);
     for (const std::uint32_t c : classes.of_face) used[c] = true;
-    for (std::uint32_t c = 1; c < used.size(); ++c) {
-        if (!used[c]) continue;
-        const auto regions = classes.regions(c);
-        Bits bits(words, 0);
-        for (const std::size_t r : regions) mark(bits, r);
-        for (const std::size_t r : regions) {
-            contains.keep(r, bits);
-            result.overlaps.add(r, bits.data());
-        }
-    }
+    constexpr std::size_t words_of_thread = 16;
+    parallel_for((words + words_of_thread - 1) / words_of_thread,
+                 [&](std::size_t slice) {
+                     const std::size_t begin = slice * words_of_thread, end = std::min(words, begin + words_of_thread);
+                     CancelCheck cancelled;
+                     for (std::uint32_t c = 1; c < used.size(); ++c) {
+                         cancelled();
+                         if (!used[c]) continue;
+                         const auto regions = classes.regions(c);
+                         Bits bits(words, 0);
+                         for (const std::size_t r : regions) mark(bits, r);
+                         for (const std::size_t r : regions) {
+                             contains.keep(r, bits, begin, end);
+                             result.overlaps.add(r, bits.data(), begin, end);
+                         }
+                     }
+                 },
+                 1);
 
     // Points and lines in anything: the intersection over their vertices, and over their edges for lines in lines.
     const CurveIndex curves(set);
@@ -245,29 +230,83 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
     return order;
 }
 
-std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& classes, const BitTable& overlaps) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, double> between;  // classes -> length of the edges
+/// Length and number of edges between two faces' sets of regions, or between two regions.
+struct Shared {
+    std::uint32_t a, b;
+    double length;
+    std::size_t edges;
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> key() const { return {a, b}; }
+};
+
+/// One entry a pair, in order; lengths are added up in the order of the list.
+void add_up(std::vector<Shared>& list) {
+    std::stable_sort(list.begin(), list.end(), [](const Shared& x, const Shared& y) { return x.key() < y.key(); });
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (next > 0 && list[next - 1].key() == list[i].key()) {
+            list[next - 1].length += list[i].length;
+            list[next - 1].edges += list[i].edges;
+        } else {
+            list[next++] = list[i];
+        }
+    }
+    list.resize(next);
+}
+
+std::vector<Shared> shared_by_classes(const Mesh& mesh, const FaceClasses& classes) {
+    std::vector<Shared> between;
     for (const Edge e : mesh.edges()) {
         const Halfedge h = mesh.halfedge(e);
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
         if (f == Mesh::null_face() || g == Mesh::null_face()) continue;
         const std::uint32_t a = classes.of_face[f], b = classes.of_face[g];
         if (a == b || a == 0 || b == 0) continue;
-        between[std::minmax(a, b)] += std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
+        const auto [low, high] = std::minmax(a, b);
+        between.push_back(
+            {low, high, std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)))), 1});
     }
-    std::map<std::pair<std::size_t, std::size_t>, double> lengths;
-    for (const auto& [pair, length] : between)
-        for (const std::size_t a : classes.regions(pair.first))
-            for (const std::size_t b : classes.regions(pair.second))
-                if (a != b && !overlaps.test(a, b)) lengths[std::minmax(a, b)] += length;
+    add_up(between);
+    return between;
+}
+
+std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& classes, const BitTable& overlaps) {
+    std::vector<Shared> lengths;
+    std::size_t settled = 0;
+    for (const Shared& between : shared_by_classes(mesh, classes)) {
+        const auto first = classes.regions(between.a), second = classes.regions(between.b);
+        // A region on both sides overlaps all of either: only those of one side are neighbours.
+        std::vector<std::uint32_t> of_first, of_second;
+        std::set_difference(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(of_first));
+        std::set_difference(second.begin(), second.end(), first.begin(), first.end(), std::back_inserter(of_second));
+        for (const std::uint32_t a : of_first)
+            for (const std::uint32_t b : of_second)
+                if (!overlaps.test(a, b)) lengths.push_back({std::min(a, b), std::max(a, b), between.length, between.edges});
+        if (lengths.size() > 2 * settled + (std::size_t{1} << 22)) {
+            add_up(lengths);
+            settled = lengths.size();
+            require_memory(4.0 * sizeof(Shared) * static_cast<double>(settled), "to tell which regions are neighbours",
+                           "give fewer annotations at once");
+        }
+    }
+    add_up(lengths);
     std::vector<AdjacentPair> list;
-    for (const auto& [pair, length] : lengths) list.push_back({pair.first, pair.second, length});
+    list.reserve(lengths.size());
+    for (const Shared& one : lengths) list.push_back({one.a, one.b, one.length, one.edges});
     return list;
+}
+
+/// Tables of the pairs take the square of the number.
+void require_few(const AnnotationSet& set) {
+    constexpr std::size_t most = 30000;
+    if (set.annotations.size() > most)
+        fail_input("annotations", "there are more than " + std::to_string(most) + ", too many to tell which contain each other",
+                   "give fewer at once");
 }
 
 }  // namespace
 
 Topology topology(const Mesh& given_mesh, const AnnotationSet& given) {
+    require_few(given);
     check_annotations(given, given_mesh, "annotations");
     const AlongEdges along_edges(given_mesh, given);
     const Mesh& mesh = along_edges.mesh();
@@ -281,22 +320,26 @@ Topology topology(const Mesh& given_mesh, const AnnotationSet& given) {
     return result;
 }
 
-std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id) {
+std::vector<Relationship> relationships_of(const Topology& topology, const AnnotationSet& set, int first_id,
+                                           std::size_t most_of_kind) {
     std::vector<Relationship> list;
     const auto id_of = [&](std::size_t a) { return set.annotations[a].id; };
     const auto add = [&](GeometricRelation kind, std::vector<int> members) -> Relationship& {
         return list.emplace_back(extracted_relationship(kind, first_id + static_cast<int>(list.size()), std::move(members)));
     };
     for (std::size_t a = 0; a < topology.order.direct.size(); ++a)
-        for (const std::size_t b : topology.order.direct[a]) add(GeometricRelation::containment, {id_of(b), id_of(a)});
+        for (const std::size_t b : topology.order.direct[a])
+            if (list.size() < most_of_kind) add(GeometricRelation::containment, {id_of(b), id_of(a)});
     for (const auto& group : topology.order.equal) {
         std::vector<int> members;
         for (const std::size_t a : group) members.push_back(id_of(a));
         add(GeometricRelation::equal_selections, std::move(members));
     }
-    for (const auto& pair : topology.adjacent)
+    for (std::size_t i = 0; i < std::min(most_of_kind, topology.adjacent.size()); ++i) {
+        const AdjacentPair& pair = topology.adjacent[i];
         add(GeometricRelation::adjacency, {id_of(pair.a), id_of(pair.b)})
             .parameters.deviations.push_back({"shared length", pair.length, {}, set.unit});
+    }
     return list;
 }
 
@@ -309,7 +352,9 @@ std::vector<TreeEntry> containment_tree(const ContainmentOrder& order) {
         for (auto child = children[node].rbegin(); child != children[node].rend(); ++child) stack.push_back({*child, depth});
     };
     push(n, 0);
+    CancelCheck check;
     while (!stack.empty()) {
+        check();
         const TreeEntry entry = stack.back();
         stack.pop_back();
         list.push_back(entry);

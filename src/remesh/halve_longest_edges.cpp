@@ -89,6 +89,7 @@ void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result)
     Halver halver(mesh, result);
     Progress progress("refine", cuts);
     std::vector<std::pair<double, Index>> longest;
+    CancelCheck check;
     while (mesh.number_of_vertices() < vertices) {
         double greatest = 0;
         for (const Edge e : mesh.edges()) greatest = std::max(greatest, squared_length(e));
@@ -102,7 +103,10 @@ void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result)
             longest.resize(open);
         }
         std::sort(longest.begin(), longest.end());
-        for (const auto& [length, e] : longest) halver.halve(Edge(e));
+        for (const auto& [length, e] : longest) {
+            check();
+            halver.halve(Edge(e));
+        }
         progress.advance(longest.size());
     }
 }

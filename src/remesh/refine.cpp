@@ -1,6 +1,7 @@
 #include "ostraka/remesh/refine.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/memory.h"
 #include "subdivide.h"
 
 #include <numeric>
@@ -8,6 +9,13 @@
 namespace ostraka {
 
 namespace {
+
+/// A vertex of a fine mesh with its edges, its faces and where they come from.
+void require_for(double vertices) {
+    constexpr double bytes_of_vertex = 600;
+    require_memory(bytes_of_vertex * vertices, "a mesh of " + std::to_string(static_cast<long long>(vertices)) + " vertices",
+                   "ask for fewer vertices or levels");
+}
 
 constexpr std::uint64_t max_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges each must fit 32 bits
 
@@ -36,12 +44,14 @@ void check_request(const Mesh& mesh, const RefineOptions& options) {
             faces *= 4;
             check_size(edges);
         }
+        require_for(static_cast<double>(edges) / 3);
     } else {
         if (options.vertices < mesh.number_of_vertices())
             fail_usage("the mesh has " + std::to_string(mesh.number_of_vertices()) + " vertices, more than the " +
                            std::to_string(options.vertices) + " asked for",
                        "use: ostraka mesh simplify");
         check_size(mesh.number_of_edges() + 3 * (options.vertices - mesh.number_of_vertices()));
+        require_for(static_cast<double>(options.vertices - mesh.number_of_vertices()));
     }
 }
 

@@ -3,7 +3,10 @@
 
 #include "metric.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/geom/watched_tree.h"
 #include "ostraka/remesh/refine.h"
 #include "ostraka/remesh/simplify.h"
 
@@ -37,13 +40,42 @@ void mark_features(const Mesh& mesh, double degrees, Mesh::Property_map<Edge, bo
     }
 }
 
+/// The points of a mesh. The library's loops look up a point at every step: there the watch is asked.
+struct WatchedPoints {
+    using key_type = Vertex;
+    using value_type = Point;
+    using reference = const Point&;
+    using category = boost::read_write_property_map_tag;
+    Mesh* mesh;
+    CancelCheck* check;
+    friend reference get(const WatchedPoints& points, Vertex v) {
+        (*points.check)();
+        return points.mesh->point(v);
+    }
+    friend void put(const WatchedPoints& points, Vertex v, const Point& point) { points.mesh->point(v) = point; }
+};
+
+/// The same where the library's tree of triangles is built, which compares them.
+struct WatchedKernel : Kernel {
+    [[nodiscard]] Less_x_3 less_x_3_object() const { return ask(), Kernel::less_x_3_object(); }
+    [[nodiscard]] Less_y_3 less_y_3_object() const { return ask(), Kernel::less_y_3_object(); }
+    [[nodiscard]] Less_z_3 less_z_3_object() const { return ask(), Kernel::less_z_3_object(); }
+    static void ask() {
+        thread_local CancelCheck check;
+        check();
+    }
+};
+
 void run_rounds(Mesh& mesh, double length, const RemeshOptions& options) {
     namespace pmp = CGAL::Polygon_mesh_processing;
     auto constrained = mesh.add_property_map<Edge, bool>("e:constrained", false).first;
     if (options.feature_angle > 0) mark_features(mesh, options.feature_angle, constrained);
+    CancelCheck check;
     pmp::isotropic_remeshing(faces(mesh), length, mesh,
                              CGAL::parameters::number_of_iterations(static_cast<unsigned>(options.iterations))
                                  .number_of_relaxation_steps(1)
+                                 .vertex_point_map(WatchedPoints{&mesh, &check})
+                                 .geom_traits(WatchedKernel())
                                  .edge_is_constrained_map(constrained));
     mesh.remove_property_map(constrained);
     mesh.collect_garbage();
@@ -73,6 +105,10 @@ double project(Mesh& mesh, const Tree& tree, double size) {
 RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     check_options(options, "remesh");
     if (mesh.has_garbage()) throw std::logic_error("remesh: collect the garbage first");
+    constexpr double bytes_of_vertex = 1500;  // with the tree that vertices are put back onto the surface by
+    require_memory(
+        bytes_of_vertex * (static_cast<double>(options.vertices) + 0.5 * static_cast<double>(mesh.number_of_vertices())),
+        "remeshing to " + std::to_string(options.vertices) + " vertices", "ask for fewer vertices");
     // The work is done on a centred copy of size one, so that tolerances inside the library mean the same for every object.
     const Frame frame = make_frame(mesh);
     TriangleSoup soup = to_soup(mesh);
@@ -116,7 +152,7 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     }
     result.reached = result.mesh.number_of_vertices() == options.vertices;
     Tree tree(faces(old).first, faces(old).second, old);
-    tree.build();
+    build_watched(tree);
     tree.accelerate_distance_queries();
     result.deviation = project(result.mesh, tree, 1) * frame.size;
     for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = frame.world(result.mesh.point(v) - CGAL::ORIGIN);

@@ -65,8 +65,13 @@ private:
     /// Collapses in the order of cost until the number is reached or no edge is left that may collapse.
     void sweep(std::size_t wanted, Progress& progress) {
         refused_topology_ = refused_shape_ = 0;
-        for (const Edge e : mesh_.edges()) evaluate(e);
+        CancelCheck check;
+        for (const Edge e : mesh_.edges()) {
+            check();
+            evaluate(e);
+        }
         while (remaining_ > wanted && !heap_.empty()) {
+            check();
             const Edge e(heap_.top());
             heap_.remove(e);
             if (try_collapse(e)) progress.advance();

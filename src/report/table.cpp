@@ -2,6 +2,7 @@
 
 #include "ostraka/core/csv.h"
 #include "ostraka/core/text.h"
+#include "ostraka/report/markdown.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,27 +15,12 @@ namespace ostraka {
 namespace {
 
 /// One line of shown characters: what breaks lines or steers becomes a blank.
-std::string one_line(const std::string& text) { return without_controls(text, " "); }
+std::string one_line(std::string_view text) { return without_controls(text, " "); }
 
 bool is_number(const std::string& cell) {
     std::string bare = cell;
     while (!bare.empty() && (bare.back() == '%' || bare.back() == ' ')) bare.pop_back();
     return number_of(bare).has_value();
-}
-
-/// Text that stays text in a cell of a Markdown table.
-std::string markdown_text(const std::string& text) {
-    std::string result;
-    for (const char c : one_line(text)) {
-        if (c == '<') result += "&lt;";
-        else if (c == '>') result += "&gt;";
-        else if (c == '&') result += "&amp;";
-        else {
-            if (std::string_view("\\|`*_[]#~").find(c) != std::string_view::npos) result += '\\';
-            result += c;
-        }
-    }
-    return result;
 }
 
 /// Text that LaTeX sets as it stands.
@@ -73,6 +59,45 @@ TableCell finite_cell(const std::optional<double>& value, const std::function<st
 }
 
 }  // namespace
+
+std::string markdown_text(std::string_view text) {
+    std::string result;
+    for (const char c : one_line(text)) {
+        if (c == '<') result += "&lt;";
+        else if (c == '>') result += "&gt;";
+        else if (c == '&') result += "&amp;";
+        else {
+            if (std::string_view("\\|`*_[]#~").find(c) != std::string_view::npos) result += '\\';
+            result += c;
+        }
+    }
+    return result;
+}
+
+std::string markdown_paragraphs(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string line = markdown_text(trimmed(text.substr(0, end)));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        // "- ", "===", and a number with a point, too, would be marks.
+        const std::size_t mark = std::min(line.find_first_not_of("0123456789"), line.size());
+        const bool is_mark =
+            mark == 0 ? line.find_first_of("-+=") == 0 : line.find_first_of(".)", mark) == mark && (line + " ")[mark + 1] == ' ';
+        if (is_mark) line.insert(mark, 1, '\\');
+        result += (result.empty() ? "" : "\n") + line;
+    }
+    return result;
+}
+
+std::string markdown_file(std::string_view name) {
+    std::string result;
+    for (const char c : name)
+        if (static_cast<unsigned char>(c) < 32 || std::string_view(" <>()\\&%#?\x7f").find(c) != std::string_view::npos)
+            result += percent_encoded({&c, 1});
+        else result += c;
+    return result;
+}
 
 TableCell number_cell(const std::optional<double>& value, int digits) {
     return finite_cell(value, [&](double x) { return significant(x, digits); });

@@ -6,6 +6,7 @@
 #include "ostraka/core/dense.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/stats/summary.h"
 
@@ -216,6 +217,7 @@ private:
         own_.assign(sherds_.size(), Vector4d::Zero());
         std::vector<Told> told(sherds_.size());
         for (int round = 0; round < 20; ++round) {
+            check_cancelled();
             parallel_for(
                 list.size(), [&](std::size_t i) { told[list[i]] = ask(list[i]); }, 1);
             Matrix4d all = Matrix4d::Zero();

@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/statistics.h"
@@ -139,7 +140,9 @@ private:
             tree.costs[state(v)] = tree.lengths[state(v)] = 0;
             queue.emplace(0, state(v));
         }
+        CancelCheck check;
         while (!queue.empty()) {
+            check();
             const auto [spent, here] = queue.top();
             queue.pop();
             if (spent > tree.costs[here]) continue;

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/select/selections.h"
 
 #include <algorithm>
@@ -147,6 +148,7 @@ const Annotation& ExpressionEvaluator::earlier(const JsonValue& id, AnnotationTy
 }
 
 std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
+    check_cancelled();
     const PlaceFrame frame = frame_of(expression, around);
     const auto [kind, value] = only_kind(expression, at);
     if (is_volume(kind)) return faces_within(mesh_, volume(kind, *value, frame, at));

@@ -2,7 +2,7 @@
 #include "expression.h"
 
 #include "ostraka/core/error.h"
-#include "ostraka/core/inside.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 #include "ostraka/fields/curvature.h"
 #include "ostraka/fields/thickness.h"

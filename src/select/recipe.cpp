@@ -5,7 +5,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/inside.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/measure/measure.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/surface_search.h"
 
 #include <limits>
@@ -210,6 +211,7 @@ std::vector<Index> vertices_within(const Mesh& mesh, const Volume& volume) {
 }
 
 Index nearest_vertex(const Mesh& mesh, const Point& point) {
+    check_cancelled();
     require_faces(mesh);
     Index nearest = no_index;
     double best = std::numeric_limits<double>::infinity();

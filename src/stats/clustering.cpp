@@ -4,6 +4,7 @@
 #include "check_samples.h"
 #include "ostraka/core/disjoint_sets.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -173,7 +174,9 @@ std::vector<int> leaf_order(const Linkage& tree) {
     std::vector<int> order;
     std::vector<int> waiting;
     if (tree.samples > 0) waiting.push_back(tree.merges.empty() ? 0 : tree.samples + static_cast<int>(tree.merges.size()) - 1);
+    CancelCheck check;
     while (!waiting.empty()) {
+        check();
         const int cluster = waiting.back();
         waiting.pop_back();
         if (cluster < tree.samples) {

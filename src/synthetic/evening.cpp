@@ -1,6 +1,7 @@
 #include "evening.h"
 
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 
 #include <cmath>
 #include <numbers>
@@ -78,7 +79,9 @@ private:
 
     void collapse_below(double share) {
         const double limit = share * share * edge_ * edge_;
+        CancelCheck check;
         for (Index h = 0; h < table_.halfedges() && !reached(); ++h) {
+            check();
             if (!table_.alive(h) || h > table_.opposite(h)) continue;
             if ((points_[table_.origin(h)] - points_[table_.target(h)]).squaredNorm() < limit) try_collapse(h, share);
         }
@@ -119,9 +122,11 @@ private:
 
     /// Sweeps over the edges until no flip mends an angle (at most four sweeps).
     void flip_all() {
+        CancelCheck check;
         for (int sweep = 0; sweep < 4; ++sweep) {
             std::size_t flips = 0;
             for (Index h = 0; h < table_.halfedges(); ++h) {
+                check();
                 if (table_.alive(h) && h < table_.opposite(h) && try_flip(h)) ++flips;
             }
             if (flips == 0) break;

@@ -4,6 +4,7 @@
 #include "lattice.h"
 
 #include "ostraka/core/disjoint_sets.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/random.h"
 
@@ -98,6 +99,9 @@ SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& option
     check_options(options, "mesh make");
     if (options.vertices < object.minimum_vertices) refuse(object, options.vertices);
     const auto wanted = static_cast<std::size_t>(options.vertices);
+    constexpr double bytes_of_vertex = 600;  // of the lattice, the points made even and the mesh
+    require_memory(bytes_of_vertex * static_cast<double>(wanted), "a mesh of " + std::to_string(wanted) + " vertices",
+                   "ask for fewer (--vertices)");
     shapes::Triangles even =
         shapes::make_even(object, marched(object, surplus * static_cast<double>(wanted), options.seed), wanted);
     if (static_cast<double>(even.points.size()) > 1.01 * static_cast<double>(wanted)) refuse(object, options.vertices);

@@ -1,7 +1,7 @@
 // A template's parts, each by itself and all together.
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/inside.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/core/text.h"
@@ -48,7 +48,7 @@ private:
                 defect(part.name, "the file is another one than when the template was packed (its checksum differs)");
             entry.text = read(part);
         } catch (const Error& error) {
-            if (error.kind() == ErrorKind::failure) throw;
+            if (error.kind() == ErrorKind::failure || error.kind() == ErrorKind::cancelled) throw;
             // The part is named already.
             std::string where = error.where();
             if (where.starts_with(part.file.string())) where.erase(0, part.file.string().size());

@@ -1,6 +1,7 @@
 #include "face_parts.h"
 
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 
 #include <algorithm>
 #include <atomic>
@@ -125,6 +126,7 @@ void FaceParts::measure() {
 }
 
 FaceParts::Choice FaceParts::left_of(const std::vector<Halfedge>& edges) const {
+    check_cancelled();
     // How often each edge is run through along its first halfedge. (An Edge made from a halfedge remembers that one.)
     std::map<Index, int> net;
     for (const Halfedge h : edges) {

@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/shortest_path.h"
 #include "region_transfer.h"
@@ -488,7 +489,9 @@ private:
         std::vector<bool> keep(run.size(), false);
         std::vector<std::pair<std::size_t, std::size_t>> stack{{0, run.size() - 1}};
         const double tolerance = 1e-4 * edge_;
+        CancelCheck check;
         while (!stack.empty()) {
+            check();
             const auto [a, b] = stack.back();
             stack.pop_back();
             std::size_t farthest = a;

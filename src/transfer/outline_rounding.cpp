@@ -1,5 +1,6 @@
 #include "outline_rounding.h"
 
+#include "ostraka/core/progress.h"
 #include "scores.h"
 
 #include <algorithm>
@@ -146,6 +147,7 @@ void round_by_share(const Mesh& mesh, std::vector<bool>& selected, const std::ve
     // A flip may open the way for its neighbours.
     double change = 0;
     for (int pass = 0; pass < 8; ++pass) {
+        check_cancelled();
         bool any = false;
         for (const auto& [f, share] : shares)
             if (selected[f] != (share > 0.5) && share != 0.5 && can_flip(mesh, selected, Face(f), change)) {
@@ -184,6 +186,7 @@ void round_shared(const Mesh& mesh, std::vector<FilledRegion>& regions, std::vec
     });
     double change = 0;
     for (int pass = 0; pass < 8; ++pass) {
+        check_cancelled();
         bool any = false;
         for (auto first = faces.begin(); first != faces.end();) {
             const auto last = std::find_if(first, faces.end(), [&](const SharedFace& x) { return x.face != first->face; });

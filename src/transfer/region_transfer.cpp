@@ -2,6 +2,7 @@
 
 #include "ostraka/annotation/outline.h"
 #include "ostraka/core/flood.h"
+#include "ostraka/core/progress.h"
 #include "scores.h"
 
 #include <algorithm>
@@ -52,7 +53,9 @@ std::vector<Index> diameter_path(const std::vector<Index>& walk) {
         std::map<Index, Index> previous{{from, no_index}};
         std::deque<Index> queue{from};
         Index last = from;
+        CancelCheck check;
         while (!queue.empty()) {
+            check();
             last = queue.front();
             queue.pop_front();
             for (const Index w : neighbours[last])
@@ -79,6 +82,7 @@ namespace {
 
 /// Area and perimeter of what is selected.
 FilledRegion measured(const Mesh& mesh, std::vector<bool> selected) {
+    check_cancelled();
     FilledRegion region;
     for (const Face f : mesh.faces()) {
         if (!selected[f]) continue;
@@ -98,6 +102,7 @@ struct Patch {
     bool bounded = false;
 };
 std::vector<Patch> patches_of(const Mesh& mesh, const std::vector<Index>& faces) {
+    check_cancelled();
     const std::vector<bool> selected = face_flags(mesh, faces);
     std::vector<bool> seen(selected.size(), false);
     std::vector<Patch> patches;

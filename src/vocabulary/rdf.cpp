@@ -2,12 +2,14 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
+#include "ostraka/core/text.h"
 
 #include <raptor.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -81,15 +83,30 @@ RdfTerm value_of(const raptor_term* term) {
     return value;
 }
 
+/// What statements take. Prefixes, bases and entities stand for texts of any length, so that a short file may grow without end.
 struct Collector {
+    explicit Collector(std::size_t bytes_of_file) : allowed(12.0 * static_cast<double>(bytes_of_file) + 256e6) {}
+    double allowed, taken = 0;
+    raptor_parser* parser = nullptr;
     std::vector<RdfStatement> statements;
-    bool out_of_memory = false;
+    bool out_of_memory = false, too_large = false;
+
+    static double size_of(const RdfTerm& term) {
+        return static_cast<double>(term.value.size() + term.language.size() + term.datatype.size());
+    }
     // No exception may pass through the library.
     static void add(void* self, raptor_statement* statement) noexcept {
         auto& collector = *static_cast<Collector*>(self);
+        if (collector.too_large) return;
         try {
-            collector.statements.push_back(
-                {value_of(statement->subject), text_of_uri(statement->predicate->value.uri), value_of(statement->object)});
+            const RdfStatement& added = collector.statements.emplace_back(RdfStatement{
+                value_of(statement->subject), text_of_uri(statement->predicate->value.uri), value_of(statement->object)});
+            collector.taken += static_cast<double>(2 * sizeof(RdfStatement) + added.predicate.size()) + size_of(added.subject) +
+                               size_of(added.object);
+            if (collector.taken <= collector.allowed) return;
+            collector.too_large = true;
+            std::vector<RdfStatement>().swap(collector.statements);
+            raptor_parser_parse_abort(collector.parser);
         } catch (const std::bad_alloc&) {
             collector.out_of_memory = true;
         }
@@ -113,6 +130,20 @@ void require_utf8(const std::string& text, const std::string& where) {
     }
 }
 
+/// Short entities, named often enough, still make much of little.
+void refuse_many_entities(const std::string& text, const std::map<std::string, std::size_t>& lengths, const std::string& where) {
+    const std::size_t most = 4 * text.size() + 16'000'000;
+    std::size_t sum = 0;
+    for (std::size_t at = text.find('&'); at != std::string::npos; at = text.find('&', at + 1)) {
+        const std::size_t end = text.find_first_of("; \n<&", at + 1);
+        if (end == std::string::npos || text[end] != ';') continue;
+        const auto known = lengths.find(text.substr(at + 1, std::min<std::size_t>(end - at - 1, 1000)));
+        if (known != lengths.end() && (sum += known->second) > most)
+            fail_at(where, line_of(text, at), "its entities stand for many times the size of the file",
+                    "put their texts in place of them");
+    }
+}
+
 /// Entities that stand for plain text are common in RDF/XML; those that read other files or multiply are not let in.
 void refuse_dangerous_entities(const std::string& text, const std::string& where) {
     const auto upper = [](std::string part) {
@@ -131,6 +162,7 @@ void refuse_dangerous_entities(const std::string& text, const std::string& where
     const std::string name = upper(text.substr(at, std::min(open, text.size()) - at));
     if (name.find("SYSTEM") != std::string::npos || name.find("PUBLIC") != std::string::npos)
         fail_at(where, line_of(text, at), "the document type stands in another file", "take the document type declaration away");
+    std::map<std::string, std::size_t> lengths;
     while ((at = text.find("<!ENTITY", at)) != std::string::npos) {
         const int line = line_of(text, at);
         const std::size_t quote = text.find_first_of("\"'", at);
@@ -142,8 +174,12 @@ void refuse_dangerous_entities(const std::string& text, const std::string& where
         if (head.find('%') != std::string::npos || value.find('%') != std::string::npos || value.find('&') != std::string::npos)
             fail_at(where, line, "an entity is made of entities", "put its text in place of it");
         if (value.size() > 1000) fail_at(where, line, "an entity stands for more than 1000 bytes", "put its text in place of it");
+        const std::size_t name_at = text.find_first_not_of(" \t\r\n", at + 8);
+        const std::size_t name_end = text.find_first_of(" \t\r\n\"'", name_at);
+        lengths[text.substr(name_at, name_end - name_at)] = value.size();
         at = end;
     }
+    if (!lengths.empty()) refuse_many_entities(text, lengths, where);
 }
 
 /// The parser's time grows with the square of the depth. What is no XML is left to the parser.
@@ -221,7 +257,7 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
     }
     const std::lock_guard lock(library_mutex());
     Log log;
-    Collector collector;
+    Collector collector(text.size());
     const Owned<raptor_world> world = open_world(log);
     const Owned<raptor_parser> parser(raptor_new_parser(world.get(), xml ? "rdfxml" : "turtle"));
     const Owned<raptor_uri> base_uri(raptor_new_uri(world.get(), bytes(base)));
@@ -230,15 +266,22 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
     raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
     raptor_parser_set_option(parser.get(), RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, nullptr, 0);
     raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NORMALIZE_LANGUAGE, nullptr, 0);
+    collector.parser = parser.get();
     raptor_parser_set_statement_handler(parser.get(), &collector, &Collector::add);
     int result = raptor_parser_parse_start(parser.get(), base_uri.get());
     // The XML library takes no more than ten million bytes at once.
     const std::size_t piece = xml ? std::min<std::size_t>(65536, text.size()) : text.size();
-    for (std::size_t at = 0; result == 0 && at + piece < text.size(); at += piece)
+    for (std::size_t at = 0; result == 0 && !collector.too_large && at + piece < text.size(); at += piece)
         result = raptor_parser_parse_chunk(parser.get(), bytes(text) + at, piece, 0);
     const std::size_t last = text.empty() ? 0 : (text.size() - 1) / piece * piece;
-    if (result == 0) result = raptor_parser_parse_chunk(parser.get(), bytes(text) + last, text.size() - last, 1);
+    if (result == 0 && !collector.too_large)
+        result = raptor_parser_parse_chunk(parser.get(), bytes(text) + last, text.size() - last, 1);
     if (collector.out_of_memory) throw std::bad_alloc();
+    if (collector.too_large)
+        fail_input(where,
+                   "its statements take more than " + digits(collector.allowed / 1e6, 3) +
+                       " MB, many times the size of the file: prefixes, bases or entities stand for long texts",
+                   "shorten them, or split the file");
     if (result == 0 && log.text.empty()) return std::move(collector.statements);
     if (log.line < 0)
         if (const raptor_locator* locator = raptor_parser_get_locator(parser.get())) log.line = locator->line;

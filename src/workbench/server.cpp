@@ -3,22 +3,27 @@
 
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
+#include "ostraka/page/content_policy.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/strand.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <list>
+#include <optional>
 #include <random>
 #include <set>
 #include <thread>
+#include <utility>
 
 namespace ostraka {
 
@@ -52,65 +57,110 @@ bool same_secret(std::string_view a, std::string_view b) {
 
 std::string_view view_of(boost::string_view text) { return {text.data(), text.size()}; }
 
-/// The value of NAME in "a=b&NAME=value" or "a=b; NAME=value".
-std::string_view value_in(std::string_view text, std::string_view name, char separator) {
+/// The value of NAME in "a=b&NAME=value".
+std::string_view value_in(std::string_view text, std::string_view name) {
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find(separator), text.size());
-        std::string_view part = text.substr(0, end);
+        const std::size_t end = std::min(text.find('&'), text.size());
+        const std::string_view part = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
-        while (!part.empty() && part.front() == ' ') part.remove_prefix(1);
         if (part.size() > name.size() && part.starts_with(name) && part[name.size()] == '=') return part.substr(name.size() + 1);
     }
     return {};
 }
 
-using Message = std::shared_ptr<const std::string>;
-struct Outgoing {
-    Message bytes;
-    bool is_text = true;
-};
+std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<long>(1000 * seconds)); }
 
-/// [bytes of the JSON, 4][JSON, filled up with blanks to a multiple of eight less four][bytes]
-Message packed(const Workbench::Reply& reply) {
-    std::string json = reply.json;
+/// A message to a page. Its parts, none of them empty, are sent one after the other.
+struct Outgoing {
+    std::vector<std::string> parts;
+    bool is_text = true;
+    [[nodiscard]] std::size_t size() const {
+        std::size_t all = 0;
+        for (const std::string& part : parts) all += part.size();
+        return all;
+    }
+};
+using Message = std::shared_ptr<const Outgoing>;
+
+Message text_message(std::string text) { return std::make_shared<const Outgoing>(Outgoing{{std::move(text)}, true}); }
+
+/// Text, or [bytes of the JSON, 4][JSON, filled up with blanks to a multiple of eight less four][bytes].
+Message message_of(Workbench::Reply&& reply) {
+    if (reply.bytes.empty()) return text_message(std::move(reply.json));
+    std::string& json = reply.json;
     while ((json.size() + 4) % 8 != 0) json += ' ';
     const auto size = static_cast<std::uint32_t>(json.size());
-    auto message = std::make_shared<std::string>();
-    message->reserve(4 + json.size() + reply.bytes.size());
-    for (unsigned k = 0; k < 4; ++k) *message += static_cast<char>(size >> 8 * k & 255);
-    *message += json;
-    *message += reply.bytes;
-    return message;
+    std::string head;
+    for (unsigned k = 0; k < 4; ++k) head += static_cast<char>(size >> 8 * k & 255);
+    json.insert(0, head);
+    return std::make_shared<const Outgoing>(Outgoing{{std::move(json), std::move(reply.bytes)}, false});
+}
+
+/// How far a page is behind, for the thread that works.
+struct Backlog {
+    std::atomic<std::size_t> unsent{0};
+    std::atomic<bool> gone{false};
+    std::size_t turn = 0;  ///< when one of its requests was begun last; of the thread that works
+};
+
+/// Whether the request leaves the session as it is: then it is of no use to a page that is gone.
+bool only_asks(const std::string& request) {
+    static const std::set<std::string> words{"hello", "scene", "select", "handles", "parts", "influence", "grab", "drag", "file"};
+    try {
+        const Json document = parse_json(request, "the request");
+        return !document.IsObject() || words.contains(text_in(document, "do"));
+    } catch (const Error&) {
+        return true;
+    }
 }
 
 }  // namespace
 
 class Peer;
+class Visit;
 
 struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::State> {
-    State(Workbench& w, const ServerLimits& l) : workbench(w), limits(l), acceptor(io), token(random_token()) {}
+    State(Workbench& w, const ServerLimits& l);
 
     Workbench& workbench;
     ServerLimits limits;
     asio::io_context io{1};
     tcp::acceptor acceptor;
-    std::string token;
+    asio::steady_timer pause{io};  ///< before the next connection is accepted, where one could not be
+    std::string token, policy;
     std::uint16_t port = 0;
-    std::atomic<std::size_t> connections{0};
-    std::set<std::shared_ptr<Peer>> peers;  ///< of the network's thread
+    std::function<void()> on_first_page;
+    std::atomic<bool> tells{false};  ///< progress that is not told yet
+
+    // Of the network's thread.
+    std::list<Visit*> strangers;  ///< by age
+    std::list<Visit*> served;     ///< have said the token, and get the page
+    std::set<Peer*> peers;
 
     std::mutex mutex;
     std::condition_variable wakes;
     struct Request {
         std::weak_ptr<Peer> from;
+        std::shared_ptr<Backlog> backlog;
         std::string text;
+        /// What it takes in the queue.
+        [[nodiscard]] std::size_t bytes() const { return text.size() + 256; }
     };
     std::deque<Request> requests;
+    std::size_t queued = 0;  ///< bytes of them
+    std::size_t turns = 0;   ///< how many were begun
     bool ends = false;
 
     void accept();
+    void take(tcp::socket&& socket);
+    bool queue(Request request);
+    std::optional<Request> next();
+    void wake();
     void work();
-    void tell_all(const std::string& text, const Peer* but = nullptr);
+    void answered(const std::weak_ptr<Peer>& from, std::size_t bytes, const Message& message, const Message& changed);
+    void tell_progress(const Message& message);
+    void drop_all();
+    [[nodiscard]] bool is_full() const { return served.size() + peers.size() >= limits.pages; }
     [[nodiscard]] bool is_own_host(std::string_view host) const {
         const std::string number = ":" + std::to_string(port);
         return host == "127.0.0.1" + number || host == "localhost" + number;
@@ -118,23 +168,22 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     [[nodiscard]] bool is_own_origin(std::string_view origin) const {
         return origin.starts_with("http://") && is_own_host(origin.substr(7));
     }
-    [[nodiscard]] std::string cookie() const { return "ostraka-" + std::to_string(port); }
 };
 
 /// A page that talks.
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
     Peer(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
-        : stream_(std::move(socket)), state_(std::move(state)) {
-        ++state_->connections;
+        : stream_(std::move(socket)), state_(std::move(state)), patience_(state_->io) {
+        state_->peers.insert(this);
     }
-    ~Peer() { --state_->connections; }
+    ~Peer() { state_->peers.erase(this); }
     Peer(const Peer&) = delete;
     Peer& operator=(const Peer&) = delete;
 
     void begin(const http::request<http::empty_body>& head) {
         websocket::stream_base::timeout timeout{};
-        timeout.handshake_timeout = std::chrono::milliseconds(static_cast<long>(1000 * state_->limits.seconds));
+        timeout.handshake_timeout = milliseconds(state_->limits.seconds);
         timeout.idle_timeout = std::chrono::seconds(60);  // an open page answers pings; what is gone is let go
         timeout.keep_alive_pings = true;
         stream_.set_option(timeout);
@@ -143,30 +192,52 @@ public:
         error_code ignored;
         beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true), ignored);
         stream_.async_accept(head, [self = shared_from_this()](error_code error) {
-            if (error) return;
-            self->state_->peers.insert(self);
+            if (error) return self->drop();
+            self->open_ = true;
+            if (const auto told = std::exchange(self->state_->on_first_page, {})) told();
             self->read();
         });
     }
 
-    void send(Outgoing message) {
-        outgoing_.push_back(std::move(message));
-        if (outgoing_.size() == 1) write();
+    /// An answer, whose size the backlog holds already.
+    void send(const Message& message) {
+        if (!open_) return;
+        outgoing_.push_back(message);
+        write();
     }
-    void answered() { --waiting_; }
-    void close() {
-        stream_.async_close(websocket::close_code::going_away, [self = shared_from_this()](error_code) {});
+    /// Progress is of use only at once: a page that is behind is told none.
+    void tell_progress(const Message& message) {
+        if (open_ && outgoing_.empty()) add(message);
+    }
+    /// That the session is at another step: the last one is enough.
+    void tell_changed(const Message& message) {
+        changed_ = message;
+        write();
+    }
+    void answered(std::size_t bytes) { --waiting_, waiting_bytes_ -= bytes; }
+
+    void close(const websocket::close_reason& why) {
+        if (!open_) return;
+        leave();
+        wait(state_->limits.seconds);  // for an answer to the closing, which may not come
+        stream_.async_close(why, [self = shared_from_this()](error_code) { self->end_wait(); });
+    }
+    /// Lets the page go at once, whatever it does.
+    void drop() {
+        leave();
+        end_wait();
+        beast::get_lowest_layer(stream_).close();
     }
 
 private:
+    static constexpr std::size_t frame = 1U << 18U;  ///< bytes: by these it is seen whether the page still reads
+
     void read() {
         stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) { self->took(error); });
     }
     void took(error_code error) {
-        if (error) {
-            state_->peers.erase(shared_from_this());
-            return;
-        }
+        if (error) return drop();
+        if (!open_) return;
         std::string text = beast::buffers_to_string(buffer_.data());
         buffer_.consume(buffer_.size());
         if (!stream_.got_text()) return refuse("messages are text");
@@ -174,58 +245,104 @@ private:
             state_->workbench.cancel();
             return read();
         }
-        if (++waiting_ > state_->limits.waiting) return refuse("too many requests at once");
-        {
-            const std::lock_guard lock(state_->mutex);
-            state_->requests.push_back({weak_from_this(), std::move(text)});
-        }
-        state_->wakes.notify_one();
+        ++waiting_, waiting_bytes_ += text.size();
+        if (waiting_ > state_->limits.waiting || waiting_bytes_ > state_->limits.waiting_bytes ||
+            !state_->queue({weak_from_this(), backlog_, std::move(text)}))
+            return refuse("too many requests at once");
         read();
     }
-    void refuse(const char* why) {
-        state_->peers.erase(shared_from_this());
-        stream_.async_close({websocket::close_code::policy_error, why}, [self = shared_from_this()](error_code) {});
+    void refuse(const char* why) { close({websocket::close_code::policy_error, why}); }
+
+    void add(const Message& message) {
+        backlog_->unsent += message->size();
+        send(message);
     }
     void write() {
-        stream_.text(outgoing_.front().is_text);
-        stream_.async_write(asio::buffer(*outgoing_.front().bytes), [self = shared_from_this()](error_code error, std::size_t) {
-            if (error) return;
-            self->outgoing_.pop_front();
-            if (!self->outgoing_.empty()) self->write();
+        if (!open_ || is_writing_) return;
+        if (outgoing_.empty() && changed_) return add(std::exchange(changed_, {}));
+        if (outgoing_.empty()) return;
+        const Outgoing& message = *outgoing_.front();
+        if (part_ == 0 && place_ == 0) stream_.text(message.is_text);
+        const std::string& part = message.parts[part_];
+        const std::size_t size = std::min(part.size() - place_, frame);
+        const bool is_last = part_ + 1 == message.parts.size() && place_ + size == part.size();
+        is_writing_ = true;
+        wait(state_->limits.stalled);
+        stream_.async_write_some(
+            is_last, asio::buffer(part.data() + place_, size),
+            [self = shared_from_this(), size, is_last](error_code error, std::size_t) { self->wrote(error, size, is_last); });
+    }
+    void wrote(error_code error, std::size_t size, bool is_last) {
+        is_writing_ = false;
+        if (error) return drop();
+        if (!open_) return outgoing_.clear();  // closes; its time goes on
+        end_wait();
+        const std::size_t before = backlog_->unsent.fetch_sub(size);
+        if (before > state_->limits.unsent && before - size <= state_->limits.unsent) state_->wake();
+        place_ += size;
+        if (place_ == outgoing_.front()->parts[part_].size()) ++part_, place_ = 0;
+        if (is_last) outgoing_.pop_front(), part_ = 0;
+        write();
+    }
+    /// Drops the page after so long, unless this is called or cancelled before.
+    void wait(double seconds) {
+        patience_.expires_after(milliseconds(seconds));
+        patience_.async_wait([self = shared_from_this()](error_code error) {
+            if (!error && self->patience_.expiry() <= std::chrono::steady_clock::now()) self->drop();
         });
+    }
+    /// As if it was never called, also where the time is just over.
+    void end_wait() { patience_.expires_at(asio::steady_timer::time_point::max()); }
+    /// Nothing more is taken from it or sent to it.
+    void leave() {
+        open_ = false;
+        changed_.reset();
+        outgoing_.resize(std::min<std::size_t>(outgoing_.size(), is_writing_ ? 1 : 0));
+        if (!backlog_->gone.exchange(true)) state_->wake();
     }
 
     websocket::stream<beast::tcp_stream> stream_;
     std::shared_ptr<WorkbenchServer::State> state_;
+    asio::steady_timer patience_;
+    std::shared_ptr<Backlog> backlog_ = std::make_shared<Backlog>();
     beast::flat_buffer buffer_;
-    std::deque<Outgoing> outgoing_;
-    std::size_t waiting_ = 0;
+    std::deque<Message> outgoing_;
+    Message changed_;
+    std::size_t part_ = 0, place_ = 0;  ///< what of the first message is sent
+    bool open_ = false, is_writing_ = false;
+    std::size_t waiting_ = 0, waiting_bytes_ = 0;
 };
-
-namespace {
 
 /// One request for the page, or for the way of messages.
 class Visit : public std::enable_shared_from_this<Visit> {
 public:
     Visit(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
-        : stream_(std::move(socket)), state_(std::move(state)) {
-        ++state_->connections;
+        : stream_(std::move(socket)), state_(std::move(state)), list_(&state_->strangers) {
+        place_ = list_->insert(list_->end(), this);
         parser_.header_limit(static_cast<std::uint32_t>(state_->limits.header));
         parser_.body_limit(0);
     }
-    ~Visit() { --state_->connections; }
+    ~Visit() { leave(); }
     Visit(const Visit&) = delete;
     Visit& operator=(const Visit&) = delete;
 
-    void begin(bool full) {
-        stream_.expires_after(std::chrono::milliseconds(static_cast<long>(1000 * state_->limits.seconds)));
-        if (full) return answer(http::status::service_unavailable, "too many connections\n");
+    void begin() {
+        stream_.expires_after(milliseconds(state_->limits.seconds));
         http::async_read_header(stream_, buffer_, parser_,
                                 [self = shared_from_this()](error_code error, std::size_t) { self->took(error); });
     }
+    void drop() {
+        leave();
+        stream_.close();
+    }
 
 private:
+    void leave() {
+        if (list_ != nullptr) list_->erase(place_);
+        list_ = nullptr;
+    }
     void took(error_code error) {
+        if (!stream_.socket().is_open()) return;
         if (error == http::error::header_limit) return answer(http::status::request_header_fields_too_large, "too long a head\n");
         if (error == http::error::body_limit) return answer(http::status::method_not_allowed, "only GET\n");
         if (error == http::error::end_of_stream || error == beast::error::timeout) return;
@@ -244,38 +361,42 @@ private:
             path.find('\\') != std::string_view::npos)
             return answer(http::status::bad_request, "not understood\n");
         if (path != "/" && path != "/messages") return answer(http::status::not_found, "there is nothing here\n");
-        const bool knows = same_secret(value_in(query, "token", '&'), state_->token) ||
-                           same_secret(value_in(view_of(head[http::field::cookie]), state_->cookie(), ';'), state_->token);
-        if (!knows) return answer(http::status::forbidden, "open the address that 'ostraka workbench' shows: it holds a token\n");
-        if (path == "/") return answer(http::status::ok, std::string(workbench_page()), true);
+        if (!same_secret(value_in(query, "token"), state_->token))
+            return answer(http::status::forbidden, "open the address that 'ostraka workbench' shows: it holds a token\n");
+        if (state_->is_full()) return answer(http::status::service_unavailable, "too many pages are open\n");
+        if (path == "/") return serve();
         if (!websocket::is_upgrade(head)) return answer(http::status::upgrade_required, "for messages only\n");
         if (origin == head.end()) return answer(http::status::forbidden, "asked by no page\n");
+        talk();
+    }
+
+    void serve() {
+        state_->served.splice(state_->served.end(), *list_, place_);
+        list_ = &state_->served;
+        answer(http::status::ok, workbench_page(), "text/html; charset=utf-8");
+    }
+    void talk() {
         http::request<http::empty_body> upgrade;
-        upgrade.base() = head.base();
+        upgrade.base() = parser_.get().base();
         stream_.expires_never();
         std::make_shared<Peer>(stream_.release_socket(), state_)->begin(upgrade);
     }
 
-    void answer(http::status status, std::string text, bool is_page = false) {
+    /// `text` stays where it is.
+    void answer(http::status status, std::string_view text, const char* type = "text/plain; charset=utf-8") {
         response_.result(status);
         response_.version(11);
-        response_.set(http::field::content_type, is_page ? "text/html; charset=utf-8" : "text/plain; charset=utf-8");
+        response_.set(http::field::content_type, type);
         response_.set(http::field::cache_control, "no-store");
         response_.set("X-Content-Type-Options", "nosniff");
         response_.set("Referrer-Policy", "no-referrer");
         response_.set("Cross-Origin-Opener-Policy", "same-origin");
         response_.set("Cross-Origin-Resource-Policy", "same-origin");
-        response_.set(
-            "Content-Security-Policy",
-            "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:; "
-            "connect-src 'self' data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
-        if (is_page)
-            response_.set(http::field::set_cookie,
-                          state_->cookie() + "=" + state_->token + "; HttpOnly; SameSite=Strict; Path=/");
+        response_.set("Content-Security-Policy", state_->policy);
         response_.keep_alive(false);
-        response_.body() = std::move(text);
+        response_.body() = {text.data(), text.size()};
         response_.prepare_payload();
-        stream_.expires_after(std::chrono::seconds(30));
+        stream_.expires_after(milliseconds(state_->limits.stalled));
         http::async_write(stream_, response_, [self = shared_from_this()](error_code, std::size_t) {
             error_code ignored;
             self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -284,61 +405,125 @@ private:
 
     beast::tcp_stream stream_;
     std::shared_ptr<WorkbenchServer::State> state_;
+    std::list<Visit*>* list_;  ///< that it is counted in
+    std::list<Visit*>::iterator place_;
     beast::flat_buffer buffer_{65536};
     http::request_parser<http::empty_body> parser_;
-    http::response<http::string_body> response_;
+    http::response<http::span_body<const char>> response_;
 };
 
-}  // namespace
+WorkbenchServer::State::State(Workbench& w, const ServerLimits& l)
+    : workbench(w), limits(l), acceptor(io), token(random_token()) {
+    // Scripts and styles of the built page only; three-dimensional shapes are unpacked by WebAssembly.
+    policy = "default-src 'none'; script-src " + inline_hashes(workbench_page(), "script") + " 'wasm-unsafe-eval'; style-src " +
+             inline_hashes(workbench_page(), "style") +
+             "; img-src data: blob:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
 
 void WorkbenchServer::State::accept() {
     acceptor.async_accept([self = shared_from_this()](error_code error, tcp::socket socket) {
         if (!self->acceptor.is_open()) return;
-        if (!error) {
-            const bool full = self->connections >= self->limits.connections;
-            // Beyond twice the limit nobody is told.
-            if (self->connections < 2 * self->limits.connections) std::make_shared<Visit>(std::move(socket), self)->begin(full);
-        }
-        self->accept();
+        if (!error) self->take(std::move(socket));
+        if (!error) return self->accept();
+        // No descriptor is free, say: to ask again at once would keep a core busy.
+        self->pause.expires_after(std::chrono::milliseconds(50));
+        self->pause.async_wait([self](error_code stopped) {
+            if (!stopped) self->accept();
+        });
     });
 }
 
-void WorkbenchServer::State::tell_all(const std::string& text, const Peer* but) {
-    const auto message = std::make_shared<const std::string>(text);
-    for (const auto& peer : peers)
-        if (peer.get() != but) peer->send({message, true});
+void WorkbenchServer::State::take(tcp::socket&& socket) {
+    while (!strangers.empty() && strangers.size() >= limits.strangers) strangers.front()->drop();
+    std::make_shared<Visit>(std::move(socket), shared_from_this())->begin();
+}
+
+/// False where no more can wait.
+bool WorkbenchServer::State::queue(Request request) {
+    {
+        const std::lock_guard lock(mutex);
+        if (queued + request.bytes() > limits.queue_bytes) return false;
+        queued += request.bytes();
+        requests.push_back(std::move(request));
+    }
+    wakes.notify_one();
+    return true;
+}
+
+/// Waits for a request whose page reads what it is sent; pages take turns. None: the server ends.
+std::optional<WorkbenchServer::State::Request> WorkbenchServer::State::next() {
+    const auto ready = [&](const Request& one) { return one.backlog->gone || one.backlog->unsent <= limits.unsent; };
+    std::unique_lock lock(mutex);
+    auto found = requests.end();
+    wakes.wait(lock, [&] {
+        found = requests.end();
+        for (auto one = requests.begin(); one != requests.end(); ++one)
+            if (ready(*one) && (found == requests.end() || one->backlog->turn < found->backlog->turn)) found = one;
+        return ends || found != requests.end();
+    });
+    if (ends) return std::nullopt;
+    Request request = std::move(*found);
+    requests.erase(found);
+    queued -= request.bytes();
+    request.backlog->turn = ++turns;
+    return request;
+}
+
+/// The thread that works looks again whether a request is ready.
+void WorkbenchServer::State::wake() {
+    { const std::lock_guard lock(mutex); }
+    wakes.notify_one();
+}
+
+void WorkbenchServer::State::tell_progress(const Message& message) {
+    tells = false;
+    for (Peer* peer : peers) peer->tell_progress(message);
+}
+
+/// `bytes`: of the request.
+void WorkbenchServer::State::answered(const std::weak_ptr<Peer>& from, std::size_t bytes, const Message& message,
+                                      const Message& changed) {
+    const auto peer = from.lock();
+    if (peer) {
+        peer->answered(bytes);
+        peer->send(message);
+    }
+    if (!changed) return;
+    for (Peer* other : peers)
+        if (other != peer.get()) other->tell_changed(changed);
 }
 
 /// The thread that the workbench works on.
 void WorkbenchServer::State::work() {
     workbench.on_progress = [self = shared_from_this()](const std::string& phase, double share) {
+        if (self->tells.exchange(true)) return;
         Json event(rapidjson::kObjectType);
         add_members(event, event.GetAllocator(), "event", "progress", "phase", phase, "share", share);
-        asio::post(self->io, [self, text = to_compact_text(event)] { self->tell_all(text); });
+        asio::post(self->io, [self, message = text_message(to_compact_text(event))] { self->tell_progress(message); });
     };
     workbench.prepare();
-    for (;;) {
-        Request request;
-        {
-            std::unique_lock lock(mutex);
-            wakes.wait(lock, [&] { return ends || !requests.empty(); });
-            if (ends) return;
-            request = std::move(requests.front());
-            requests.pop_front();
-        }
-        const Workbench::Reply reply = workbench.answer(request.text);
-        const Outgoing message{reply.bytes.empty() ? std::make_shared<const std::string>(reply.json) : packed(reply),
-                               reply.bytes.empty()};
-        asio::post(io, [self = shared_from_this(), from = request.from, message, changed = reply.changed,
-                        place = workbench.session().place()] {
-            const auto peer = from.lock();
-            if (peer) {
-                peer->answered();
-                if (self->peers.contains(peer)) peer->send(message);
-            }
-            if (changed) self->tell_all(R"({"event":"changed","place":)" + std::to_string(place) + "}", peer.get());
+    while (const auto request = next()) {
+        if (request->backlog->gone && only_asks(request->text)) continue;
+        Workbench::Reply reply = workbench.answer(request->text);
+        const Message changed =
+            reply.changed ? text_message(R"({"event":"changed","place":)" + std::to_string(workbench.session().place()) + "}")
+                          : Message();
+        const Message message = message_of(std::move(reply));
+        request->backlog->unsent += message->size();
+        asio::post(io, [self = shared_from_this(), from = request->from, bytes = request->text.size(), message, changed] {
+            self->answered(from, bytes, message, changed);
         });
     }
+}
+
+/// Nobody is waited for: what was begun with them ends when it is next looked at.
+void WorkbenchServer::State::drop_all() {
+    error_code ignored;
+    acceptor.close(ignored);
+    pause.cancel();
+    while (!strangers.empty()) strangers.front()->drop();
+    while (!served.empty()) served.front()->drop();
+    for (Peer* peer : std::set<Peer*>(peers)) peer->drop();
 }
 
 WorkbenchServer::WorkbenchServer(Workbench& workbench, std::uint16_t port, const ServerLimits& limits)
@@ -364,6 +549,7 @@ std::uint16_t WorkbenchServer::port() const { return state_->port; }
 const std::string& WorkbenchServer::token() const { return state_->token; }
 
 void WorkbenchServer::run() {
+    state_->on_first_page = on_first_page;
     std::thread worker([state = state_] { state->work(); });
     state_->accept();
     state_->io.run();
@@ -374,6 +560,9 @@ void WorkbenchServer::run() {
     state_->wakes.notify_one();
     worker.join();
     state_->workbench.on_progress = {};
+    state_->drop_all();
+    state_->io.restart();
+    state_->io.poll();
 }
 
 void WorkbenchServer::stop() {
@@ -381,8 +570,7 @@ void WorkbenchServer::stop() {
     asio::post(state_->io, [state = state_] {
         error_code ignored;
         state->acceptor.close(ignored);
-        for (const auto& peer : state->peers) peer->close();
-        state->peers.clear();
+        for (Peer* peer : state->peers) peer->close({websocket::close_code::going_away, "the workbench ends"});
         state->io.stop();
     });
 }

@@ -3,6 +3,7 @@
 #include "session_names.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 #include "ostraka/operations/page_results.h"
 #include "ostraka/template_package/template.h"
@@ -79,6 +80,7 @@ Session::Session(Path folder, Path root)
             fail_input(folder_.string(), "is not empty and holds no session", "name another folder for the session (--session)");
     }
     make_folder(folder_);
+    std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
     lock();
     write();
 }
@@ -98,6 +100,7 @@ void Session::lock() {
 
 void Session::read() {
     const Path file = folder_ / file_name;
+    check_folders();
     const Json document = read_json(file);
     validate(document, "session", file.string());
     for (const JsonValue& one : list_in(document, "steps")) {
@@ -111,8 +114,25 @@ void Session::read() {
     }
     place_ = std::min(steps_.size(), static_cast<std::size_t>(number_or(document, "place", 0)));
     counter_ = static_cast<std::size_t>(number_or(document, "counter", 0));
+    for (const SessionStep& step : steps_) check_files(step);
     for (const SessionObject& object : state().objects)
         for (const auto& [part, name] : object.parts) check_file(name);
+    sweep();
+}
+
+/// What a step names lies in the session or where objects are opened from.
+void Session::check_files(const SessionStep& step) const {
+    const std::string where = (folder_ / file_name).string() + ", step " + step.name;
+    const auto check = [&](const std::string& file) {
+        require_file_name(file, where, "state");
+        if (!file.empty() && !is_inside_any((folder_ / file).lexically_normal(), {folder_, root_}))
+            fail_input(where, "names '" + printable(file, 200) + "', which lies neither in the session nor in " + root_.string(),
+                       "open the folder that it lies in, or begin another session (--session)");
+    };
+    for (const SessionObject& object : step.state.objects)
+        for (const auto& [part, file] : object.parts) check(file);
+    for (const SessionFile& file : step.state.files) check(file.file);
+    require_writable_inside(folder_ / "steps" / step.name / "report.json", folder_);
 }
 
 void Session::check_file(const std::string& file) const {
@@ -120,6 +140,29 @@ void Session::check_file(const std::string& file) const {
     if (file_exists(path)) return;
     fail_input((folder_ / file_name).string(), "needs '" + path.string() + "', which is not there any more",
                "put it back, or begin another session (--session)");
+}
+
+/// Nothing that will be written or emptied leads out of the folder.
+void Session::check_folders() const {
+    for (const char* name : {file_name, "session.study.json", "steps", "documents"})
+        require_writable_inside(folder_ / name, folder_);
+}
+
+/// Removes what steps left whose process was killed before they counted.
+void Session::sweep() const {
+    for (const char* part : {"steps", "documents"}) {
+        std::error_code code;
+        std::vector<Path> gone;
+        for (std::filesystem::directory_iterator entry(folder_ / part, code), end; !code && entry != end; entry.increment(code)) {
+            const std::string name = entry->path().filename().string(), step = name.substr(0, name.find('-'));
+            const bool is_a_steps =
+                step.size() >= 4 && step[0] == 's' && step.find_first_not_of("0123456789", 1) == std::string::npos;
+            const bool counts =
+                std::any_of(steps_.begin(), steps_.end(), [&](const SessionStep& one) { return one.name == step; });
+            if (is_a_steps && !counts) gone.push_back(entry->path());
+        }
+        for (const Path& path : gone) std::filesystem::remove_all(path, code);
+    }
 }
 
 void Session::write() const {
@@ -138,9 +181,9 @@ void Session::write() const {
                     return made;
                 }));
     OutputTransaction transaction;
-    write_file(folder_ / file_name, to_text(document));
+    write_file(folder_ / file_name, to_text(document), FileAccess::owner_only);
     const Json steps = study();
-    if (!steps["steps"].ObjectEmpty()) write_json(folder_ / "session.study.json", steps);
+    if (!steps["steps"].ObjectEmpty()) write_file(folder_ / "session.study.json", to_text(steps), FileAccess::owner_only);
     transaction.commit();
 }
 
@@ -226,6 +269,7 @@ std::vector<std::string> Session::openable() const {
     std::vector<std::string> found;
     const auto look = [&](const Path& folder, const std::string& before) {
         for (const std::string& name : files_in(folder)) {
+            if (!is_inside(folder / name, root_)) continue;
             if (name.front() == '.' || name.find(".cage.") != std::string::npos) continue;
             if (is_mesh_name(name) || name.ends_with(".template.json")) found.push_back(before + name);
         }
@@ -234,7 +278,8 @@ std::vector<std::string> Session::openable() const {
     std::error_code ignored;
     std::vector<Path> folders;
     for (const auto& entry : std::filesystem::directory_iterator(root_, ignored))
-        if (entry.is_directory(ignored) && entry.path().filename().string().front() != '.' && !same_place(entry.path(), folder_))
+        if (entry.is_directory(ignored) && entry.path().filename().string().front() != '.' &&
+            !same_place(entry.path(), folder_) && is_inside(entry.path(), root_))
             folders.push_back(entry.path());
     std::sort(folders.begin(), folders.end());
     for (const Path& folder : folders)
@@ -266,9 +311,12 @@ void Session::open(const std::string& name, const std::function<void(const Sessi
         if (object.parts.contains("cage") && file_exists(coordinate_header_file(file.parent_path() / (object.name + ".npy"))))
             beside("coordinates", ".npy");
     }
-    for (const auto& [part, ref] : object.parts)
-        if (!file_exists((folder_ / ref).lexically_normal()))
+    for (const auto& [part, ref] : object.parts) {
+        const Path path = (folder_ / ref).lexically_normal();
+        if (!file_exists(path))
             fail_input(name, "names '" + ref + "', which is not there", "run: ostraka template check " + name);
+        if (!is_inside(path, root_)) fail_input(path.string(), "leads out of " + root_.string(), "copy it there");
+    }
     if (look) look(object);
     SessionStep step{next_name(), "open " + name, {}, {}, {}, {}, true, state()};
     object.name = free_name(step.state, object.name);

@@ -2,6 +2,7 @@
 #include "session_names.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/safe_path.h"
 
 namespace ostraka {
 
@@ -141,10 +142,9 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
 
 Report Session::run(const JsonValue& request, Context& context) {
     const OperationEntry& entry = find_operation(text_in(request, "operation"));
-    for (const char* refused : {"run", "replay", "conformance run", "conformance self", "operations"})
-        if (std::string_view(entry.name) == refused)
-            fail_request("'" + std::string(entry.name) + "' is not run here",
-                         "run it as a command: ostraka " + std::string(entry.name));
+    if (entry.runs_others || std::string_view(entry.name) == "operations")
+        fail_request("'" + std::string(entry.name) + "' is not run here",
+                     "run it as a command: ostraka " + std::string(entry.name));
     Call call(entry);
     SessionStep step{next_name(), text_in(request, "title"), entry.name, {}, {}, {}, true, state()};
     if (step.title.empty()) step.title = entry.name;
@@ -157,6 +157,8 @@ Report Session::run(const JsonValue& request, Context& context) {
             const std::string name = text_of(member.name);
             const Slot* slot = call.parameters().slot(name);
             if (slot == nullptr) {
+                if (const Option* option = call.parameters().options.find(name); option != nullptr && !option->from_files)
+                    fail_request("'" + printable(name, 40) + "' may be set by the caller of a command only", "leave it out");
                 if (to_compact_text(member.value).find("${") != std::string::npos)
                     fail_request("'" + printable(name, 40) + "' holds '${', which means something else in study files",
                                  "write it otherwise");
@@ -184,6 +186,7 @@ Report Session::run(const JsonValue& request, Context& context) {
         for (const auto& [file, text] : settings.documents) std::filesystem::remove(file, ignored);
     };
     std::error_code ignored;
+    check_folders();
     std::filesystem::remove_all(folder, ignored);  // of a run that was killed
     try {
         make_folder(folder);
@@ -268,6 +271,7 @@ Path Session::save(const std::string& name, Context& context) const {
     const Path folder = root_ / name, saved = folder / (name + ".template.json");
     if (file_exists(folder) || (is_folder(folder) && !std::filesystem::is_empty(folder) && !file_exists(saved)))
         fail_input(folder.string(), "is there already and holds something else", "give another name");
+    require_writable_inside(folder, root_);
     make_folder(folder);
     Call call(find_operation("template pack"));
     call.set("copy", true);

@@ -17,6 +17,8 @@
 
 namespace ostraka {
 
+using workbench::fail_request;
+
 namespace {
 
 constexpr std::size_t kept_meshes = 12;
@@ -61,12 +63,17 @@ struct Workbench::Deformation {
     Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> weights;  ///< as they are drawn with
 };
 
-Workbench::Workbench(Path folder, Path root)
-    : session_(std::move(folder), std::move(root)), context_(std::make_unique<Context>()) {
-    context_->keep_objects = true;
-    context_->watch.on_progress = [this](const std::string& phase, double share) {
+Workbench::Workbench(Path folder, Path root, double memory_limit)
+    : session_(std::move(folder), std::move(root)), memory_limit_(memory_limit), context_(fresh_context()) {}
+
+std::unique_ptr<Context> Workbench::fresh_context() {
+    auto fresh = std::make_unique<Context>();
+    fresh->keep_objects = true;
+    fresh->watch.memory_limit = memory_limit_;
+    fresh->watch.on_progress = [this](const std::string& phase, double share) {
         if (on_progress) on_progress(phase, share);
     };
+    return fresh;
 }
 
 Workbench::~Workbench() = default;
@@ -107,9 +114,7 @@ Workbench::Reply Workbench::answer(std::string_view text) {
     };
     // A request that was cancelled leaves its watch cancelled: each has its own.
     if (context_->watch.is_cancelled()) {
-        auto fresh = std::make_unique<Context>();
-        fresh->keep_objects = true;
-        fresh->watch.on_progress = context_->watch.on_progress;
+        auto fresh = fresh_context();
         const std::lock_guard lock(mutex_);
         context_ = std::move(fresh);
     }

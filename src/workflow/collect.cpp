@@ -5,6 +5,7 @@
 #include "ostraka/core/csv.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
+#include "ostraka/report/markdown.h"
 #include "ostraka/report/plot.h"
 
 #include <algorithm>
@@ -314,8 +315,8 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
         put(table.name + ".csv", text.csv());
         put(table.name + ".md", text.markdown());
         put(table.name + ".tex", text.latex(table.title));
-        parts[table.name] = (table.title.empty() ? "" : "**" + table.title + "**\n\n") +
-                            (table.note.empty() ? "" : table.note + "\n\n") +
+        parts[table.name] = (table.title.empty() ? "" : "**" + markdown_text(table.title) + "**\n\n") +
+                            (table.note.empty() ? "" : markdown_paragraphs(table.note) + "\n\n") +
                             (text.size() == 0 ? "Nothing to show yet.\n" : text.markdown());
         order.push_back(table.name);
         tables.emplace(table.name, std::move(table));
@@ -328,10 +329,11 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
             if (!has_points(plot)) continue;
             write_plot(write(name + ".svg"), plot);
             names.push_back(name + ".svg");
-            parts[name] = "![" + (plot.title.empty() ? name : plot.title) + "](" + name + ".svg)\n";
+            parts[name] = "![" + markdown_text(plot.title.empty() ? name : plot.title) + "](" + markdown_file(name) + ".svg)\n";
         }
-    std::string page = "# " + (study.title.empty() ? study.file.filename().string() : study.title) + "\n";
-    if (const std::string note = text_in(*study.document, "note"); !note.empty()) page += "\n" + note + "\n";
+    // Titles and texts of a study are plain text, whoever wrote it: no markup of theirs reaches the page.
+    std::string page = "# " + markdown_text(study.title.empty() ? study.file.filename().string() : study.title) + "\n";
+    if (const std::string note = text_in(*study.document, "note"); !note.empty()) page += "\n" + markdown_paragraphs(note) + "\n";
     const auto show = [&](const std::string& name) {
         if (const auto known = parts.find(name); known != parts.end()) {
             page += "\n" + known->second;
@@ -346,13 +348,14 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
             if (output == outputs.end() || !output->second.kept) continue;
             const std::string file = (plan.instances[i].folder / output->second.file).generic_string();
             const bool is_picture = file.ends_with(".png") || file.ends_with(".svg");
-            page += "\n" + std::string(is_picture ? "!" : "") + "[" + plan.instances[i].title(study) + "](<" + file + ">)\n";
+            page += "\n" + std::string(is_picture ? "!" : "") + "[" + markdown_text(plan.instances[i].title(study)) + "](<" +
+                    markdown_file(file) + ">)\n";
         }
     };
     const auto sections = list_in(*study.document, "page");
     for (const auto& section : sections) {
-        if (const std::string title = text_in(section, "title"); !title.empty()) page += "\n## " + title + "\n";
-        if (const std::string text = text_in(section, "text"); !text.empty()) page += "\n" + text + "\n";
+        if (const std::string title = text_in(section, "title"); !title.empty()) page += "\n## " + markdown_text(title) + "\n";
+        if (const std::string text = text_in(section, "text"); !text.empty()) page += "\n" + markdown_paragraphs(text) + "\n";
         for (const auto& one : list_in(section, "show")) show(text_of(one));
     }
     if (sections.Empty())
@@ -360,7 +363,7 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
     std::string problems;
     for (std::size_t i = 0; i < results.size(); ++i)
         if (results[i].state == InstanceState::failed)
-            problems += "- " + plan.instances[i].title(study) + ": " + results[i].problem + "\n";
+            problems += "- " + markdown_text(plan.instances[i].title(study) + ": " + results[i].problem) + "\n";
     if (!problems.empty()) page += "\n## What failed\n\n" + problems;
     put("page.md", page);
     return names;

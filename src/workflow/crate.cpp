@@ -221,6 +221,7 @@ RunRequest read_run_request(const Path& folder) {
         fail_input(folder.string(), "is no folder of a run: it has no run.json", "name the folder that 'ostraka run' wrote");
     const Json document = read_json(file);
     check_format(document, "ostraka-run", file.string(), "name the folder that 'ostraka run' wrote");
+    validate(document, "run", file.string());
     RunRequest request;
     request.study_folder = text_in(document, "folder");
     request.quick = flag_in(document, "quick");

@@ -1,6 +1,7 @@
 #include "ostraka/workflow/plan.h"
 
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/words.h"
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::size_t maximum_instances = 1'000'000;
+constexpr std::size_t maximum_instances = 100'000, maximum_inputs = 1'000'000;
 
 /// Stands for an output that another instance will have made.
 struct Promised {};
@@ -51,7 +52,10 @@ std::string StudyInstance::title(const Study& study) const {
 StudyPlan::StudyPlan(Study of) : study(std::move(of)), index_(study.steps.size()) {
     for (std::size_t i = 0; i < study.steps.size(); ++i) add_step(i);
     for (StudyInstance& instance : instances) make_outputs(instance);
-    for (const StudyInstance& instance : instances) check(instance);
+    for (const StudyInstance& instance : instances) {
+        check_cancelled();
+        check(instance);
+    }
     check_outputs();
 }
 
@@ -64,7 +68,8 @@ void StudyPlan::add_step(std::size_t i) {
             varying.push_back(p);
             count *= study.parameters[p].values.size();
             if (count + instances.size() > maximum_instances)
-                fail_input(study.at(step.place), "the study comes to more than a million instances of steps",
+                fail_input(study.at(step.place),
+                           "the study comes to more than " + std::to_string(maximum_instances) + " instances of steps",
                            "give fewer values");
         }
     for (std::size_t k = 0; k < count; ++k) {
@@ -76,7 +81,17 @@ void StudyPlan::add_step(std::size_t i) {
         }
         index_[i][values] = instances.size();
         instances.push_back(make_instance(i, values));
+        check_counts(instances.back());
     }
+}
+
+void StudyPlan::check_counts(const StudyInstance& instance) {
+    check_cancelled();
+    inputs_ += instance.inputs.size();
+    if (inputs_ > maximum_inputs)
+        fail_input(study.at(study.steps[instance.step].place),
+                   "the instances of the study take more than " + std::to_string(maximum_inputs) + " inputs",
+                   "give fewer values, or gather fewer");
 }
 
 StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::size_t>& values) {
@@ -132,11 +147,17 @@ StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::siz
                                    "let it be a word of its own");
                 instance.program.push_back(text.parts.empty() ? std::string() : filled(text, instance));
                 if (instance.program.back().empty()) fail_input(study.at(word.place), "is an empty word", "leave it out");
+                check_word(word, text, instance.program.back());
             }
         }
+        if (const std::string& name = instance.program.front(); !study.allow_programs && !is_own_program(name))
+            fail_input(study.at(step.place + "/program/0"),
+                       "starts '" + printable(name, 60) + "', which is none of the toolkit's own programs",
+                       "see all words of it by --dry-run; --allow-programs allows it");
         for (const StudySetting& word : step.reads) {
             const Path file =
                 (study.folder / filled(study_text(text_of(*word.value), study.at(word.place)), instance)).lexically_normal();
+            study.require_readable(file, word.place);
             if (!file_exists(file) && !is_folder(file))
                 fail_input(study.at(word.place), "'" + file.string() + "' is not there", "names are relative to the study file");
             instance.inputs.push_back({"reads", {}, file, no_instance, {}, false});
@@ -148,6 +169,30 @@ StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::siz
     std::sort(instance.needs.begin(), instance.needs.end());
     instance.needs.erase(std::unique(instance.needs.begin(), instance.needs.end()), instance.needs.end());
     return instance;
+}
+
+/// Words of a program from a file that somebody else may have written name no place outside of the instance's folder and of what
+/// may be read, whatever the program does with them.
+void StudyPlan::check_word(const StudySetting& word, const StudyText& text, const std::string& filled) const {
+    const auto is_the_callers = [&](const StudyReference& reference) {
+        const StudyParameter* parameter = study.parameter(reference.name);
+        return parameter != nullptr && parameter->by_caller;
+    };
+    const auto references = text.references();
+    if (study.allow_programs || std::any_of(references.begin(), references.end(), is_the_callers)) return;
+    static const std::string own = "${folder}", studys = "${study}";
+    const bool begins_own = filled.starts_with(own), begins_studys = filled.starts_with(studys);
+    const std::size_t equals = filled.starts_with("-") ? filled.find('=') : std::string::npos;
+    const std::string named = begins_own      ? filled.substr(own.size())
+                              : begins_studys ? filled.substr(studys.size())
+                                              : filled.substr(equals == std::string::npos ? 0 : equals + 1);
+    if (begins_studys) return study.require_readable(study.folder / ("." + named), word.place);
+    const Path path(named);
+    const bool climbs = std::any_of(path.begin(), path.end(), [](const Path& part) { return part == ".."; });
+    const bool is_flag = named.starts_with("-") && named.find('/') != std::string::npos;
+    if (climbs || is_flag || (!begins_own && path.is_absolute()) || named.find("${study}") != std::string::npos)
+        fail_input(study.at(word.place), "'" + printable(filled, 100) + "' may lead out of the folder of the step",
+                   "use ${folder}, ${study} or an output of a step; --allow-programs allows any words");
 }
 
 const JsonValue* StudyPlan::value(const StudyInstance& instance, const StudyReference& reference) const {
@@ -221,6 +266,7 @@ void StudyPlan::set_value(StudyInstance& instance, const StudySetting& setting, 
         if (!(slot->takes_none && name == "none")) {
             input.file = (study.folder / name).lexically_normal();
             if (is_memory(input.file)) input.file = "./" + name;
+            study.require_readable(input.file, place);
         }
         if (!input.file.empty() && !file_exists(input.file) && !is_folder(input.file))
             fail_input(study.at(place), "'" + input.file.string() + "' is not there", "names are relative to the study file");
@@ -233,7 +279,8 @@ void StudyPlan::set_value(StudyInstance& instance, const StudySetting& setting, 
         instance.inputs.push_back(std::move(input));
         return;
     }
-    // An option.
+    if (!call.parameters().options.find(setting.name)->from_files)
+        fail_input(study.at(place), "'" + setting.name + "' may be set by the caller only", "leave it out");
     const auto resolved = [&](const JsonValue& given, const std::string& at) {
         if (!given.IsString()) return JsonValue(given, allocator);
         const StudyText text = study_text(text_of(given), study.at(at));

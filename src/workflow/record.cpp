@@ -2,8 +2,10 @@
 
 #include "ostraka/collection/objects.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -39,17 +41,45 @@ void add_files(const Path& root, const Path& folder, Pairs& files, FileChecksums
     for (const Path& one : folders) add_files(root, one, files, checksums);
 }
 
+std::optional<StudyRecord> parsed_record(const Path& file) {
+    try {
+        const Json document = read_json(file);
+        validate(document, "study-record", file.string());
+        StudyRecord record;
+        record.depends = pairs_of(*find_member(document, "depends"));
+        record.read = pairs_of(*find_member(document, "read"));
+        for (const auto& member : find_member(document, "outputs")->GetObject())
+            record.outputs[text_of(member.name)] = {text_in(member.value, "file"), text_in(member.value, "sha256"),
+                                                    flag_in(member.value, "kept"), flag_in(member.value, "folder")};
+        record.holds = flag_in(document, "holds");
+        const JsonValue& run = *find_member(document, "run");
+        record.seconds = number_or(run, "seconds", 0);
+        record.began = text_in(run, "began");
+        record.ended = text_in(run, "ended");
+        return record;
+    } catch (const Error&) {
+        return {};  // damaged: as if it had not run
+    }
+}
+
 }  // namespace
+
+std::optional<FileStamp> stamp_of(const Path& file) {
+    struct stat status {};
+    if (is_memory(file) || ::stat(file.c_str(), &status) != 0) return {};
+    return FileStamp{static_cast<std::uintmax_t>(status.st_size), status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
 
 std::string FileChecksums::file(const Path& file) {
     {
         const std::lock_guard lock(mutex_);
-        if (const auto known = known_.find(file); known != known_.end()) return known->second;
+        if (const auto known = known_.find(file); known != known_.end()) return known->second.sha256;
     }
     check_readable(file);
+    const auto stamp = stamp_of(file);  // before it is read: what is written meanwhile shows
     std::string sum = sha256_of_file(file);
     const std::lock_guard lock(mutex_);
-    if (!is_memory(file)) known_[file] = sum;
+    if (!is_memory(file)) known_[file] = {sum, stamp};
     return sum;
 }
 
@@ -77,31 +107,38 @@ void FileChecksums::forget(const Path& file) {
 }
 
 void FileChecksums::know(const Path& file, const std::string& sha256) {
+    const auto stamp = stamp_of(file);
     const std::lock_guard lock(mutex_);
-    known_[file] = sha256;
+    const auto [known, is_new] = known_.try_emplace(file, Known{sha256, stamp});
+    if (!is_new && known->second.sha256 != sha256) known->second.differs = true;
+}
+
+std::vector<Path> FileChecksums::changed() {
+    const std::lock_guard lock(mutex_);
+    std::vector<Path> files;
+    for (const auto& [file, known] : known_) {
+        if (is_memory(file)) continue;
+        // A file that was touched, or written again as it was, has not changed.
+        const bool is_same = stamp_of(file) == known.stamp || (file_exists(file) && sha256_of_file(file) == known.sha256);
+        if (known.differs || !is_same) files.push_back(file);
+    }
+    return files;
+}
+
+bool FileChecksums::is_known(const Path& file) {
+    const std::lock_guard lock(mutex_);
+    return known_.contains(file);
 }
 
 std::optional<StudyRecord> read_record(const Path& folder) {
     const Path file = folder / "record.json";
     if (!file_exists(file)) return {};
-    try {
-        const Json document = read_json(file);
-        validate(document, "study-record", file.string());
-        StudyRecord record;
-        record.depends = pairs_of(*find_member(document, "depends"));
-        record.read = pairs_of(*find_member(document, "read"));
-        for (const auto& member : find_member(document, "outputs")->GetObject())
-            record.outputs[text_of(member.name)] = {text_in(member.value, "file"), text_in(member.value, "sha256"),
-                                                    flag_in(member.value, "kept"), flag_in(member.value, "folder")};
-        record.holds = flag_in(document, "holds");
-        const JsonValue& run = *find_member(document, "run");
-        record.seconds = number_or(run, "seconds", 0);
-        record.began = text_in(run, "began");
-        record.ended = text_in(run, "ended");
-        return record;
-    } catch (const Error&) {
-        return {};  // damaged: as if it had not run
-    }
+    std::optional<StudyRecord> record = parsed_record(file);
+    if (record)
+        for (const auto& [name, output] : record->outputs)
+            static_cast<void>(file_inside(output.file, folder, file.string(), "/outputs/" + printable(name, 60) + "/file",
+                                          "the folder of the step", "remove " + folder.string()));
+    return record;
 }
 
 void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance& instance, const StudyRecord& record) {
@@ -180,7 +217,8 @@ Pairs dependencies(const StudyPlan& plan, const StudyInstance& instance,
 }
 
 std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& known, const Pairs& depends,
-                      const StudyInstance& instance, const Path& folder, FileChecksums& checksums) {
+                      const StudyInstance& instance, const Path& run_folder, FileChecksums& checksums) {
+    const Path folder = run_folder / instance.folder;
     if (!known) return "it has not run yet";
     std::vector<std::string> reasons;
     const std::map<std::string, std::string> before(known->depends.begin(), known->depends.end()),
@@ -197,8 +235,11 @@ std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& k
     for (const auto& [name, value] : known->depends)
         if (!now.contains(name)) reasons.push_back(name + " is gone, was " + shown(name, value));
     for (const auto& [file, sum] : known->read) {
-        const Path path = plan.study.folder / file;
-        if (!file_exists(path)) reasons.push_back("'" + file + "', which an input names, is gone");
+        const bool is_own = file.starts_with(in_run);
+        const Path path = is_own ? run_folder / file.substr(in_run.size()) : plan.study.folder / file;
+        if (is_own ? !is_inside(path, run_folder) : !is_inside_any(path, plan.study.readable))
+            reasons.push_back("'" + file + "', which an input names, lies where it may not be read");
+        else if (!file_exists(path)) reasons.push_back("'" + file + "', which an input names, is gone");
         else if (checksums.file(path) != sum) reasons.push_back("'" + file + "', which an input names, has changed");
     }
     for (const auto& [output, file] : instance.outputs) {

@@ -2,20 +2,24 @@
 
 #include "ostraka/core/child_process.h"
 #include "ostraka/core/json_build.h"
+#include "ostraka/core/memory.h"
 #include "ostraka/core/parallel.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/transaction.h"
 #include "ostraka/core/words.h"
 #include "ostraka/operation/object_files.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <ctime>
-#include <fstream>
 #include <set>
 #include <thread>
 
@@ -46,6 +50,39 @@ struct Work {
     std::size_t input_bytes = 0;
 };
 
+/// Folder of an instance that no other process works in while this lives.
+class FolderLock {
+public:
+    /// Waits as long as another process has it, until `stop` says otherwise.
+    FolderLock(const Path& folder, const std::function<bool()>& stop)
+        : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+        // Where the file system knows no locks, nobody waits.
+        while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && !stop()) {
+            waited_ = true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+    }
+    ~FolderLock() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+    [[nodiscard]] bool waited() const { return waited_; }
+
+private:
+    int descriptor_;
+    bool waited_ = false;
+};
+
+/// Removes what a folder holds, and leaves the folder, which is locked.
+void empty_folder(const Path& folder) {
+    std::error_code code;
+    std::vector<Path> entries;
+    for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
+        entries.push_back(entry->path());
+    for (const Path& entry : entries) std::filesystem::remove_all(entry, code);
+}
+
 class Runner {
 public:
     Runner(const StudyPlan& plan, Path folder, const RunStudyOptions& options)
@@ -67,7 +104,7 @@ public:
             ++selected_;
             for (const StudyInput& input : plan_.instances[i].inputs)
                 if (!input.file.empty()) {
-                    ++file_uses_[input.file];
+                    if (file_uses_[input.file]++ == 0) stamps_[input.file] = stamp_of(input.file);
                     works_[i].input_bytes += size_of_file(input.file);
                 }
             if (works_[i].open_needs == 0) to_consider_.insert(i);
@@ -102,6 +139,7 @@ public:
         join_ended(lock);
         if (cancelled)
             throw Error(ErrorKind::cancelled, "", "cancelled", "what is done is kept: the same command goes on from there");
+        if (!options_.dry_run) fail_changed();
         return std::move(results_);
     }
 
@@ -162,7 +200,7 @@ private:
                 // Where nothing is known, files are read by those who need them, and their checksums come from that.
                 std::vector<std::pair<std::string, std::string>> depends;
                 if (known) depends = dependencies_of(i);
-                std::string why = why_again(plan_, known, depends, instance(i), folder_of(i), checksums_);
+                std::string why = why_again(plan_, known, depends, instance(i), folder_, checksums_);
                 if (why.empty() && options_.again) why = "all is to run again";
                 lock.lock();
                 if (known) work.expected = known->seconds;
@@ -240,8 +278,9 @@ private:
         if (queue_.empty() || running_ >= static_cast<std::size_t>(threads())) return false;
         const std::size_t i = queue_.front();
         // A mesh in memory with its trees comes to about a dozen times its file.
-        if (running_ > 0 && options_.memory > 0 &&
-            resident_memory() + 12 * static_cast<double>(works_[i].input_bytes) > options_.memory)
+        const Watch* watch = current_watch();
+        const double limit = watch != nullptr ? watch->memory_limit : 0;
+        if (running_ > 0 && limit > 0 && resident_memory() + 12 * static_cast<double>(works_[i].input_bytes) > limit)
             return false;
         queue_.erase(queue_.begin());
         const std::size_t side_by_side = std::min<std::size_t>(static_cast<std::size_t>(threads()), running_ + queue_.size() + 1);
@@ -251,6 +290,7 @@ private:
         work.stage = Work::Stage::running;
         work.context = std::make_unique<Context>();
         work.context->share_objects(root_);
+        work.context->watch.memory_limit = limit;
         // One that runs a second time may have ended without having been joined yet.
         if (const auto before = workers_.find(i); before != workers_.end()) {
             std::erase(ended_, i);
@@ -275,6 +315,11 @@ private:
             context = works_[i].context.get();
         }
         try {
+            const WatchScope watched(&context->watch);
+            make_folder(folder_of(i));
+            const FolderLock lock(folder_of(i), [&] { return context->watch.is_cancelled(); });
+            check_cancelled();
+            if (lock.waited() && was_done_meanwhile(i, record)) return end_work(i, InstanceState::unchanged, {}, record, {});
             const Stopwatch clock;
             record.began = now_text();
             if (plan_.study.steps[instance(i).step].operation != nullptr) do_operation(i, *context, record, objects, clock);
@@ -289,23 +334,71 @@ private:
             state = InstanceState::failed;
             problem = std::string("internal error: ") + error.what();
         }
+        end_work(i, state, problem, record, objects);
+    }
+
+    void end_work(std::size_t i, InstanceState state, const std::string& problem, const StudyRecord& record,
+                  const std::map<std::string, Object>& objects) {
         const std::lock_guard lock(mutex_);
-        Work& work = works_[i];
-        if (state == InstanceState::done) {
-            work.objects = std::move(objects);
-            results_[i].record = std::move(record);
+        if (state == InstanceState::done || state == InstanceState::unchanged) {
+            works_[i].objects = objects;
+            results_[i].record = record;
         }
-        results_[i].problem = std::move(problem);
+        results_[i].problem = problem;
         finish(i, state);
         ended_.push_back(i);
         changed_.notify_all();
+    }
+
+    /// Whether another process has done the instance while this one waited for its folder; fills the record.
+    bool was_done_meanwhile(std::size_t i, StudyRecord& record) {
+        const auto known = read_record(folder_of(i));
+        if (!known) return false;
+        for (const auto& [output, made] : known->outputs) {
+            checksums_.forget(folder_of(i) / made.file);
+            if (!made.kept) return false;  // it is in the memory of the other process
+        }
+        if (!why_again(plan_, known, dependencies_of(i), instance(i), folder_, checksums_).empty()) return false;
+        record = *known;
+        return true;
+    }
+
+    /// Instances that took an input which has changed since the study began, or while it was read, do not count: what they made
+    /// may be of the one or the other.
+    void fail_changed() {
+        std::set<Path> changed;
+        for (const auto& [file, stamp] : stamps_)
+            if (stamp_of(file) != stamp && !checksums_.is_known(file)) changed.insert(file);
+        for (const Path& file : checksums_.changed())
+            if (!is_inside(file, folder_)) changed.insert(file);
+        if (changed.empty()) return;
+        const auto is_changed = [&](const Path& file) {
+            return std::any_of(changed.begin(), changed.end(),
+                               [&](const Path& one) { return one == file || is_inside(one, file); });
+        };
+        for (std::size_t i = 0; i < works_.size(); ++i) {
+            InstanceResult& result = results_[i];
+            if (result.state != InstanceState::done && result.state != InstanceState::unchanged) continue;
+            std::string which;
+            for (const StudyInput& input : instance(i).inputs)
+                if (!input.file.empty() && is_changed(input.file)) which = input.file.string();
+            for (const auto& [file, sum] : result.record.read)
+                if (!file.starts_with(in_run) && is_changed((plan_.study.folder / file).lexically_normal())) which = file;
+            const bool is_behind = std::any_of(instance(i).needs.begin(), instance(i).needs.end(), [&](std::size_t need) {
+                return results_[need].state == InstanceState::failed || results_[need].state == InstanceState::skipped;
+            });
+            if (which.empty() && !is_behind) continue;
+            result.state = which.empty() ? InstanceState::skipped : InstanceState::failed;
+            result.problem = which.empty() ? "what it takes was made of an input that changed while the study ran"
+                                           : "'" + which + "' changed while the study ran (run it again)";
+            if (!which.empty()) remove_file(folder_of(i) / "record.json");
+        }
     }
 
     void do_operation(std::size_t i, Context& context, StudyRecord& record, std::map<std::string, Object>& objects,
                       const Stopwatch& clock) {
         const StudyInstance& one = instance(i);
         const Path folder = folder_of(i);
-        make_folder(folder);
         // Folders of a run that was complete are begun anew; those of one that was killed keep what a study has done already.
         if (const auto before = read_record(folder))
             for (const auto& [output, was] : before->outputs)
@@ -327,9 +420,9 @@ private:
         record.holds = report.holds();
         for (const auto& read : context.files_read()) {
             checksums_.know(read.file, read.sha256);
-            if (!is_memory(read.file) && std::none_of(one.inputs.begin(), one.inputs.end(),
-                                                      [&](const StudyInput& input) { return input.file == read.file; }))
-                record.read.emplace_back(plan_.study.relative(read.file), read.sha256);
+            if (is_memory(read.file) || is_own_input(one, read.file)) continue;
+            const std::string in_folder = within_run(read.file);
+            record.read.emplace_back(in_folder.empty() ? plan_.study.relative(read.file) : in_run + in_folder, read.sha256);
         }
         auto outputs = std::make_unique<OutputTransaction>();
         for (const auto& [output, file] : one.outputs) {
@@ -364,6 +457,22 @@ private:
         keep(i, record, clock);
     }
 
+    /// Whether the file is an input of the instance, or the output of another one that it takes: its record says so already.
+    bool is_own_input(const StudyInstance& one, const Path& file) {
+        return std::any_of(one.inputs.begin(), one.inputs.end(), [&](const StudyInput& input) {
+            if (input.instance == no_instance) return input.file == file;
+            const std::lock_guard lock(mutex_);
+            const auto& outputs = results_[input.instance].record.outputs;
+            return outputs.contains(input.output) && file_of(input) == file;
+        });
+    }
+    /// The name of a file in the run folder, relative to it; empty for others.
+    std::string within_run(const Path& file) const {
+        const auto full = [](const Path& path) { return std::filesystem::absolute(path).lexically_normal(); };
+        const Path relative = full(file).lexically_relative(full(folder_));
+        return relative.empty() || *relative.begin() == ".." ? std::string() : relative.generic_string();
+    }
+
     Source source_of(const StudyInput& input) {
         const std::lock_guard lock(mutex_);
         const Work& work = works_[input.instance];
@@ -386,9 +495,7 @@ private:
     void do_program(std::size_t i, const Watch& watch, int share, StudyRecord& record, const Stopwatch& clock) {
         const StudyInstance& one = instance(i);
         const Path folder = std::filesystem::absolute(folder_of(i));
-        std::error_code code;
-        std::filesystem::remove_all(folder, code);  // what an earlier run left
-        make_folder(folder);
+        empty_folder(folder);  // of what an earlier run left
         const auto words = plan_.words(
             one,
             [&](const StudyInput& input) {
@@ -493,6 +600,7 @@ private:
     FileChecksums checksums_;
     Context root_;  ///< keeps what files hold as long as an instance may need it
     std::map<Path, std::size_t> file_uses_;
+    std::map<Path, std::optional<FileStamp>> stamps_;  ///< of the inputs, as the run begins
     std::set<std::size_t> to_consider_;
     std::vector<std::size_t> queue_, ended_;
     std::map<std::size_t, std::thread> workers_;
@@ -508,10 +616,33 @@ std::string to_string(InstanceState state) {
     return names[static_cast<std::size_t>(state)];
 }
 
-double resident_memory() {
-    std::ifstream file("/proc/self/statm");
-    double all = 0, resident = 0;
-    return file >> all >> resident ? resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) : 0;
+namespace {
+/// What is written for all instances together.
+std::vector<std::string> collected_names(const StudyPlan& plan) {
+    std::vector<std::string> names{"page.md", "run.json", "run.study.json", "ro-crate-metadata.json"};
+    const auto add = [&](const char* what, const std::vector<const char*>& endings) {
+        if (const JsonValue* list = find_member(*plan.study.document, what))
+            for (const auto& one : list->GetObject())
+                for (const char* ending : endings) names.push_back(text_of(one.name) + ending);
+    };
+    add("tables", {".csv", ".md", ".tex"});
+    add("plots", {".svg"});
+    return names;
+}
+}  // namespace
+
+void check_run_folder(const StudyPlan& plan, const Path& run_folder) {
+    for (const std::string& name : collected_names(plan)) require_writable_inside(run_folder / name, run_folder);
+    for (const StudyInstance& instance : plan.instances) {
+        check_cancelled();
+        const Path folder = run_folder / instance.folder;
+        require_writable_inside(folder, run_folder);
+        if (!is_folder(folder)) continue;
+        static_cast<void>(read_record(folder));
+        std::vector<std::string> written{"report.json", "record.json", "output.txt"};
+        for (const std::string& output : instance.kept) written.push_back(instance.outputs.at(output));
+        for (const std::string& name : written) require_writable_inside(folder / name, run_folder);
+    }
 }
 
 std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options) {
@@ -519,6 +650,7 @@ std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder,
         if (plan.study.step(name) == plan.study.steps.size())
             fail_usage("--only names '" + printable(name, 60) + "', which is no step of " + plan.study.file.string(),
                        "its steps: " + joined(plan.study.steps, ", ", &StudyStep::name));
+    check_run_folder(plan, folder);
     return Runner(plan, folder, options).run();
 }
 

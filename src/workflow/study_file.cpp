@@ -1,6 +1,7 @@
 #include "ostraka/workflow/study_file.h"
 
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
 #include <fnmatch.h>
@@ -14,7 +15,7 @@ namespace ostraka {
 namespace {
 
 constexpr const char* name_rule = "letters, digits, '-' and '_', a letter first";
-constexpr std::size_t maximum_values = 1'000'000;
+constexpr std::int64_t maximum_values = 100'000;
 
 bool is_name(const std::string& name) {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -68,8 +69,18 @@ ParameterValue file_value(const Path& file) {
     return made;
 }
 
+/// The folder that a pattern without ".." behind a wildcard begins with.
+Path before_wildcards(const Path& pattern) {
+    Path folder;
+    for (const Path& part : pattern) {
+        if (part.string().find_first_of("*?[") != std::string::npos) break;
+        folder /= part;
+    }
+    return folder.empty() ? Path(".") : folder;
+}
+
 StudyParameter read_parameter(const Study& study, const std::string& name, const JsonValue& value, const std::string& place) {
-    StudyParameter parameter{name, {}, true};
+    StudyParameter parameter{name, {}, false, true};
     if (!is_name(name) || is_reserved(name))
         fail_input(study.at(place), "is no name for a parameter",
                    std::string("use ") + name_rule + ", and neither 'folder' nor 'study'");
@@ -78,7 +89,11 @@ StudyParameter read_parameter(const Study& study, const std::string& name, const
             parameter.values.push_back(one.IsObject() ? case_value(one, parameter.values.size()) : scalar_value(one));
     } else if (value.IsObject() && find_member(value, "files") != nullptr) {
         const Path pattern = (study.folder / text_in(value, "files")).lexically_normal();
-        for (const Path& file : matching_files(pattern)) parameter.values.push_back(file_value(file));
+        study.require_readable(before_wildcards(pattern), place + "/files");
+        for (const Path& file : matching_files(pattern)) {
+            study.require_readable(file, place + "/files");
+            parameter.values.push_back(file_value(file));
+        }
         if (parameter.values.empty())
             fail_input(study.at(place + "/files"), "no file is called '" + pattern.string() + "'",
                        "names are relative to the study file; * stands for any letters, ? for one");
@@ -87,10 +102,11 @@ StudyParameter read_parameter(const Study& study, const std::string& name, const
         const JsonValue* given = find_member(value, "step");
         const std::int64_t step = given == nullptr ? 1 : given->GetInt64();
         if (to < from) fail_input(study.at(place), "ends before it begins", "give 'to' a number that is not below 'from'");
-        if (static_cast<std::uint64_t>(to - from) / static_cast<std::uint64_t>(step) >= maximum_values)
-            fail_input(study.at(place), "has more than a million values", "give fewer");
-        for (std::int64_t i = from; i <= to; i += step)
-            parameter.values.push_back(scalar_value(Json(rapidjson::kNullType).SetInt64(i)));
+        const std::int64_t last = (to - from) / step;  // the schema's bounds keep it from overflowing
+        if (last >= maximum_values)
+            fail_input(study.at(place), "has more than " + std::to_string(maximum_values) + " values", "give fewer");
+        for (std::int64_t i = 0; i <= last; ++i)
+            parameter.values.push_back(scalar_value(Json(rapidjson::kNullType).SetInt64(from + i * step)));
     } else {
         parameter.values.push_back(scalar_value(value));
         parameter.varies = false;
@@ -188,9 +204,21 @@ private:
                                         : "did you mean '" + near + "'?");
             }
             values[name].first = &value;
+            if (!options.set_from_file) allow_given(value);
         }
-        for (const std::string& name : names)
+        for (const std::string& name : names) {
             study_.parameters.push_back(read_parameter(study_, name, *values.at(name).first, values.at(name).second));
+            study_.parameters.back().by_caller =
+                !options.set_from_file &&
+                std::any_of(given.begin(), given.end(), [&](const auto& one) { return one.first == name; });
+        }
+    }
+
+    /// What the caller names as the value of a parameter may be read.
+    void allow_given(const JsonValue& value) {
+        if (value.IsString()) study_.readable.push_back(study_.folder / text_of(value));
+        if (value.IsArray())
+            for (const auto& one : value.GetArray()) allow_given(one);
     }
 
     [[noreturn]] void refuse_name(const std::string& pointer, const std::string& what, const std::string& name,
@@ -222,6 +250,11 @@ private:
             } catch (const Error& error) {
                 fail_input(study_.at(step.place + "/operation"), error.problem(), error.remedy());
             }
+            if (step.operation->runs_others)
+                fail_input(
+                    study_.at(step.place + "/operation"),
+                    "'" + std::string(step.operation->name) + "' runs other operations or programs, and is no step of a study",
+                    "run it as a command: ostraka " + std::string(step.operation->name));
             if (find_member(value, "reads") != nullptr)
                 fail_input(study_.at(step.place + "/reads"), "is for programs", "an operation takes its inputs in 'with'");
             if (const JsonValue* with = find_member(value, "with"))
@@ -488,10 +521,18 @@ std::size_t Study::step(const std::string& name) const {
                                     steps.begin());
 }
 
+void Study::require_readable(const Path& named, const std::string& pointer) const {
+    if (is_inside_any(named, readable)) return;
+    fail_input(at(pointer), "'" + printable(named.string(), 300) + "' lies outside of the study's folder",
+               "allow a further folder to be read: --reads FOLDER");
+}
+
 std::string Study::relative(const Path& name) const {
     const auto full = [](const Path& path) { return std::filesystem::absolute(path).lexically_normal(); };
     return full(name).lexically_relative(full(folder)).generic_string();
 }
+
+bool is_own_program(const std::string& name) { return name == "ostraka_experiments"; }
 
 std::string scalar_text(const JsonValue& value) {
     if (value.IsString()) return text_of(value);
@@ -504,6 +545,9 @@ Study read_study(const Path& file, const FindOperation& find, const StudyOptions
     study.file = file;
     study.folder = options.folder.empty() ? file.parent_path() : options.folder;
     if (study.folder.empty()) study.folder = ".";
+    study.allow_programs = options.allow_programs;
+    if (options.reads_folder) study.readable = {study.folder};
+    study.readable.insert(study.readable.end(), options.reads.begin(), options.reads.end());
     const std::string text = read_file(file);
     study.sha256 = sha256(text);
     study.document = std::make_shared<const Json>(parse_json(text, file.string()));

@@ -2,6 +2,8 @@
 
 #include "meshes.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/memory.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 
@@ -158,6 +160,20 @@ TEST(Geodesic, ErrorsSayWhatIsWrong) {
     nowhere.kind = SurfaceNode::Kind::face;
     nowhere.element = 99;
     EXPECT_THROW((void)geodesic_distance(mesh, nowhere, surface_node(mesh, Vertex(0))), Error);
+}
+
+TEST(Geodesic, IsRefusedWhereTheMemoryIsNotThere) {
+    Watch watch;
+    watch.memory_limit = resident_memory() + 50e6;
+    const WatchScope scope(&watch);
+    const Mesh mesh = flat(200);
+    try {
+        geodesic_distances(mesh, {0});
+        ADD_FAILURE() << "not refused";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("of memory"), std::string::npos) << error.what();
+        EXPECT_NE(error.remedy().find("along edges"), std::string::npos) << error.remedy();
+    }
 }
 
 }  // namespace

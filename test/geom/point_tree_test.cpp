@@ -132,3 +132,13 @@ TEST(PointTree, IsMoved) {
     EXPECT_EQ(tree.size(), 2U);
     EXPECT_EQ(tree.nearest(Point(9, 0, 0)).index, 1U);
 }
+
+TEST(PointTree, HeapsAtOnePlaceAreNotLookedThroughForEach) {
+    const std::vector<Point> heap(200'000, Point(1, 2, 3));
+    const PointTree tree(heap);
+    for (int i = 0; i < 20'000; ++i) {  // each in the time of a search, not of the heap
+        EXPECT_EQ(tree.nearest(Point(1, 2, 3)).index, 0U);
+        const auto two = tree.neighbours(Point(1, 2, 3), 2);
+        EXPECT_EQ(std::pair(two[0].index, two[1].index), std::pair(Index{0}, Index{1}));
+    }
+}

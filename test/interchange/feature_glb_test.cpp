@@ -2,6 +2,7 @@
 #include "ostraka/interchange/feature_glb.h"
 #include "mutate.h"
 #include "ostraka/core/error.h"
+#include "ostraka/io/glb.h"
 #include "scratch.h"
 #include "sets.h"
 
@@ -273,4 +274,26 @@ TEST(FeatureGlb, DamagedFilesEndInAClearError) {
         }
     }
     EXPECT_LT(successes, 400U);
+}
+
+TEST(FeatureGlb, PrimitivesThatNameTheSameDataAreReadOnceAndNotWithoutEnd) {
+    glb::Builder builder;
+    const std::size_t count = 30000;
+    std::string positions;
+    for (std::size_t i = 0; i < 3 * count; ++i) glb::append(positions, static_cast<float>(i % 7));
+    builder.add_accessor(positions, 0, 0, glb::single, count, "VEC3");
+    const std::string file = builder.finish("file", "");
+    const auto with_primitives = [&](std::size_t primitives) {
+        std::string list;
+        for (std::size_t i = 0; i < primitives; ++i) list += std::string(i > 0 ? "," : "") + "{\"attributes\":{\"POSITION\":0}}";
+        std::string json = file.substr(20, word_at(file, 12));
+        json.resize(json.rfind('}'));
+        return with_json(file, json + ",\"meshes\":[{\"primitives\":[" + list + "]}]}");
+    };
+    // Some copies are read; whether they can be placed on the mesh is another question.
+    const Mesh mesh = spheres(3);
+    EXPECT_EQ(message(with_primitives(20), mesh).find("again and again"), std::string::npos);
+    const std::string refused = message(with_primitives(100000), mesh);
+    EXPECT_NE(refused.find("at /meshes/0/primitives/"), std::string::npos) << refused;
+    EXPECT_NE(refused.find("name the same data again and again"), std::string::npos) << refused;
 }

@@ -1,13 +1,17 @@
 // What stands on the command line, right and wrong, whatever the operation.
+#include "ostraka/core/child_process.h"
 #include "ostraka/core/json.h"
+#include "ostraka/core/stopwatch.h"
 #include "scratch.h"
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 
 namespace ostraka {
 namespace {
+using test::count_files;
 using test::run_command;
 using test::Scratch;
 
@@ -169,6 +173,40 @@ TEST(CommandLine, CompletionKnowsWhatAllCommandsHave) {
     EXPECT_EQ(run_command("--complete slice a.ply --up -").out, "-x\n-y\n-z\n");
     EXPECT_EQ(run_command("--complete slice a.ply --ax").out, "--axes\n");
     EXPECT_EQ(run_command("--complete relation ''").out, "add\ncheck\nedit\nexport\nextract\nlist\nremove\n");
+}
+
+TEST(CommandLine, WhatPassesTheMemoryLimitIsRefusedInWords) {
+    const std::string mesh = std::string(OSTRAKA_SOURCE_DIR) + "/data/statuette.ply";
+    EXPECT_EQ(run_command("mesh info " + mesh + " --quiet --memory 8").code, 0);
+    const auto small = run_command("mesh info " + mesh + " --memory 0.005");
+    EXPECT_EQ(small.code, 1) << small.out;
+    EXPECT_NE(small.err.find("GB of memory"), std::string::npos) << small.err;
+    EXPECT_NE(small.err.find("--memory"), std::string::npos) << small.err;
+    EXPECT_EQ(run_command("mesh info " + mesh + " --memory -1").code, 2);
+    // What no estimate foresees ends in words too.
+    const Scratch scratch;
+    const auto large = run_command("mesh make vase " + (scratch / "v.ply").string() + " --vertices 2000000 --memory 0.1");
+    EXPECT_EQ(large.code, 1) << large.out;
+    EXPECT_NE(large.err.find("memory"), std::string::npos) << large.err;
+    EXPECT_EQ(count_files(scratch.path()), 0U);
+}
+
+TEST(CommandLine, StopsOnASignalAndLeavesNothingBehind) {
+    const Scratch scratch;
+    const std::string mesh = (scratch / "v.ply").string();
+    ASSERT_EQ(run_command("mesh make vase " + mesh + " --vertices 300000").code, 0);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        ChildProcess command({OSTRAKA_COMMAND, "mesh", "remesh", mesh, (scratch / "out.ply").string(), "--vertices", "250000"},
+                             {.output = scratch / "printed", .errors = scratch / "printed"});
+        const Stopwatch clock;
+        ASSERT_FALSE(command.wait([&] { return clock.seconds() > 1; })) << "it was over too soon";
+        command.signal(signal);
+        const Stopwatch since;
+        ASSERT_TRUE(command.wait([&] { return since.seconds() > 60; })) << "it did not stop";
+        EXPECT_EQ(command.code(), 130) << read_file(scratch / "printed");
+        EXPECT_NE(read_file(scratch / "printed").find("cancelled"), std::string::npos);
+        EXPECT_EQ(count_files(scratch.path()), 2U) << "the mesh, and what was printed";
+    }
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ namespace {
 
 /// Empty if the value keeps the schema; else where not.
 std::string against(const JsonValue& value, const JsonValue& schema) {
-    const rapidjson::SchemaDocument document(schema);
-    rapidjson::SchemaValidator validator(document);
+    const rapidjson::GenericSchemaDocument<JsonValue> document(schema);
+    rapidjson::GenericSchemaValidator<rapidjson::GenericSchemaDocument<JsonValue>> validator(document);
     if (value.Accept(validator)) return {};
     rapidjson::StringBuffer where;
     validator.GetInvalidDocumentPointer().StringifyUriFragment(where);
@@ -227,8 +227,8 @@ TEST_F(EveryOperation, IsDeclaredOnceAndSoundly) {
         for (const auto& order : call.parameters().orders)
             for (const std::string& name : order) EXPECT_TRUE(keys.count(name) == 1) << entry.name << ": " << name;
         Json document;
-        const rapidjson::SchemaDocument settings(call.schema(document.GetAllocator()));
-        const rapidjson::SchemaDocument result(call.parameters().report.to_schema(document.GetAllocator()));
+        const rapidjson::GenericSchemaDocument<JsonValue> settings(call.schema(document.GetAllocator()));
+        const rapidjson::GenericSchemaDocument<JsonValue> result(call.parameters().report.to_schema(document.GetAllocator()));
     }
 }
 

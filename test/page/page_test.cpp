@@ -5,6 +5,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/io/glb.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/page/content_policy.h"
 #include "ostraka/select/recipe.h"
 #include "scratch.h"
 
@@ -366,6 +367,43 @@ TEST(Page, TextsStayTexts) {
     EXPECT_EQ(read.data["notes"][0].GetString(), evil);
 }
 
+TEST(Page, RunsNoScriptButTheViewers) {
+    const auto policy_of = [](const std::string& html) {
+        const std::size_t begin = html.find("content=\"default-src");
+        return html.substr(begin, html.find('>', begin) - begin);
+    };
+    Page index("many");
+    index.add({"sphere", "objects/0001.js", "objects/0001.png", 5, 6, {}});
+    for (const std::string& html : {Page("one").html(""), index.html("")}) {
+        const std::string policy = policy_of(html);
+        EXPECT_EQ(policy.find("unsafe-inline"), std::string::npos) << policy;
+        // The checksum is that of the only script that is no data.
+        const std::string mark = "<script type=\"module\"";
+        const std::size_t script = html.find('>', html.find(mark)) + 1;
+        EXPECT_EQ(html.find(mark, script), std::string::npos);
+        const std::string whole = sha256(html.substr(script, html.find("</script>", script) - script));
+        const std::size_t hash = policy.find("'sha256-", policy.find("script-src ")) + 8;
+        std::string found;
+        for (const char byte : from_base64(policy.substr(hash, 44))) {
+            char digits[3];
+            std::snprintf(digits, sizeof digits, "%02x", static_cast<unsigned>(static_cast<unsigned char>(byte)));
+            found += digits;
+        }
+        EXPECT_EQ(found, whole);
+    }
+}
+
+TEST(Page, HashesOfInlineScripts) {
+    const std::string of_a = "'sha256-ypeBEsobvcr6wjGzmiPcTaeG7/gUfE5yuYB3ha/uSLs='";
+    EXPECT_EQ(inline_hashes("<script>a</script>", "script"), of_a);
+    EXPECT_EQ(inline_hashes("<p><script type=\"module\" crossorigin>a</script><style x>a</style>", "script"), of_a);
+    EXPECT_EQ(inline_hashes("<p><script>b</script><style x>a</style>", "style"), of_a);
+    EXPECT_EQ(inline_hashes("<script>a</script><script>a</script>", "script"), of_a + " " + of_a);
+    EXPECT_EQ(inline_hashes("<script type=\"application/json\" id=\"x\">a</script><script src=\"a.js\"></script>", "script"), "");
+    EXPECT_EQ(inline_hashes("", "script"), "");
+    EXPECT_EQ(inline_hashes("<script", "script"), "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='");
+}
+
 TEST(Page, TellsWhichObjectsHaveTheSameTriangles) {
     const Annotated one;
     Annotated moved;
@@ -510,4 +548,27 @@ TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
     EXPECT_TRUE(read_file(scratch / "all of it/0002.js").starts_with("ostrakaObject(\"all%20of%20it/0002.js\", "));
     EXPECT_TRUE(read_file(scratch / "all of it/0002.png").starts_with("\x89PNG"));
     EXPECT_EQ(all.data["tables"][0]["objects"][1].GetInt(), 1);
+}
+
+TEST(Publish, TakesAddressesOfTheWebOnly) {
+    const Scratch scratch;
+    const std::string mesh = (scratch / "vase.ply").string(), set = (scratch / "vase.ant.json").string();
+    ASSERT_EQ(run_command("mesh make vase " + mesh + " --vertices 2500 --quiet").code, 0);
+    ASSERT_EQ(run_command("annotation apply " + mesh + " " OSTRAKA_SOURCE_DIR "/data/vase.recipe.json " + set + " --quiet").code,
+              0);
+    const auto publish = [&](const std::string& address, const std::string& rights) {
+        return run_command("publish " + mesh + " " + set + " " + (scratch / "out").string() + " --quiet --address '" + address +
+                           "'" + (rights.empty() ? "" : " --rights '" + rights + "'"));
+    };
+    const std::string good = "https://museum.example/ball", rights = "http://creativecommons.org/licenses/by/4.0/";
+    for (const std::string bad :
+         {"javascript:alert(1)", "data:text/html,x", "file:///etc/passwd", "//museum.example", "https://", "HTTPS", "https://a b",
+          "https://a\"onload=", "https://a/<img>", "https://a\rb", "https://a\x7f", "java\tscript:x"}) {
+        EXPECT_EQ(publish(bad, rights).code, 2) << bad;
+        EXPECT_EQ(publish(good, bad).code, 2) << bad;
+        EXPECT_FALSE(file_exists(scratch / "out" / "manifest.json"));
+    }
+    const auto done = publish(good, rights);
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(read_file(scratch / "out" / "manifest.json").find(rights), std::string::npos);
 }

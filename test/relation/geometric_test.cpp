@@ -276,3 +276,20 @@ TEST(GeometricRelations, PointsAndPlanes) {
     wrong.angle = -1;
     EXPECT_THROW(RelationMeter(mesh, set, wrong), Error);
 }
+
+TEST(GeometricRelations, VeryManyAreLeftOutInWords) {
+    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 4000});
+    AnnotationSet set;
+    const auto faces = static_cast<Index>(made.mesh.number_of_faces());
+    for (int i = 0; i < 500; ++i) {
+        Annotation one;
+        one.id = i, one.tag = "r" + std::to_string(i);
+        for (Index f = static_cast<Index>(i % 2); f < faces; f += 2) one.faces.push_back(f);
+        set.annotations.push_back(one);
+    }
+    const ExtractedRelations found = extract_relations(made.mesh, set, {}, {"adjacency", "containment", "side contact"});
+    EXPECT_LE(found.graph.relationships.size(), 60000U);
+    ASSERT_FALSE(found.notes.empty());
+    EXPECT_NE(found.notes.front().find("are reported"), std::string::npos) << found.notes.front();
+    for (const auto& check : check_relations(made.mesh, set, found.graph)) EXPECT_EQ(check.verdict, Verdict::holds);
+}

@@ -274,3 +274,19 @@ TEST(Topology, DoesNotDependOnThreads) {
     ASSERT_EQ(one.adjacent.size(), four.adjacent.size());
     for (std::size_t i = 0; i < one.adjacent.size(); ++i) EXPECT_EQ(one.adjacent[i].length, four.adjacent[i].length);
 }
+
+TEST(Topology, ManyOverlappingRegionsAreBounded) {
+    const Mesh mesh = build_mesh(grid(41, 41, false, false, [](double u, double v) { return std::array<double, 3>{u, v, 0}; }));
+    const auto faces = static_cast<Index>(mesh.number_of_faces());
+    AnnotationSet set;
+    std::vector<Index> even, odd;
+    for (Index f = 0; f < faces; ++f) (f % 2 == 0 ? even : odd).push_back(f);
+    for (int i = 0; i < 400; ++i) set.annotations.push_back(region(i, i % 2 == 0 ? even : odd));
+    const Topology found = topology(mesh, set);
+    EXPECT_EQ(found.adjacent.size(), 200U * 200U);
+    EXPECT_EQ(found.adjacent.front().edges, found.adjacent.back().edges);
+    EXPECT_EQ(relationships_of(found, set, 0, 100).size(), 100U + 2U + 100U);  // containment, equal selections, adjacency
+    AnnotationSet many;
+    for (int i = 0; i < 30001; ++i) many.annotations.push_back(region(i, {}));
+    EXPECT_THROW(topology(mesh, many), Error);
+}

@@ -1,4 +1,5 @@
 #include "ostraka/report/table.h"
+#include "ostraka/report/markdown.h"
 
 #include "ostraka/core/csv.h"
 #include "scratch.h"
@@ -52,6 +53,21 @@ TEST(TextTable, TextFromOutsideStaysText) {
     EXPECT_EQ(latex.find('\x1b'), std::string::npos);
     for (const std::string bare : {" 50%", " $x", " #1", " ~", " ^", " {}", "--"})
         EXPECT_EQ(latex.find(bare), std::string::npos) << bare;
+}
+
+TEST(Markdown, TextFromOutsideStaysText) {
+    EXPECT_EQ(markdown_text("<img src=x onerror=alert(1)>"), "&lt;img src=x onerror=alert(1)&gt;");
+    EXPECT_EQ(markdown_text("[x](javascript:alert(1)) ![y](z)"), "\\[x\\](javascript:alert(1)) !\\[y\\](z)");
+    EXPECT_EQ(markdown_text("&lt;b&gt; `a` *b* _c_ # ~d~ | \\"),
+              "&amp;lt;b&amp;gt; \\`a\\` \\*b\\* \\_c\\_ \\# \\~d\\~ \\| \\\\");
+    EXPECT_EQ(markdown_text("a\nb\x1b"), "a b ");
+    EXPECT_EQ(markdown_paragraphs("one\ntwo\n\nthree"), "one\ntwo\n\nthree");
+    EXPECT_EQ(markdown_paragraphs("    code\n- item\n+ item\n1. item\n23) item\n===\n---\n# head\n> quote\n```"),
+              "code\n\\- item\n\\+ item\n1\\. item\n23\\) item\n\\===\n\\---\n\\# head\n&gt; quote\n\\`\\`\\`");
+    EXPECT_EQ(markdown_paragraphs("2.5 mm, 7\n8."), "2.5 mm, 7\n8\\.");
+    EXPECT_EQ(markdown_paragraphs(""), "");
+    EXPECT_EQ(markdown_file("steps/a/n=1,s=2/a b (1).ply"), "steps/a/n=1,s=2/a%20b%20%281%29.ply");
+    EXPECT_EQ(markdown_file("a>b&c%d#e?f\ng\\"), "a%3Eb%26c%25d%23e%3Ff%0Ag%5C");
 }
 
 TEST(TextTable, NumbersAreWholeInTheCsvAndWhatIsMissingIsEmpty) {

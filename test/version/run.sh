@@ -8,3 +8,6 @@ fail() { echo "version: $1 does not say $version" >&2; exit 1; }
 [ "$("$2" --version)" = "$version" ] || fail "the command"
 grep -qx "version: $version" "$1/CITATION.cff" || fail CITATION.cff
 [ "$(grep -m1 '^## ' "$1/CHANGELOG.md")" = "## $version" ] || fail CHANGELOG.md
+# A commit that is tagged as a version is that one.
+tag=$(git -C "$1" tag --points-at HEAD 2>/dev/null | grep -x 'v[0-9.]*' | head -1 || true)
+[ -z "$tag" ] || [ "$tag" = "v$version" ] || fail "the tag $tag"

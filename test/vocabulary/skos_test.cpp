@@ -274,3 +274,14 @@ TEST(VocabularyCommand, ConvertThereAndBack) {
     const std::string data = OSTRAKA_SOURCE_DIR "/data/";
     EXPECT_EQ(run_command("annotation check " + data + "vase.ply " + data + "vase.ant.json --vocabulary " + at("a.ttl")).code, 0);
 }
+
+TEST(Skos, ShortFilesThatGrowWithoutEndAreRefused) {
+    // A long prefix, named often; a short entity, named often.
+    std::string turtle = head + "@prefix long: <https://example.org/" + std::string(200'000, 'a') + "/> .\n";
+    for (int i = 0; i < 3000; ++i) turtle += "long:a" + std::to_string(i) + " a skos:Concept .\n";
+    expect_error(turtle, false, "v.ttl", "many times the size of the file");
+    std::string label;
+    for (int i = 0; i < 60'000; ++i) label += "&e;";
+    expect_error(xml("<!DOCTYPE rdf:RDF [<!ENTITY e \"" + std::string(900, 'x') + "\">]>", label), true, "v.ttl, line 3",
+                 "entities stand for many times the size");
+}

@@ -116,8 +116,8 @@ TEST(Session, IsAStudyThatMakesTheSameFiles) {
         "weights":{"part":"coordinates"},"edit":{"document":{"format":"ostraka-edit","version":1,"steps":[{"select":{"cageVertices":[0,1]},"translate":[0.1,0,0]}]}}}})");
     EXPECT_FALSE(bench.state().objects[0].part("deformed").empty());
     const Session& session = bench.workbench->session();
-    const auto run = run_command("run " + (session.folder() / "session.study.json").string() + " --output " +
-                                 (bench.scratch / "again").string());
+    const auto run = run_command("run " + (session.folder() / "session.study.json").string() + " --reads " +
+                                 bench.scratch.path().string() + " --output " + (bench.scratch / "again").string());
     ASSERT_EQ(run.code, 0) << run.err << run.out;
     std::size_t compared = 0;
     for (const SessionStep& step : session.steps())
@@ -251,6 +251,80 @@ TEST(Session, IsRefusedWhereItIsDamagedOrItsFilesAreGone) {
     std::filesystem::remove(bench.scratch / "session/steps/s002/ball.ant.json");
     EXPECT_THROW(bench.start(), Error);
     EXPECT_THROW(Workbench(bench.scratch.path(), bench.scratch.path()), Error) << "a folder that holds something else";
+}
+
+TEST(Session, IsRefusedWhereItLeadsOutOfItsFolders) {
+    const Scratch outside;
+    write_file(outside / "secret.txt", "secret");
+    std::filesystem::create_directory(outside / "s001");
+    write_file(outside / "s001/kept.txt", "kept");
+    const auto refused = [&](const std::string& what, const std::function<void(const Path&, std::string&)>& change) {
+        Bench bench;
+        bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
+        bench.ask(filled(annotate("cap", 0.5), false, false));
+        bench.workbench.reset();
+        const Path folder = bench.scratch / "session";
+        std::string text = read_file(folder / "session.json");
+        change(folder, text);
+        std::filesystem::remove(folder / "session.json");
+        write_file(folder / "session.json", text);
+        try {
+            bench.start();
+            ADD_FAILURE() << what;
+        } catch (const Error& error) {
+            EXPECT_FALSE(error.where().empty()) << what;
+            EXPECT_FALSE(error.remedy().empty()) << what;
+        }
+        EXPECT_TRUE(file_exists(outside / "secret.txt")) << what;
+        EXPECT_EQ(read_file(outside / "s001/kept.txt"), "kept") << what;
+    };
+    const auto replaced = [](std::string& text, const std::string& old, const std::string& by) {
+        ASSERT_NE(text.find(old), std::string::npos) << old;
+        text.replace(text.find(old), old.size(), by);
+    };
+    refused("a part by its absolute name", [&](const Path&, std::string& text) {
+        replaced(text, "\"../ball.ply\"", '"' + (outside / "secret.txt").string() + '"');
+    });
+    refused("a part that climbs out", [&](const Path&, std::string& text) {
+        replaced(text, "\"../ball.ply\"", "\"../../" + outside.path().filename().string() + "/secret.txt\"");
+    });
+    refused("steps as a link", [&](const Path& folder, std::string&) {
+        std::filesystem::remove_all(folder / "steps");
+        std::filesystem::create_directory_symlink(outside.path(), folder / "steps");
+    });
+    refused("a part over a link", [&](const Path& folder, std::string&) {
+        std::filesystem::remove(folder / "steps/s002/ball.ant.json");
+        std::filesystem::create_symlink(outside / "secret.txt", folder / "steps/s002/ball.ant.json");
+    });
+    refused("a report over a link", [&](const Path& folder, std::string&) {
+        std::filesystem::remove(folder / "steps/s002/report.json");
+        std::filesystem::create_symlink(outside / "secret.txt", folder / "steps/s002/report.json");
+    });
+    refused("a device", [&](const Path&, std::string& text) { replaced(text, "\"../ball.ply\"", "\"/dev/zero\""); });
+    refused("the study as a link", [&](const Path& folder, std::string&) {
+        std::filesystem::remove(folder / "session.study.json");
+        std::filesystem::create_symlink(outside / "secret.txt", folder / "session.study.json");
+    });
+}
+
+TEST(Session, IsForItsOwnerAndSweepsWhatKilledStepsLeft) {
+    Bench bench;
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
+    bench.ask(filled(annotate("cap", 0.5), false, false));
+    const Path folder = bench.scratch / "session";
+    using std::filesystem::perms;
+    EXPECT_EQ(std::filesystem::status(folder).permissions(), perms::owner_all);
+    EXPECT_EQ(std::filesystem::status(folder / "session.json").permissions(), perms::owner_read | perms::owner_write);
+    make_folder(folder / "steps/s009");
+    write_file(folder / "steps/s009/half.ply", "");
+    make_folder(folder / "documents");
+    write_file(folder / "documents/s009-edit.json", "{}");
+    write_file(folder / "documents/notes.txt", "not a step's");
+    bench.start();
+    EXPECT_FALSE(is_folder(folder / "steps/s009"));
+    EXPECT_FALSE(file_exists(folder / "documents/s009-edit.json"));
+    EXPECT_TRUE(file_exists(folder / "documents/notes.txt"));
+    EXPECT_TRUE(is_folder(folder / "steps/s002"));
 }
 
 TEST(Session, AMapIsShownWithItsOwnObject) {

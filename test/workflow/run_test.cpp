@@ -3,6 +3,7 @@
 #include "ostraka/workflow/crate.h"
 #include "studies.h"
 
+#include <atomic>
 #include <map>
 #include <thread>
 
@@ -308,9 +309,155 @@ TEST(RunStudy, ProgramsBesideTheCommandAreSteps) {
         "pot": {"program": [")" + name + R"(", "mesh", "make", "vase", "${folder}/v.ply", "--vertices", 2000]},
         "info": {"operation": "mesh info", "with": {"input": "${pot.v.ply}"}},
         "again": {"program": [")" + name + R"(", "mesh", "convert", "${pot.v.ply}", "${folder}/v.obj"]}})"));
-    const auto first = run_command("run " + file.string() + " --json --output " + (scratch / "out").string());
+    const std::string words = "run " + file.string() + " --json --output " + (scratch / "out").string();
+    EXPECT_EQ(run_command(words).code, 1) << "it is none of the toolkit's own";
+    EXPECT_FALSE(is_folder(scratch / "out"));
+    const auto shown = run_command(words + " --dry-run");
+    EXPECT_EQ(shown.code, 3) << shown.out << shown.err;
+    EXPECT_NE(shown.out.find("'mesh' 'make' 'vase'"), std::string::npos) << shown.out;
+    const auto first = run_command(words + " --allow-programs");
     ASSERT_EQ(first.code, 0) << first.err << first.out;
+    EXPECT_NE(first.err.find("'mesh' 'make' 'vase'"), std::string::npos) << first.err;
     EXPECT_TRUE(file_exists(scratch / "out/steps/again/v.obj"));
-    const auto second = run_command("run " + file.string() + " --json --output " + (scratch / "out").string());
+    const auto second = run_command(words + " --allow-programs");
     EXPECT_EQ(parse_json(second.out, "report")["result"]["unchanged"].GetInt(), 3) << second.out;
+}
+
+TEST(RunStudy, ReadsFoldersThatTheCallerNames) {
+    const Scratch scratch;
+    std::filesystem::create_directory(scratch / "study");
+    std::filesystem::create_directory(scratch / "scans");
+    ASSERT_EQ(run_command("mesh make vase " + (scratch / "scans/v.ply").string() + " --vertices 2000").code, 0);
+    write_file(scratch / "study/s.study.json", study_text_of(R"("parameters": {"where": "../scans"},
+        "steps": {"info": {"operation": "mesh info", "with": {"input": "${where}/v.ply"}}})"));
+    const std::string words = "run " + (scratch / "study/s.study.json").string() + " --output " + (scratch / "out").string();
+    const auto refused = run_command(words);
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.err.find("--reads"), std::string::npos) << refused.err;
+    EXPECT_EQ(run_command(words + " --reads " + (scratch / "scans").string()).code, 0);
+    EXPECT_EQ(run_command(words + " --again --set where=" + (scratch / "scans").string()).code, 0) << "the caller's own word";
+    // A run that says itself where its inputs lie is not believed.
+    EXPECT_EQ(run_command("replay " + (scratch / "out").string()).code, 1);
+    EXPECT_EQ(run_command("replay " + (scratch / "out").string() + " --inputs " + (scratch / "study").string() + " --reads " +
+                          (scratch / "scans").string())
+                  .code,
+              0);
+    // A link in the study's folder leads out of it.
+    std::filesystem::create_directory_symlink(scratch / "scans", scratch / "study/linked");
+    EXPECT_EQ(run_command(words + " --set where=linked").code, 0) << "the caller's own word";
+    write_file(scratch / "study/l.study.json",
+               study_text_of(R"("steps": {"info": {"operation": "mesh info", "with": {"input": "linked/v.ply"}}})"));
+    EXPECT_EQ(run_command("run " + (scratch / "study/l.study.json").string() + " --output " + (scratch / "l").string()).code, 1);
+}
+
+TEST(RunStudy, NeverLeavesTheRunFolder) {
+    const Scratch scratch, outside;
+    furnish_teapot(scratch);
+    const StudyPlan plan = plan_of(scratch.file("t.study.json", study_text_of(teapot_study)), {.quick = true});
+    const Path out = scratch / "out", step = out / "steps/annotated";
+    const auto make = [&] {
+        std::filesystem::remove_all(out);
+        EXPECT_EQ(count(run_all(plan, out), InstanceState::done), plan.instances.size());
+        write_file(outside / "kept.txt", "kept");
+    };
+    const auto refused = [&](const std::string& what) {
+        EXPECT_THROW(run_all(plan, out), Error) << what;
+        EXPECT_EQ(read_file(outside / "kept.txt"), "kept") << what;
+        EXPECT_EQ(files_in(outside.path()).size(), 1U) << what;
+    };
+    const auto named = [&](const std::string& name) {
+        std::string record = read_file(step / "record.json");
+        const std::size_t at = record.find("\"file\": \"") + 9;
+        record.replace(at, record.find('"', at) - at, name);
+        write_file(step / "record.json", record);
+    };
+    make();
+    named((outside / "kept.txt").string());
+    refused("an output by its absolute name");
+    make();
+    named("../../../../" + outside.path().filename().string() + "/kept.txt");
+    refused("an output that climbs");
+    for (const char* file : {"report.json", "record.json", "annotated.ant.json"}) {
+        make();
+        std::filesystem::remove(step / file);
+        std::filesystem::create_symlink(outside / "kept.txt", step / file);
+        refused(std::string(file) + " as a link");
+    }
+    make();
+    std::filesystem::remove_all(step);
+    std::filesystem::create_directory_symlink(outside.path(), step);
+    refused("the folder of a step as a link");
+    make();
+    std::filesystem::create_symlink(outside / "kept.txt", out / "page.md");
+    const auto page = run_command("run " + (scratch / "t.study.json").string() + " --quick --output " + out.string());
+    EXPECT_EQ(page.code, 1) << page.out;
+    EXPECT_NE(page.err.find("page.md"), std::string::npos) << page.err;
+    EXPECT_EQ(read_file(outside / "kept.txt"), "kept");
+}
+
+TEST(RunStudy, NoticesInputsThatChangeMeanwhile) {
+    const Scratch scratch;
+    ASSERT_EQ(run_command("mesh make vase " + (scratch / "v.ply").string() + " --vertices 2000").code, 0);
+    ASSERT_EQ(run_command("mesh make vase " + (scratch / "w.ply").string() + " --vertices 2500").code, 0);
+    const StudyPlan plan =
+        plan_of(scratch.file("c.study.json", study_text_of(R"("parameters": {"n": {"from": 300, "to": 1900, "step": 40}},
+        "steps": {"coarse": {"operation": "mesh simplify", "with": {"input": "v.ply", "vertices": "${n}"}},
+                  "look": {"operation": "mesh info", "with": {"input": "${coarse.output}"}}})")));
+    Watch watch;
+    std::atomic<bool> has_changed{false};
+    watch.on_progress = [&](const std::string& phase, double) {
+        if (phase.find(": 0 of") == std::string::npos && !has_changed.exchange(true))
+            std::filesystem::rename(scratch / "w.ply", scratch / "v.ply");
+    };
+    std::vector<InstanceResult> results;
+    {
+        const WatchScope scope(&watch);
+        results = run_all(plan, scratch / "out");
+    }
+    ASSERT_TRUE(has_changed) << "the run was over too soon";
+    EXPECT_EQ(count(results, InstanceState::done), 0U) << "which of them took the new file is not known";
+    EXPECT_EQ(count(results, InstanceState::failed) + count(results, InstanceState::skipped), plan.instances.size());
+    const auto again = run_all(plan, scratch / "out");
+    EXPECT_EQ(count(again, InstanceState::done) + count(again, InstanceState::unchanged), plan.instances.size());
+    // What was only touched has not changed.
+    std::filesystem::last_write_time(scratch / "v.ply", std::filesystem::file_time_type::clock::now());
+    EXPECT_EQ(count(run_all(plan, scratch / "out"), InstanceState::unchanged), plan.instances.size());
+}
+
+TEST(RunStudy, AResumedRunIsUnchangedWhereItIsMovedTo) {
+    const Scratch scratch;
+    std::filesystem::create_directory(scratch / "a");
+    write_file(scratch / "a/teapot.recipe.json", read_file(Path(OSTRAKA_SOURCE_DIR) / "data" / "teapot.recipe.json"));
+    write_file(scratch / "a/t.study.json", study_text_of(R"(
+        "steps": {"pot": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 3000}, "keep": {"output": "pot.ply"}},
+          "annotated": {"operation": "annotation apply", "with": {"mesh": "${pot.output}", "recipe": "teapot.recipe.json"}, "keep": {"output": "pot.ant.json"}},
+          "cage": {"operation": "cage make", "with": {"mesh": "${pot.output}", "vertices": 60}, "keep": ["output"]},
+          "weights": {"operation": "cage weights", "with": {"mesh": "${pot.output}", "cage": "${cage.output}"}, "keep": ["output"]},
+          "look": {"operation": "cage influence", "with": {"mesh": "${pot.output}", "cage": "${cage.output}", "weights": "${weights.output}", "annotations": "${annotated.output}", "annotation": "lid"}, "keep": ["output"]}})"));
+    const auto plan_in = [&](const char* folder) { return plan_of(scratch / folder / "t.study.json"); };
+    const StudyPlan first = plan_in("a");
+    for (const char* only :
+         {"pot", "annotated", "cage", "weights", "look"})  // each of a process's own: inputs come from the disk
+        static_cast<void>(run_all(first, scratch / "a/run", {.only = {only}}));
+    std::filesystem::rename(scratch / "a", scratch / "b");
+    const StudyPlan moved = plan_in("b");
+    const auto results = run_all(moved, scratch / "b/run");
+    EXPECT_EQ(count(results, InstanceState::unchanged), moved.instances.size());
+    for (const InstanceResult& result : results) EXPECT_EQ(result.why, "");
+}
+
+TEST(RunStudy, SeveralProcessesRunIntoOneFolder) {
+    const Scratch scratch;
+    furnish_teapot(scratch);
+    const Path file = scratch.file("t.study.json", study_text_of(teapot_study));
+    const std::string words = "run " + file.string() + " --output " + (scratch / "out").string();
+    std::vector<CommandResult> results(3);
+    std::vector<std::thread> threads;
+    for (CommandResult& result : results) threads.emplace_back([&] { result = run_command(words); });
+    for (std::thread& thread : threads) thread.join();
+    for (const CommandResult& result : results) EXPECT_EQ(result.code, 0) << result.err << result.out;
+    ASSERT_EQ(run_command("run " + file.string() + " --output " + (scratch / "alone").string()).code, 0);
+    auto together = files_of(scratch / "out"), alone = files_of(scratch / "alone");
+    for (auto* files : {&together, &alone}) std::erase_if(*files, [](const auto& one) { return one.first == "run.json"; });
+    EXPECT_EQ(together, alone);
 }

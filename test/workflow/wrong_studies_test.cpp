@@ -26,6 +26,33 @@ const Wrong list[]{
     {"an unknown member", R"("stepps": {}, "steps": {)" GOOD "}", "/stepps", "misspelt"},
     {"an unknown member of a step", R"("steps": {"a": {"operation": "mesh make", "wiht": {}}})", "/steps/a/wiht", "misspelt"},
     {"two steps of one name", R"("steps": {)" GOOD ", " GOOD "}", "\"a\"", "twice"},
+    {"a step that runs a study", R"("steps": {"a": {"operation": "run", "with": {"study": "wrong.study.json"}}})",
+     "/steps/a/operation", "runs other operations"},
+    {"a step that starts a backend", R"("steps": {"a": {"operation": "conformance run", "with": {"command": ["sh"]}}})",
+     "/steps/a/operation", "runs other operations"},
+    {"another program", R"("steps": {"a": {"program": ["sh", "-c", "true"]}})", "/steps/a/program/0", "--allow-programs"},
+    {"another program by a parameter", R"("parameters": {"p": "sh"}, "steps": {"a": {"program": ["${p}"]}})",
+     "/steps/a/program/0", "--allow-programs"},
+    {"a word that is an absolute name", R"("steps": {"a": {"program": ["ostraka_experiments", "moulds", "/tmp/x"]}})",
+     "/steps/a/program/2", "may lead out"},
+    {"a word that climbs", R"("steps": {"a": {"program": ["ostraka_experiments", "moulds", "${folder}/../../x"]}})",
+     "/steps/a/program/2", "may lead out"},
+    {"a word that climbs behind '='", R"("steps": {"a": {"program": ["ostraka_experiments", "--output=../x"]}})",
+     "/steps/a/program/1", "may lead out"},
+    {"a word that leaves the study", R"("steps": {"a": {"program": ["ostraka_experiments", "moulds", "${study}/../x"]}})",
+     "/steps/a/program/2", "--reads"},
+    {"an input elsewhere", R"("steps": {"a": {"operation": "mesh info", "with": {"input": "../other.ply"}}})",
+     "/steps/a/with/input", "--reads"},
+    {"an input by its absolute name", R"("steps": {"a": {"operation": "mesh info", "with": {"input": "/other.ply"}}})",
+     "/steps/a/with/input", "--reads"},
+    {"files elsewhere",
+     R"("parameters": {"f": {"files": "../*/*.ply"}}, "steps": {"a": {"operation": "mesh info", "with": {"input": "${f}"}}})",
+     "/parameters/f/files", "--reads"},
+    {"a range without end",
+     R"("parameters": {"s": {"from": 9223372036854775806, "to": 9223372036854775807}}, "steps": {)" GOOD "}", "/parameters/s",
+     "format"},
+    {"too many values", R"("parameters": {"s": {"from": 1, "to": 1000000000}}, "steps": {)" GOOD "}", "/parameters/s",
+     "give fewer"},
     {"a name with a blank", R"("steps": {"a b": {"operation": "mesh make", "with": {"object": "vase"}}})", "/steps/a b",
      "letters"},
     {"a step called like a parameter", R"("parameters": {"a": 1}, "steps": {)" GOOD "}", "/steps/a", "another name"},
@@ -167,6 +194,8 @@ TEST(WrongStudies, AreRefusedByTheCommand) {
     refuse(good + " --shard 3/2", 2, "K from 1 to N");
     refuse(good + " --explain b", 2, "is no step");
     refuse(scratch.file("program.study.json", study_text_of(R"("steps": {"a": {"program": ["rm", "-rf", "x"]}})")).string(), 1,
+           "starts 'rm', which is none of the toolkit's own programs");
+    refuse((scratch / "program.study.json").string() + " --allow-programs --programs " + scratch.path().string(), 1,
            "there is no program 'rm'");
     const auto replay = run_command("replay " + scratch.path().string());
     EXPECT_EQ(replay.code, 1);

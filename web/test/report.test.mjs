@@ -423,6 +423,24 @@ try {
     assert.deepEqual(told, []);
     await close();
   });
+  await test("no script runs but the viewer's own", async () => {
+    for (const name of ["pot.html", "all.html"]) {
+      const injected = `<script>globalThis.broken = 1</script><script type="module">globalThis.broken = 2</script><img src=x onerror="globalThis.broken = 3"><svg onload="globalThis.broken = 4"></svg><a id="trap" href="javascript:globalThis.broken = 5">x</a><iframe srcdoc="<script>parent.broken = 6</script>"></iframe>`;
+      writeFileSync(at("injected.html"), readFileSync(at(name), "utf8").replace("<title>", `<script>globalThis.broken = 7</script><title>`).replace('<div id="app">', () => injected + '<div id="app">'));
+      const { page, told, close } = await open(at("injected.html"));
+      await page.locator("#trap").dispatchEvent("click");
+      await page.evaluate(() => {
+        const script = document.createElement("script");
+        script.textContent = "globalThis.broken = 8";
+        document.body.append(script);
+      });
+      await page.waitForTimeout(300);
+      assert.equal(await page.evaluate(() => globalThis.broken), undefined);
+      assert.ok((await page.locator(name === "pot.html" ? "canvas" : ".card").count()) > 0, "the page itself works");
+      assert.ok(told.length >= 5 && told.every((one) => /Content Security Policy|ERR_FILE_NOT_FOUND/.test(one)), told.join("\n"));
+      await close();
+    }
+  });
 } finally {
   await browser.close();
   rmSync(folder, { recursive: true, force: true });

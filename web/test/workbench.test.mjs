@@ -71,7 +71,11 @@ async function open(address, options = {}, script) {
   if (script) await page.addInitScript(script);
   // A page that was built since the command was.
   if (process.env.PAGE)
-    await page.route((url) => url.pathname === "/", async (route) => route.fulfill({ response: await route.fetch(), body: readFileSync(process.env.PAGE, "utf8") }));
+    await page.route((url) => url.pathname === "/", async (route) => {
+      const response = await route.fetch();
+      const { "content-security-policy": ofTheCommandsPage, ...headers } = response.headers();
+      await route.fulfill({ response, headers, body: readFileSync(process.env.PAGE, "utf8") });
+    });
   await page.goto(address);
   await settled(page).catch((error) => {
     throw new Error(`${error.message}\n${told.join("\n")}`);
@@ -226,9 +230,63 @@ try {
     session = at("pot-session");
   });
 
+  await test("the secret is in the page's address alone", async () => {
+    mkdirSync(at("alone"));
+    copyFileSync(at("pot.ply"), join(at("alone"), "pot.ply"));
+    const server = serve(at("alone"));
+    const address = await server.address;
+    const { page, told, context, close } = await open(address);
+    assert.deepEqual(await context.cookies(), []);
+    assert.deepEqual(await page.evaluate(() => [localStorage.length, sessionStorage.length, document.cookie]), [0, 0, ""]);
+    // A reload works, and so does a second window of that address; one without the token does not.
+    await page.reload();
+    await settled(page);
+    assert.equal(page.url(), address);
+    const second = await context.newPage();
+    await second.goto(address);
+    await settled(second);
+    await second.close();
+    const third = await context.newPage();
+    assert.equal((await third.goto(address.split("?")[0])).status(), 403);
+    await third.close();
+    // A page of this machine, of another port or a file, leads here (as the desktop's browser is led), and cannot talk itself.
+    writeFileSync(at("leads.html"), `<!doctype html><meta http-equiv="refresh" content="0; url=${address}">`);
+    const led = await context.newPage();
+    await led.goto("file://" + at("leads.html"));
+    await settled(led);
+    assert.equal(led.url(), address);
+    await led.close();
+    writeFileSync(at("talks.html"), "<!doctype html><title>another page</title>");
+    const other = await context.newPage();
+    await other.goto("file://" + at("talks.html"));
+    const heard = await other.evaluate(
+      (url) =>
+        new Promise((done) => {
+          const socket = new WebSocket(url);
+          socket.onopen = () => done("open");
+          socket.onerror = () => done("refused");
+        }),
+      address.replace("http:", "ws:").replace("/?", "/messages?"),
+    );
+    assert.equal(heard, "refused");
+    await other.close();
+    // Nothing that comes into the page later runs.
+    assert.deepEqual(told, []);
+    await page.evaluate(() => {
+      document.body.insertAdjacentHTML("beforeend", `<img src=x onerror="globalThis.broken = 1"><svg onload="globalThis.broken = 2"></svg>`);
+      const script = document.createElement("script");
+      script.textContent = "globalThis.broken = 3";
+      document.body.append(script);
+    });
+    await page.waitForTimeout(300);
+    assert.equal(await page.evaluate(() => globalThis.broken), undefined);
+    await close();
+    await server.stop();
+  });
+
   await test("the session's study makes the same files to the bit", async () => {
     assert.ok(session);
-    ostraka("run", join(session, "session.study.json"), "--output", at("replayed"));
+    ostraka("run", join(session, "session.study.json"), "--reads", folder, "--output", at("replayed"));
     const [mine, theirs] = [tree(join(session, "steps")), tree(join(at("replayed"), "steps"))];
     const made = [...mine.keys()].filter((name) => !name.endsWith("report.json"));
     assert.ok(made.length >= 9, `${made}`);
@@ -287,7 +345,7 @@ try {
     assert.deepEqual(told, []);
     await close();
     await server.stop();
-    ostraka("run", join(at("find"), "session", "session.study.json"), "--output", at("find-again"));
+    ostraka("run", join(at("find"), "session", "session.study.json"), "--reads", at("find"), "--output", at("find-again"));
     const [mine, theirs] = [tree(join(at("find"), "session", "steps")), tree(join(at("find-again"), "steps"))];
     for (const name of theirs.keys()) if (!/(report|record).json$/.test(name)) assert.equal(theirs.get(name), mine.get(name), name);
   });

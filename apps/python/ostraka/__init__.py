@@ -8,8 +8,26 @@ and PyVista. An output is written to the file that is named for it. One that is 
 True asks for one that is optional, and "memory:NAME" for one that is called so. What a function returns is a `Result`.
 """
 
+import os as _os
 import sys as _sys
 import types as _types
+
+
+
+def _openmp_spins() -> bool:
+    """Whether OpenMP is loaded already, and was not told how its threads shall wait."""
+    if "OMP_WAIT_POLICY" in _os.environ or "GOMP_SPINCOUNT" in _os.environ:
+        return False
+    try:
+        with open("/proc/self/maps", encoding="utf-8", errors="replace") as maps:
+            return any("/libgomp.so.1" in line for line in maps)
+    except OSError:
+        return False
+
+
+# OpenMP reads it once, when it is loaded: threads that wait for work sleep, and leave the cores to others.
+_spins = _openmp_spins()
+_os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 from . import _functions, _ostraka
 from ._errors import ArgumentError, Error, InputError, UsageError, WorkError
@@ -17,6 +35,8 @@ from ._objects import Annotations, Array, Bytes, Document, Folder, Mesh, Object,
 from ._report import Report, Result, Table
 
 __version__: str = _ostraka.version()
+if _spins:
+    _ostraka.hold_spare_team()
 
 
 def threads() -> int:
@@ -29,6 +49,19 @@ def set_threads(count: int) -> None:
     if not isinstance(count, int) or isinstance(count, bool) or not 0 <= count <= 1024:
         raise UsageError(f"the number of threads is {count!r}", "", "use 0 (all) to 1024")
     _ostraka.set_threads(count)
+
+
+def memory_limit() -> float:
+    """Gigabytes (10^9 bytes) that the process may occupy while an operation works: what was set, or what the machine has."""
+    return _ostraka.memory_limit() / 1e9
+
+
+def set_memory_limit(gigabytes: float) -> None:
+    """From here on so many; 0: what the machine has. An operation that needs more is refused with a WorkError."""
+    is_number = isinstance(gigabytes, (int, float)) and not isinstance(gigabytes, bool)
+    if not is_number or not 0 <= gigabytes <= 1e9:
+        raise UsageError(f"the memory limit is {gigabytes!r}", "", "use gigabytes from 0 (what the machine has)")
+    _ostraka.set_memory_limit(1e9 * gigabytes)
 
 
 def _add_groups() -> dict[str, _types.ModuleType]:

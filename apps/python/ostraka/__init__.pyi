@@ -34,6 +34,8 @@ __version__: str
 
 def threads() -> int: ...
 def set_threads(count: int) -> None: ...
+def memory_limit() -> float: ...
+def set_memory_limit(gigabytes: float) -> None: ...
 
 class _AxisResult(Result):
     output: Document | Bytes | Path | None
@@ -371,8 +373,9 @@ def run(
     dry_run: bool | None = False,
     explain: Text | None = None,
     again: bool | None = False,
-    memory: float | None = 0.0,
     shard: Text | None = None,
+    reads: Text | Sequence[Text] | None = None,
+    allow_programs: bool | None = False,
     programs: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RunResult:
@@ -385,6 +388,8 @@ def replay(
     *,
     output: FileName | bool | None = None,
     inputs: Text | None = None,
+    reads: Text | Sequence[Text] | None = None,
+    allow_programs: bool | None = False,
     programs: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ReplayResult:

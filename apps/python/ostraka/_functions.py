@@ -13,8 +13,8 @@ import textwrap
 from typing import Any, Callable, Container
 
 from . import _ostraka
-from ._errors import ArgumentError, UsageError
-from ._objects import Object, as_given, shown
+from ._errors import ArgumentError, UsageError, WorkError
+from ._objects import Object, as_given, refuse_masks, shown
 from ._report import Report, Result
 
 
@@ -86,8 +86,9 @@ def _word(value: Any) -> str | None:
     return None
 
 
-def _option_value(kind: str, value: Any) -> Any:
+def _option_value(name: str, kind: str, value: Any) -> Any:
     """As the native module takes it: a boolean, number, text, or list of numbers or texts. It checks them."""
+    refuse_masks(name, value)
     if hasattr(value, "tolist"):
         value = value.tolist()
     if kind == "texts":
@@ -176,7 +177,7 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
             if value is None or (value is False and one.role == "output"):
                 continue
             if one.role == "option":
-                options[one.name] = _option_value(one.declared["type"], value)
+                options[one.name] = _option_value(name, one.declared["type"], value)
                 continue
             try:
                 if one.role == "input":
@@ -201,6 +202,9 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
             refuse("progress cannot be called", "give True, or a function of a phase and a share")
         try:
             report, made = _ostraka.run(operation, options, inputs, outputs, progress)
+        except WorkError as error:  # names the limit as Python does
+            problem = error.problem.replace("(--memory)", "(ostraka.set_memory_limit)")
+            raise WorkError(problem, error.where or operation, error.remedy) from None
         except UsageError as error:  # names the option as the command does
             problem = re.sub("^option ([a-z0-9-]+) ", lambda match: f"option {python_name(match[1])} ", error.problem)
             raise UsageError(problem, error.where, error.remedy) from None

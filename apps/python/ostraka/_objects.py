@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import pathlib
@@ -19,10 +20,37 @@ def _is_file_name(value: Any) -> bool:
 
 
 class Object:
-    """Something that an operation takes or makes. It can be saved, and given to another operation."""
+    """Something that an operation takes or makes. It can be saved, and given to another operation.
+
+    It can be pickled and copied: what comes back has the same arrays and writes the same bytes. Copies share memory that nobody
+    can change; only their names are their own.
+    """
+
+    _cached = ("_native",)  # attributes that are not copied: made anew where they are needed
 
     def __init__(self, native: _ostraka.Object) -> None:
         self._native = native
+
+    def _attributes(self) -> dict[str, Any]:
+        """What a user has added to it."""
+        return {name: value for name, value in vars(self).items() if name not in self._cached}
+
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        try:
+            state = self._native.state()
+        except UsageError as error:
+            raise TypeError(f"{type(self).__name__} {self.name!r} cannot be pickled: {error}") from error
+        return restored, (type(self), state), self._attributes() or None
+
+    def __copy__(self) -> Object:
+        made = _object_of(type(self), self._native.copy())
+        vars(made).update(self._attributes())
+        return made
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Object:
+        made = memo[id(self)] = _object_of(type(self), self._native.copy())
+        vars(made).update(copy.deepcopy(self._attributes(), memo))
+        return made
 
     @property
     def name(self) -> str:
@@ -48,11 +76,27 @@ class Object:
         return f"<ostraka.{type(self).__name__} {self.name!r}>"
 
 
+def refuse_masks(name: str, value: Any) -> None:
+    """Of a masked array, or lists of such: a number that is masked has no value that could be taken."""
+    if isinstance(value, numpy.ma.MaskedArray):
+        count = int(numpy.ma.count_masked(value)) if value.dtype.names is None else int(numpy.any(value.mask.tolist()))
+        if count:
+            raise InputError(f"is a masked array, and {count} of its {max(value.size, 1)} elements are masked", name,
+                             "fill them (numpy.ma.filled), or leave them out")
+    elif isinstance(value, (list, tuple)):
+        for one in value:
+            if isinstance(one, (list, tuple, numpy.ndarray)):
+                refuse_masks(name, one)
+
+
 def _numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
     """An array of whole numbers ("integers") or numbers; anything else is refused."""
     try:
-        array = numpy.asarray(value)
-    except (ValueError, TypeError) as error:
+        refuse_masks(name, value)
+        array = numpy.asanyarray(value)  # with its mask, where it makes itself a masked array
+        refuse_masks(name, array)
+        array = numpy.asarray(array)
+    except (ValueError, TypeError, RecursionError) as error:
         raise InputError(f"no array can be made of it: {error}", name, f"give {kind}") from None
     if array.size == 0 and array.dtype == numpy.float64:
         array = array.astype(numpy.int64) if kind == "integers" else array
@@ -133,8 +177,10 @@ class Mesh(Object):
     vertex_labels, face_labels : a whole number of each
     """
 
+    _cached = ("_native", "_faces")
+    _faces: numpy.ndarray | None = None
+
     def __init__(self, source: Any, faces: Any = None, *, name: str | None = None, **extras: Any) -> None:
-        self._faces: numpy.ndarray | None = None
         if isinstance(source, _ostraka.Object):
             super().__init__(source)
             return
@@ -158,6 +204,7 @@ class Mesh(Object):
             begin, corners = _polygons(source.faces)
         elif hasattr(source, "points") and hasattr(source, "faces"):  # PyVista
             points = source.points
+            refuse_masks("faces", source.faces)
             shape = numpy.asarray(source.faces)
             begin, corners = _polygons(shape) if shape.ndim == 2 else _padded_polygons(shape)
         else:
@@ -215,9 +262,10 @@ class Document(Object):
     """A JSON document: from a file, or of dicts and lists."""
 
     _ending = ".json"
+    _cached = ("_native", "_document")
+    _document: Any = None
 
     def __init__(self, source: Any, *, name: str | None = None) -> None:
-        self._document: Any = None
         if isinstance(source, _ostraka.Object):
             super().__init__(source)
         elif _is_file_name(source):
@@ -353,24 +401,28 @@ class Bytes(Object):
 class Folder(Object, Mapping):
     """Files that were made together, by their names."""
 
-    def __init__(self, native: _ostraka.Object) -> None:
-        super().__init__(native)
-        self._files: dict[str, Bytes] = {name: Bytes(one) for name, one in native.files().items()}
+    _cached = ("_native", "_known_files")
+    _known_files: dict[str, Bytes] | None = None
+
+    def _files(self) -> dict[str, Bytes]:
+        if self._known_files is None:
+            self._known_files = {name: Bytes(one) for name, one in self._native.files().items()}
+        return self._known_files
 
     def __getitem__(self, name: str) -> Bytes:
-        return self._files[name]
+        return self._files()[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._files)
+        return iter(self._files())
 
     def __len__(self) -> int:
-        return len(self._files)
+        return len(self._files())
 
     __hash__ = object.__hash__
     __eq__ = object.__eq__
 
     def __repr__(self) -> str:
-        return f"<ostraka.Folder: {', '.join(self._files)}>"
+        return f"<ostraka.Folder: {', '.join(self)}>"
 
 
 class Template(Object):
@@ -387,8 +439,31 @@ def shown(native: _ostraka.Object) -> Object:
     return _classes.get(native.type, Template)(native)
 
 
+def _object_of(kind: type[Object], native: _ostraka.Object) -> Any:
+    """An object of this class, or of one derived from it, without its constructor."""
+    made = object.__new__(kind)
+    made._native = native
+    return made
+
+
+_held_by = {Mesh: ("mesh",), Document: ("annotations", "document", "bytes"), Array: ("array",),
+            Bytes: ("bytes",), Folder: ("folder",), Template: ("other",)}
+
+
+def restored(kind: type[Object], state: bytes) -> Any:
+    """What was pickled. Raises InputError where the bytes are damaged, or hold an object of another class."""
+    if not isinstance(kind, type) or not issubclass(kind, Object) or not isinstance(state, bytes):
+        raise InputError("holds no object of this module", "pickle", "pickle the object again, or save it as a file")
+    native = _ostraka.restore(state)
+    types = next((types for base, types in _held_by.items() if issubclass(kind, base)), None)
+    if types is not None and native.type not in types:
+        raise InputError(f"holds an object of another class than {kind.__name__}", "pickle", "pickle the object again")
+    return _object_of(kind, native)
+
+
 def _plain(value: Any) -> Any:
     """Numbers and arrays of NumPy within a document."""
+    refuse_masks("document", value)
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"{type(value).__name__} cannot be written")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import json
 import os
@@ -13,6 +14,7 @@ from typing import Any
 import numpy
 
 from . import _ostraka
+from ._errors import InputError
 from ._objects import Bytes
 
 _dtypes = {"boolean": "?", "integer": "i8", "number": "f8"}
@@ -100,12 +102,55 @@ def _member(values: Any, key: str) -> Any:
     return values
 
 
-class Report:
-    """What an operation has to say; printed as the command prints it."""
+class _SavedReport:
+    """The texts of a report that was pickled: all that is asked of one."""
 
-    def __init__(self, native: _ostraka.Report) -> None:
+    formats = ("table", "json", "csv", "markdown")
+
+    def __init__(self, texts: dict[str, str], layout: bytes, holds: bool) -> None:
+        self._texts = texts
+        self._layout = layout
+        self.holds = holds
+
+    def text(self, form: str) -> str:
+        return self._texts[form]
+
+    def layout(self) -> bytes:
+        return self._layout
+
+
+def _digest(texts: dict[str, str], layout: bytes, holds: bool) -> str:
+    return hashlib.sha256(json.dumps([texts, layout.decode(), holds], sort_keys=True).encode()).hexdigest()
+
+
+def restored_report(texts: dict[str, str], layout: bytes, holds: bool, digest: str) -> Report:
+    """What was pickled. Raises InputError where it is damaged."""
+    try:
+        sound = set(texts) == set(_SavedReport.formats) and isinstance(holds, bool) and _digest(texts, layout, holds) == digest
+    except (TypeError, ValueError, AttributeError):
+        sound = False
+    if not sound:
+        raise InputError("holds a damaged report (its checksum differs)", "pickle", "pickle the report again")
+    return Report(_SavedReport(texts, layout, holds))
+
+
+class Report:
+    """What an operation has to say; printed as the command prints it. It can be pickled and copied."""
+
+    def __init__(self, native: _ostraka.Report | _SavedReport) -> None:
         self._native = native
         self._json: dict[str, Any] | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        texts = {form: self._native.text(form) for form in _SavedReport.formats}
+        layout, holds = self._native.layout(), self.holds
+        return restored_report, (texts, layout, holds, _digest(texts, layout, holds))
+
+    def __copy__(self) -> Report:
+        return Report(self._native)  # which nobody can change
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Report:
+        return Report(self._native)
 
     @property
     def holds(self) -> bool:

@@ -25,6 +25,16 @@ from typing import Literal
 '''
 
 
+_own = '''
+__version__: str
+
+def threads() -> int: ...
+def set_threads(count: int) -> None: ...
+def memory_limit() -> float: ...
+def set_memory_limit(gigabytes: float) -> None: ...
+'''
+
+
 def _type_of(one: _functions.Parameter) -> str:
     declared = one.declared
     if one.role == "output":
@@ -94,7 +104,7 @@ def stubs() -> dict[str, str]:
                                (("_errors", "ArgumentError, Error, InputError, UsageError, WorkError"), ("_objects", classes),
                                 ("_report", "Report, Result, Table")) for name in listed.split(", "))
         imports += f"from {dots}_types import AnnotationsLike, ArrayLike, FileName, Input, MeshLike, Text\n"
-        own = "" if group else "\n__version__: str\n\ndef threads() -> int: ...\ndef set_threads(count: int) -> None: ...\n"
+        own = "" if group else _own
         file = (folder + "__init__.pyi") if inner or not group else folder.rstrip("/") + ".pyi"
         files[file] = _head.format(imports=imports.rstrip("\n")) + own + "".join("\n" + part for part in parts)
     return files

@@ -45,6 +45,9 @@ private:
     int id_ = 0, status_ = 0, to_ = -1, from_ = -1;
 };
 
+/// Kills all that are running, with what they have started: for a process that ends at once.
+void kill_children();
+
 /// The folder of the program that is running.
 Path own_program_folder();
 

@@ -26,6 +26,8 @@ public:
 
 private:
     struct State;
+    template <class Work>
+    void work_on(const LowerTriangle& matrix, Work work);
     std::unique_ptr<State> state_;
 };
 

@@ -55,13 +55,19 @@ private:
     ReadRecord* outer_;
 };
 
+/// Who may read a file that is written.
+enum class FileAccess {
+    usual,      ///< as the file of that name before, else as the process's umask says
+    owner_only  ///< mode 0600, for secrets
+};
+
 /// A file that appears under its name only when complete: bytes go to a temporary file beside it, `commit` flushes
 /// them to the disk and renames, or leaves the renaming to the OutputTransaction that is open; without `commit` (an exception,
 /// say) the temporary file is removed and whatever stood under the name stays. Devices and pipes (/dev/null, /dev/stdout) are
 /// written to directly. Throws Error (failure) when the folder is missing or the disk is full.
 class AtomicFile {
 public:
-    explicit AtomicFile(Path file);
+    explicit AtomicFile(Path file, FileAccess access = FileAccess::usual);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
@@ -110,7 +116,25 @@ void replace_outputs(const Path& folder, const std::string& owner);
 std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.
-void write_file(const Path& file, std::string_view bytes);
+void write_file(const Path& file, std::string_view bytes, FileAccess access = FileAccess::usual);
+
+/// For a process that ends at once while its threads still work: waits for a commit that is under way, then removes all temporary
+/// files, scratch folders and empty folders that it has made, and refuses to make others.
+void abandon_outputs();
+
+/// A new folder of this process alone in the system's folder for temporary files, removed with all that it holds at the end.
+class ScratchFolder {
+public:
+    /// `purpose`: a word for its name. Throws Error (failure) where it cannot be made.
+    explicit ScratchFolder(const std::string& purpose);
+    ~ScratchFolder();
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    [[nodiscard]] const Path& path() const { return path_; }
+
+private:
+    Path path_;
+};
 
 /// Throws Error (usage) if an output names the same file as an input (links and relative spellings seen through),
 /// or the same file as another output, and Error (failure) if the folder of an output does not exist. To be called before any

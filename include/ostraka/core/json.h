@@ -6,17 +6,38 @@
 #include <rapidjson/document.h>
 
 #include <array>
+#include <cstdlib>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace ostraka {
 
-using Json = rapidjson::Document;
-using JsonValue = rapidjson::Value;
-using JsonAllocator = Json::AllocatorType;
+/// RapidJSON does not check what malloc returns: this allocator throws std::bad_alloc.
+class JsonMemory {
+public:
+    static const bool kNeedFree = true;
+    void* Malloc(std::size_t size) { return checked(std::malloc(size), size); }
+    void* Realloc(void* old, std::size_t /*old_size*/, std::size_t size) {
+        if (size > 0) return checked(std::realloc(old, size), size);
+        std::free(old);
+        return nullptr;
+    }
+    static void Free(void* memory) { std::free(memory); }
 
-/// Parses UTF-8 JSON; Error (input) gives file, line and column. Nesting deeper than 200 is refused.
+private:
+    static void* checked(void* memory, std::size_t size) {
+        if (memory == nullptr && size > 0) throw std::bad_alloc();
+        return memory;
+    }
+};
+
+using JsonAllocator = rapidjson::MemoryPoolAllocator<JsonMemory>;
+using Json = rapidjson::GenericDocument<rapidjson::UTF8<>, JsonAllocator, JsonMemory>;
+using JsonValue = Json::ValueType;
+
+/// Parses UTF-8 JSON; Error (input) gives file, line and column. Nesting deeper than 200 levels and zero bytes are refused.
 Json parse_json(std::string_view text, const std::string& where);
 Json read_json(const Path& file);
 
@@ -64,5 +85,5 @@ void check_format(const JsonValue& document, const std::string& format, const st
 }  // namespace ostraka
 
 // Compiled once, with the library.
-extern template class rapidjson::GenericValue<rapidjson::UTF8<>>;
-extern template class rapidjson::GenericDocument<rapidjson::UTF8<>>;
+extern template class rapidjson::GenericValue<rapidjson::UTF8<>, ostraka::JsonAllocator>;
+extern template class rapidjson::GenericDocument<rapidjson::UTF8<>, ostraka::JsonAllocator, ostraka::JsonMemory>;

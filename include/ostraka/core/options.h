@@ -92,12 +92,14 @@ struct Option {
     bool is_positional = false;  ///< given without its name
     bool affects_result = true;  ///< false: not recorded in the provenance
     bool takes_words = false;    ///< a list of which several words may follow one flag
+    bool from_files = true;      ///< false: only the caller sets it, never a study, a kit or a session (doc/security.md)
 
     Option& required() { return needed = true, initial.clear(), *this; }
     Option& positional() { return is_positional = true, *this; }
     Option& words() { return takes_words = true, *this; }
     /// Only how and where results are shown or kept.
     Option& unrecorded() { return affects_result = false, *this; }
+    Option& only_by_caller() { return from_files = false, affects_result = false, *this; }
 
     [[nodiscard]] OptionType type() const;
     [[nodiscard]] bool is_list() const;

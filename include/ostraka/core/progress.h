@@ -13,6 +13,9 @@ public:
     /// Called with the phase under way and its share done (0 to 1), at most ten times a second, from any thread.
     std::function<void(const std::string& phase, double share)> on_progress;
 
+    /// Bytes that the process may occupy while the work is under way; 0: what the machine has (core/memory.h).
+    double memory_limit = 0;
+
     /// Makes the work stop at the next step of a loop, with an Error (cancelled). May be called from any thread or a signal
     /// handler.
     void cancel() { cancelled_ = true; }
@@ -38,6 +41,17 @@ private:
 Watch* current_watch();
 /// Throws Error (cancelled) if the watch of this thread says so.
 void check_cancelled();
+
+/// For innermost loops and functors of other libraries: asks the watch at every 1024th step only. Each thread has its own.
+class CancelCheck {
+public:
+    void operator()() {
+        if ((++steps_ & 1023U) == 0) check_cancelled();
+    }
+
+private:
+    unsigned steps_ = 0;
+};
 
 /// Tells the watch of the thread that makes it how far a phase is. `advance` may be called from any thread; it throws Error
 /// (cancelled) when the work shall stop.

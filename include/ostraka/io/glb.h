@@ -4,6 +4,8 @@
 #include "ostraka/core/json.h"
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -88,13 +90,22 @@ public:
     [[nodiscard]] const JsonValue& element(const char* list, std::size_t index, const std::string& pointer) const;
 
     [[nodiscard]] std::string_view view(std::size_t index, const std::string& pointer) const;
-    /// `width` numbers for each element, one after the other.
-    [[nodiscard]] std::vector<double> accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
+    /// `width` numbers for each element, one after the other. Read once, whoever names the accessor.
+    using Values = std::shared_ptr<const std::vector<double>>;
+    [[nodiscard]] Values accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
+
+    /// To be told of memory before it is asked for: a file that many times names what it holds once is refused, with the place.
+    void charge(double bytes, const std::string& pointer) const;
 
 private:
+    [[nodiscard]] std::vector<double> read_accessor(std::size_t index, std::size_t width, const std::string& pointer) const;
+
     std::string where_;
     std::string_view binary_;
     Json document_;
+    double allowed_ = 0;
+    mutable double charged_ = 0;
+    mutable std::map<std::pair<std::size_t, std::size_t>, Values> read_;
 };
 
 }  // namespace ostraka::glb

@@ -65,6 +65,9 @@ public:
     /// Options that contradict each other: throws Error (usage) before anything is read. Ranges and file names are checked
     /// already.
     virtual void check() const {}
+    /// Bytes that the work will take, where its input files have so many: a guess to refuse what cannot end well. A mesh in
+    /// memory with its trees comes to about a dozen times its file.
+    [[nodiscard]] virtual double memory_needed(double input_bytes) const { return 12 * input_bytes; }
     virtual void run(Context& context, Report& report) = 0;
 };
 
@@ -74,6 +77,8 @@ struct OperationEntry {
     const char* help;
     std::unique_ptr<Operation> (*make)();
     int version = 1;  ///< raised when the same inputs give other results: what was done before is done again
+    /// It runs other operations or programs that files name: refused as a step of a study and of a session.
+    bool runs_others = false;
 };
 
 /// The line of that name; throws Error (usage) with the nearest name where there is none.
@@ -187,6 +192,7 @@ public:
 
 private:
     void complete();
+    [[nodiscard]] double input_bytes() const;
     void check_given(const std::function<bool(const Path&)>& comes) const;
 
     const OperationEntry* entry_;

@@ -23,7 +23,8 @@ struct CommonFlag {
     const char* name;
     bool has_value;
 };
-inline constexpr CommonFlag common_flags[]{{"json", false}, {"show", true}, {"quiet", false}, {"threads", true}, {"help", false}};
+inline constexpr CommonFlag common_flags[]{{"json", false},   {"show", true},   {"quiet", false},
+                                           {"threads", true}, {"memory", true}, {"help", false}};
 
 enum class Shell { bash, zsh, fish };
 /// What a shell reads to complete the words of `ostraka`: it asks `ostraka --complete WORD...`.

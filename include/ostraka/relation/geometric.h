@@ -22,8 +22,10 @@ public:
     RelationCheck measure(const Relationship& relationship);
 
     /// All that hold between annotations of the set, except the root; see doc/relations.md for the candidates. `types` names
-    /// those wanted (all if empty). Ids count up from `first_id`.
-    std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id);
+    /// those wanted (all if empty). Ids count up from `first_id`. At most 10000 of a type; of pairs that take long to measure the
+    /// most alike: `notes` then says so.
+    std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id,
+                                      std::vector<std::string>* notes = nullptr);
 
 private:
     friend class RelationCandidates;
@@ -37,6 +39,7 @@ struct ExtractedRelations {
     ContainmentOrder order;
     std::vector<int> stated;                  ///< ids of stated relationships that were found too, and not added again
     std::vector<std::string> not_looked_for;  ///< types that need an upward direction, which the set does not have
+    std::vector<std::string> notes;           ///< what was left out of very many
 };
 
 /// All relationships that hold, of these types (all if empty), beside those of `old` that were not extracted. Throws Error

@@ -4,6 +4,9 @@
 #include "ostraka/annotation/annotation.h"
 #include "ostraka/core/provenance.h"
 
+#include <memory>
+#include <optional>
+
 namespace ostraka {
 
 /// What geometry tells of annotations.
@@ -87,6 +90,19 @@ int free_id(const RelationGraph& graph);
 /// The relationship of `graph` that says the same as this one: type, members (in any order where there is no direction), the
 /// constraint, the attribute; nullptr if there is none. Tolerances and origin do not count.
 const Relationship* find_twin(const RelationGraph& graph, const Relationship& relationship);
+
+/// The same for many: a graph's relationships by what they say. The graph may change meanwhile.
+class Twins {
+public:
+    explicit Twins(const RelationGraph& graph);
+    ~Twins();
+    /// The id of the first relationship that said the same.
+    [[nodiscard]] std::optional<int> find(const Relationship& relationship) const;
+
+private:
+    struct Said;
+    std::unique_ptr<Said> said_;
+};
 
 /// What `check_graph` demands of one relationship by itself; `place` is named in errors.
 void check_relationship(const Relationship& relationship, const AnnotationSet& set, const std::string& place);

@@ -45,8 +45,9 @@ struct SessionStep {
 class Session {
 public:
     /// Goes on with the session in `folder`, or begins one there. Files are opened from `root` and the folders in it, and saved
-    /// there. Throws Error (input) for a folder that holds something else, a session that is damaged or whose files are gone, and
-    /// one that another process is at work on.
+    /// there. A new folder and the session's file are for their owner only. Throws Error (input) for a folder that holds
+    /// something else, a session that is damaged, whose files are gone or that names files or holds links outside of `folder` and
+    /// `root`, and one that another process is at work on.
     Session(Path folder, Path root);
     ~Session();
     Session(const Session&) = delete;
@@ -102,7 +103,10 @@ private:
     void add(SessionStep step);
     void write() const;
     void read();
+    void check_files(const SessionStep& step) const;
     void check_file(const std::string& file) const;
+    void check_folders() const;
+    void sweep() const;
     void lock();
 
     Path folder_, root_;

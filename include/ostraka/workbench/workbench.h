@@ -11,8 +11,8 @@ namespace ostraka {
 
 class Workbench {
 public:
-    /// As Session.
-    Workbench(Path folder, Path root);
+    /// As Session. `memory_limit`: bytes that the process may occupy; 0: what the machine has.
+    Workbench(Path folder, Path root, double memory_limit = 0);
     ~Workbench();
 
     struct Reply {
@@ -39,6 +39,8 @@ private:
     using Answer = void (Workbench::*)(const JsonValue& request, Json& result, std::string& bytes);
     static const std::map<std::string, Answer>& answers();
 
+    [[nodiscard]] std::unique_ptr<Context> fresh_context();
+
     void hello(const JsonValue& request, Json& result, std::string& bytes);
     void scene(const JsonValue& request, Json& result, std::string& bytes);
     void select(const JsonValue& request, Json& result, std::string& bytes);
@@ -58,7 +60,8 @@ private:
     Deformation& deformation();
 
     Session session_;
-    std::mutex mutex_;  ///< of the context, which a cancelled request is followed by another of
+    double memory_limit_;
+    std::mutex mutex_;  ///< guards context_, which is replaced after a cancelled request
     std::unique_ptr<Context> context_;
     std::map<std::string, std::shared_ptr<const MeshFile>> meshes_;  ///< by file and what it was when it was read
     std::unique_ptr<Deformation> deformation_;

@@ -67,6 +67,8 @@ private:
                    const Call& call, JsonValue& options, JsonAllocator& allocator);
     void add_output(StudyInstance& instance, const StudySetting& setting, const StudyReference& reference,
                     const std::string& place, const std::string& label);
+    void check_word(const StudySetting& word, const StudyText& text, const std::string& filled) const;
+    void check_counts(const StudyInstance& instance);
     void want(std::size_t instance, const std::string& output, bool keep);
     [[nodiscard]] std::size_t instance_of(std::size_t step, const StudyInstance& of) const;
     void make_outputs(StudyInstance& instance);
@@ -74,6 +76,7 @@ private:
     void check_outputs() const;
 
     std::vector<std::map<std::vector<std::size_t>, std::size_t>> index_;  ///< of each step: values, instance
+    std::size_t inputs_ = 0;                                              ///< of all instances
 };
 
 /// Whether what is of one kind can be given where the other is asked for.

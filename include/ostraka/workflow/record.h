@@ -19,13 +19,22 @@ struct OutputRecord {
 struct StudyRecord {
     /// All that the result depends on: what it is, and its value or checksum.
     std::vector<std::pair<std::string, std::string>> depends;
-    /// Files that the inputs name in turn, relative to the study file.
+    /// Files that the inputs name in turn: relative to the study file, or, behind "run:", to the run folder.
     std::vector<std::pair<std::string, std::string>> read;
     std::map<std::string, OutputRecord> outputs;
     bool holds = true;  ///< the answer was not "no"
     double seconds = 0;
     std::string began, ended;  ///< UTC, ISO 8601
 };
+
+/// What tells that a file was written to, without reading it.
+struct FileStamp {
+    std::uintmax_t size = 0, number = 0;  ///< bytes; number of the file in its file system
+    std::int64_t seconds = 0, nanoseconds = 0;
+    bool operator==(const FileStamp&) const = default;
+};
+/// Nothing where there is no such file.
+std::optional<FileStamp> stamp_of(const Path& file);
 
 /// SHA-256 of files and folders, each computed once. Safe for several threads.
 class FileChecksums {
@@ -39,13 +48,22 @@ public:
     void forget(const Path& file);
     /// It has this one, as somebody found who read it.
     void know(const Path& file, const std::string& sha256);
+    /// Files whose checksum is known and that have another one now, or had another one for somebody else who read them.
+    std::vector<Path> changed();
+    bool is_known(const Path& file);
 
 private:
+    struct Known {
+        std::string sha256;
+        std::optional<FileStamp> stamp;
+        bool differs = false;  ///< somebody who read it found other bytes
+    };
     std::mutex mutex_;
-    std::map<Path, std::string> known_;
+    std::map<Path, Known> known_;
 };
 
-/// In FOLDER/record.json; nothing where there is none, or it is damaged or of another version.
+/// In FOLDER/record.json; nothing where there is none, or it is damaged or of another version. Throws Error (input) where an
+/// output that it names would lie outside of the folder.
 std::optional<StudyRecord> read_record(const Path& folder);
 void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance& instance, const StudyRecord& record);
 
@@ -54,10 +72,13 @@ std::vector<std::pair<std::string, std::string>> dependencies(const StudyPlan& p
                                                               const std::function<const StudyRecord&(std::size_t)>& record_of,
                                                               FileChecksums& checksums, const Path& program_folder);
 
-/// Why an instance has to run again, in words; empty where nothing has changed. `folder`: of the instance in the run folder.
+/// Why an instance has to run again, in words; empty where nothing has changed. `run_folder`: of all instances.
 std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& known,
                       const std::vector<std::pair<std::string, std::string>>& depends, const StudyInstance& instance,
-                      const Path& folder, FileChecksums& checksums);
+                      const Path& run_folder, FileChecksums& checksums);
+
+/// Before the name of a file in the run folder.
+inline const std::string in_run = "run:";
 
 /// The program of that name in the folder of programs. Throws Error (input).
 Path find_program(const std::string& name, const Path& program_folder, const std::string& where);

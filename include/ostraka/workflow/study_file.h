@@ -34,7 +34,8 @@ struct ParameterValue {
 struct StudyParameter {
     std::string name;
     std::vector<ParameterValue> values;
-    bool varies = false;  ///< given as a list, a range or files: steps run once for each value
+    bool by_caller = false;  ///< the values are the caller's, not the file's
+    bool varies = false;     ///< given as a list, a range or files: steps run once for each value
 };
 
 /// An input or option of a step, as it stands in the file.
@@ -58,6 +59,8 @@ struct StudyStep {
 
 struct Study {
     Path file, folder;
+    bool allow_programs = false;
+    std::vector<Path> readable;  ///< folders, and files, that inputs may lie in: the study's own, and those that the caller named
     std::string sha256;
     std::shared_ptr<const Json> document;
     std::string title;
@@ -68,6 +71,8 @@ struct Study {
     [[nodiscard]] std::size_t parameter_index(const std::string& name) const;
     /// Index of the step, or the number of steps.
     [[nodiscard]] std::size_t step(const std::string& name) const;
+    /// Throws Error (input) unless the file, links resolved, lies in one of the readable folders. `pointer`: who names it.
+    void require_readable(const Path& named, const std::string& pointer) const;
     /// The name of a file as one says it who stands in the study's folder.
     [[nodiscard]] std::string relative(const Path& file) const;
     /// "FILE, at POINTER".
@@ -78,11 +83,18 @@ struct StudyOptions {
     bool quick = false;                 ///< parameters as "quick" says, without slow steps
     Path folder = {};                   ///< names are relative to it; empty: to the file's own folder
     std::vector<std::string> set = {};  ///< "NAME=VALUE" or "NAME=VALUE,VALUE": instead of the file's values
+    bool set_from_file = false;         ///< `set` was found in a file: what it names is not the caller's word
+    std::vector<Path> reads = {};       ///< further folders that inputs may lie in
+    bool reads_folder = true;           ///< they may lie in `folder` too
+    bool allow_programs = false;        ///< steps may start programs that are not the toolkit's own
 };
 
 /// Reads a study file and checks what can be checked without running: the schema, names, references, circles. Operations are
 /// looked up by `find`. Throws Error (input) with the file, the place in it and a remedy.
 Study read_study(const Path& file, const FindOperation& find, const StudyOptions& options = {});
+
+/// Whether a program of that name is one of the toolkit's own, which studies may start.
+bool is_own_program(const std::string& name);
 
 /// How a value of a parameter stands in a text.
 std::string scalar_text(const JsonValue& value);

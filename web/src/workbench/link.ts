@@ -24,6 +24,9 @@ interface Waiting {
 
 const nothing = new Uint8Array(0);
 
+/** The secret by which the command knows its page: it stands in the page's own address, and nowhere else. */
+const token = new URLSearchParams(location.search).get("token") ?? "";
+
 export class Link {
   private socket: WebSocket | undefined;
   private number = 0;
@@ -35,7 +38,7 @@ export class Link {
   connect() {
     const address = new URL("messages", location.href);
     address.protocol = "ws:";
-    address.search = "";
+    address.search = new URLSearchParams({ token }).toString();
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;

@@ -16,8 +16,6 @@ import { text } from "./words";
 import "./workbench.css";
 import * as xr from "./xr";
 
-// What the address held is a secret; the browser remembers it for a reload.
-history.replaceState(null, "", location.pathname);
 page.setContent({ data: { version: 1, title: "Ostraka", notes: [], provenance: "", objects: [], tables: [], drawings: [], blobs: [] }, blobs: undefined as never });
 
 model.link.onState = (open) => {

@@ -1,0 +1,180 @@
+// How long operations on a million faces take to stop when they are cancelled.
+#include "benchmarks.h"
+#include "ostraka/core/json.h"
+#include "ostraka/core/stopwatch.h"
+#include "ostraka/operations/table.h"
+
+#include <atomic>
+#include <iomanip>
+#include <iostream>
+#include <thread>
+
+namespace ostraka::bench {
+
+namespace {
+
+/// An operation with its settings; names of files are within a folder. What it makes later ones use.
+struct Step {
+    const char* operation;
+    const char* what;  ///< distinguishes runs of one operation
+    const char* settings;
+};
+
+const Step steps[]{
+    {"mesh make", "", R"({"object": "teapot", "output": "pot.ply", "vertices": 500000})"},
+    {"mesh make", "statuette", R"({"object": "statuette", "output": "statuette.ply", "vertices": 500000})"},
+    {"mesh make", "another seed", R"({"object": "teapot", "output": "other.ply", "vertices": 500000, "seed": 2})"},
+    {"mesh info", "", R"({"input": "pot.ply"})"},
+    {"mesh convert", "to OBJ", R"({"input": "pot.ply", "output": "pot.obj"})"},
+    {"mesh convert", "from OBJ", R"({"input": "pot.obj", "output": "pot.stl"})"},
+    {"mesh repair", "of triangles", R"({"input": "pot.stl", "output": "sound.ply"})"},
+    {"mesh repair", "wrap",
+     R"({"input": "pot.ply", "output": "wrap.ply", "wrap": true, "wrap-alpha": 0.005, "wrap-offset": 0.001})"},
+    {"annotation apply", "", R"({"mesh": "pot.ply", "recipe": "teapot.recipe.json", "output": "pot.ant.json"})"},
+    {"annotation apply", "statuette",
+     R"({"mesh": "statuette.ply", "recipe": "statuette.recipe.json", "output": "statuette.ant.json"})"},
+    {"annotation list", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json"})"},
+    {"annotation check", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json"})"},
+    {"mesh simplify", "", R"({"input": "pot.ply", "output": "coarse.ply", "vertices": 20000, "annotations": "pot.ant.json",
+                              "annotations-out": "coarse.ant.json"})"},
+    {"mesh simplify", "lindstrom-turk",
+     R"({"input": "pot.ply", "output": "coarse-2.ply", "vertices": 20000, "method": "lindstrom-turk"})"},
+    {"mesh refine", "", R"({"input": "coarse.ply", "output": "fine.ply", "vertices": 500000, "annotations": "coarse.ant.json",
+                            "annotations-out": "fine.ant.json"})"},
+    {"mesh remesh", "", R"({"input": "pot.ply", "output": "new.ply", "vertices": 500000})"},
+    {"mesh extract", "closed", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "body.ply", "annotation": ["body"],
+                                   "closed": true})"},
+    {"mesh extract", "open",
+     R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "open.ply", "annotation": ["body"]})"},
+    {"mesh repair", "holes", R"({"input": "open.ply", "output": "filled.ply", "fill-holes": 100000, "fill-holes-size": 1})"},
+    {"mesh break", "", R"({"input": "statuette.ply", "annotations": "statuette.ant.json", "output": "piece.ply",
+                           "annotations-out": "piece.ant.json", "at": "head", "share": 0.5, "seed": 2})"},
+    {"annotation facets", "", R"({"mesh": "piece.ply", "annotations": "piece.ant.json", "output": "facets.ant.json"})"},
+    {"annotation transfer", "", R"({"source": "pot.ply", "annotations": "pot.ant.json", "target": "other.ply",
+                                    "output": "other.ant.json", "back": "back.ant.json", "refine": true,
+                                    "refined-mesh": "refined.ply"})"},
+    {"annotation survival", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "ratio": 0.5})"},
+    {"annotation select", "brush", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "brush.ant.json",
+                                       "brush": ["-59,0,50"], "radius": 30, "tag": "patch"})"},
+    {"annotation select", "thickness", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "thick.ant.json",
+                                           "threshold": "thickness", "above": 0.1, "tag": "patch"})"},
+    {"annotation select", "grow", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "grown.ant.json",
+                                      "sphere": [-59, 0, 50, 20], "grow": 1000, "tag": "patch"})"},
+    {"annotation creases", "", R"({"mesh": "pot.ply", "output": "creases.ant.json", "scale": 0.03})"},
+    {"annotation segment", "", R"({"mesh": "pot.ply", "output": "segments.ant.json"})"},
+    {"annotation smooth", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "smooth.ant.json"})"},
+    {"annotation export", "GLB", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "features.glb"})"},
+    {"annotation import", "GLB", R"({"mesh": "pot.ply", "input": "features.glb", "output": "imported.ant.json"})"},
+    {"measure take", "tape", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "tape.ant.json", "tool": "tape",
+                                 "geodesic": "exact", "at": ["0,-59,50", "59,0,50"]})"},
+    {"measure describe", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "described.ant.json"})"},
+    {"measure map", "curvature", R"({"mesh": "pot.ply", "output": "curvature.npy", "of": "mean-curvature"})"},
+    {"measure map", "thickness", R"({"mesh": "pot.ply", "output": "thickness.npy", "of": "thickness"})"},
+    {"measure clay", "", R"({"mesh": "pot.ply"})"},
+    {"relation extract", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "pot.graph.json"})"},
+    {"relation check", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "graph": "pot.graph.json"})"},
+    {"cage make", "", R"({"mesh": "pot.ply", "output": "cage.ply", "vertices": 100})"},
+    {"cage check", "", R"({"mesh": "pot.ply", "cage": "cage.ply"})"},
+    {"cage weights", "", R"({"mesh": "pot.ply", "cage": "cage.ply", "output": "weights.npy"})"},
+    {"cage weights", "harmonic", R"({"mesh": "pot.ply", "cage": "cage.ply", "output": "harmonic.npy", "kind": "harmonic"})"},
+    {"deform", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "edit": "teapot-stretch.edit.json",
+                       "output": "stretched.ply", "cage": "cage.ply", "weights": "weights.npy",
+                       "annotations-out": "stretched.ant.json"})"},
+    {"axis", "", R"({"mesh": "pot.ply"})"},
+    {"axis", "rotation", R"({"mesh": "pot.ply", "method": "rotation"})"},
+    {"slice", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "count": 50, "output": ["slices.json"]})"},
+    {"study segments", "", R"({"mesh": "pot.ply", "output": "slices.ant.json"})"},
+    {"render", "", R"({"meshes": ["pot.ply"], "annotations": ["pot.ant.json"], "picture": "pot.png"})"},
+    {"publish", "", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "folder": "published",
+                        "address": "https://pots.example/1"})"},
+    {"report", "", R"({"results": ["pot.ply", "pot.ant.json", "pot.graph.json"], "page": "pot.html"})"},
+    {"template pack", "", R"({"output": "statuette.template.json", "mesh": "small.ply", "annotations": "small.ant.json"})"},
+    {"fit", "", R"({"template": "statuette.template.json", "fragments": ["piece.ply"], "output": "fit"})"},
+    {"template propagate", "",
+     R"({"template": "statuette.template.json", "members": ["statuette.ply"], "output": "propagated"})"},
+};
+
+Call call_of(const Step& step, const Path& folder) {
+    const Json settings = parse_json(step.settings, step.operation);
+    Call call(find_operation(step.operation));
+    Json rest(rapidjson::kObjectType);
+    for (const auto& member : settings.GetObject()) {
+        const std::string name = member.name.GetString();
+        if (call.parameters().slot(name) == nullptr) {
+            rest.AddMember(JsonValue(name, rest.GetAllocator()), JsonValue(member.value, rest.GetAllocator()),
+                           rest.GetAllocator());
+        } else if (member.value.IsArray()) {
+            for (const auto& one : member.value.GetArray()) call.set_file(name, folder / one.GetString());
+        } else {
+            call.set_file(name, folder / member.value.GetString());
+        }
+    }
+    call.set(rest);
+    return call;
+}
+
+/// Seconds from the wish to stop to the end; none where the work was done before. Throws where it ends with another error.
+std::optional<double> seconds_to_stop(const Step& step, const Path& folder, double after) {
+    Context context;
+    std::atomic<bool> is_done = false;
+    double told = -1;
+    const Stopwatch clock;
+    std::thread other([&] {
+        while (!is_done && clock.seconds() < after) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        told = clock.seconds();
+        context.watch.cancel();
+    });
+    bool is_cancelled = false;
+    std::exception_ptr failure;
+    try {
+        static_cast<void>(call_of(step, folder).run(context));
+    } catch (const Error& error) {
+        is_cancelled = error.kind() == ErrorKind::cancelled;
+        if (!is_cancelled) failure = std::current_exception();
+    }
+    const double ended = clock.seconds();
+    is_done = true;
+    other.join();
+    if (failure) std::rethrow_exception(failure);
+    return is_cancelled ? std::optional(ended - told) : std::nullopt;
+}
+
+void measure_step(const Step& step, const Path& folder) {
+    const std::string name = std::string(step.operation) + (*step.what == 0 ? "" : std::string(", ") + step.what);
+    const Stopwatch clock;
+    {
+        Context context;
+        static_cast<void>(call_of(step, folder).run(context));
+    }
+    const double whole = clock.seconds();
+    std::cout << "| " << name << " | " << std::fixed << std::setprecision(1) << whole << " | " << std::setprecision(2);
+    double longest = 0;
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9})
+        if (const auto seconds = seconds_to_stop(step, folder, share * whole)) longest = std::max(longest, *seconds);
+    std::cout << longest << " |" << std::endl;
+}
+
+}  // namespace
+
+int run_cancelling(const std::string& folder, const std::string& only) {
+    const Path data = Path(OSTRAKA_SOURCE_DIR) / "data", here = folder;
+    make_folder(here);
+    for (const char* name : {"teapot.recipe.json", "statuette.recipe.json", "teapot-stretch.edit.json"})
+        write_file(here / name, read_file(data / name));
+    for (const char* ending : {".ply", ".ant.json"})
+        write_file(here / (std::string("small") + ending), read_file(data / (std::string("statuette") + ending)));
+    std::cout << "| operation, a million faces | seconds in all | longest of five stops, seconds |\n|---|---|---|\n";
+    int code = 0;
+    for (const Step& step : steps) {
+        if (std::string(step.operation).find(only) == std::string::npos) continue;
+        try {
+            measure_step(step, here);
+        } catch (const std::exception& error) {
+            std::cout << "| " << step.operation << ", " << step.what << " | failed: " << error.what() << " | |" << std::endl;
+            code = 1;
+        }
+    }
+    return code;
+}
+
+}  // namespace ostraka::bench

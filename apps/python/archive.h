@@ -1,0 +1,185 @@
+// Values as bytes and back, field by field: what pickles of objects hold. Reading checks every length against what is left.
+#pragma once
+
+#include "ostraka/annotation/annotation.h"
+#include "ostraka/core/error.h"
+
+#include <bit>
+#include <concepts>
+#include <cstring>
+#include <type_traits>
+
+namespace ostraka::python {
+
+static_assert(std::endian::native == std::endian::little, "archives are little-endian");
+
+/// Where bytes are no archive of ours.
+[[noreturn]] inline void fail_archive(const std::string& problem) {
+    fail_input("pickle", problem, "pickle the object again with this version, or save it as a file");
+}
+
+/// Numbers, and arrays of them, that are stored as they lie in memory, without gaps.
+template <class T>
+constexpr bool is_plain = std::is_arithmetic_v<T> && !std::same_as<T, bool>;
+template <class T, std::size_t Count>
+constexpr bool is_plain<std::array<T, Count>> = is_plain<T>;
+
+/// The last value of an enumeration.
+constexpr AnnotationType last_of(AnnotationType /*any*/) { return AnnotationType::region; }
+constexpr AttributeType last_of(AttributeType /*any*/) { return AttributeType::descriptor; }
+constexpr Information::Kind last_of(Information::Kind /*any*/) { return Information::Kind::file; }
+constexpr SurfaceNode::Kind last_of(SurfaceNode::Kind /*any*/) { return SurfaceNode::Kind::face; }
+
+/// Appends fields to bytes.
+class Writer {
+public:
+    template <class... T>
+    void operator()(const T&... values) {
+        (put(values), ...);
+    }
+    std::string bytes;
+
+private:
+    void put_size(std::size_t size) { put(static_cast<std::uint64_t>(size)); }
+    template <class T>
+    void put(const T& value) {
+        if constexpr (is_plain<T>) bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+        else if constexpr (std::same_as<T, bool> || std::is_enum_v<T>) put(static_cast<std::uint8_t>(value));
+        else fields(*this, value);
+    }
+    void put(const std::string& text) {
+        put_size(text.size());
+        bytes += text;
+    }
+    void put(const Json& document) { put(document.IsNull() ? std::string() : to_text(document)); }
+    template <class T>
+    void put(const std::optional<T>& value) {
+        put(value.has_value());
+        if (value) put(*value);
+    }
+    template <class First, class Second>
+    void put(const std::pair<First, Second>& both) {
+        put(both.first);
+        put(both.second);
+    }
+    template <class T>
+    void put(const std::vector<T>& list) {
+        put_size(list.size());
+        if constexpr (is_plain<T>) bytes.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T));
+        else
+            for (const T& one : list) put(one);
+    }
+};
+
+/// Takes fields from bytes. Throws Error (input) where they do not hold such.
+class Reader {
+public:
+    explicit Reader(std::string_view all) : rest_(all) {}
+    template <class... T>
+    void operator()(T&... values) {
+        (get(values), ...);
+    }
+    /// Throws Error (input) where bytes are left.
+    void end() const {
+        if (!rest_.empty()) fail_archive("holds more than an object");
+    }
+
+private:
+    std::string_view take(std::size_t count) {
+        if (count > rest_.size()) fail_archive("is shorter than what it holds");
+        const std::string_view taken = rest_.substr(0, count);
+        rest_.remove_prefix(count);
+        return taken;
+    }
+    /// Of a list whose elements take so many bytes at least.
+    std::size_t get_size(std::size_t bytes_each) {
+        std::uint64_t size = 0;
+        get(size);
+        if (size > rest_.size() / bytes_each) fail_archive("is shorter than what it holds");
+        return static_cast<std::size_t>(size);
+    }
+    template <class T>
+    void get(T& value) {
+        if constexpr (is_plain<T>) {
+            std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
+        } else if constexpr (std::same_as<T, bool> || std::is_enum_v<T>) {
+            std::uint8_t number = 0;
+            get(number);
+            std::uint8_t last = 1;
+            if constexpr (std::is_enum_v<T>) last = static_cast<std::uint8_t>(last_of(T{}));
+            if (number > last) fail_archive("holds a value that is none of those allowed");
+            value = static_cast<T>(number);
+        } else {
+            fields(*this, value);
+        }
+    }
+    void get(std::string& text) { text = take(get_size(1)); }
+    void get(Json& document) {
+        std::string text;
+        get(text);
+        document = text.empty() ? Json() : parse_json(text, "pickle");
+    }
+    template <class T>
+    void get(std::optional<T>& value) {
+        bool has_value = false;
+        get(has_value);
+        if (has_value) get(value.emplace());
+        else value.reset();
+    }
+    template <class First, class Second>
+    void get(std::pair<First, Second>& both) {
+        get(both.first);
+        get(both.second);
+    }
+    template <class T>
+    void get(std::vector<T>& list) {
+        list.clear();
+        if constexpr (is_plain<T>) {
+            list.resize(get_size(sizeof(T)));
+            const std::string_view taken = take(list.size() * sizeof(T));
+            if (!taken.empty()) std::memcpy(list.data(), taken.data(), taken.size());
+        } else {
+            for (std::size_t count = get_size(1); count > 0; --count) get(list.emplace_back());
+        }
+    }
+    std::string_view rest_;
+};
+
+/// A type, whether it is written (const) or read.
+template <class T, class Of>
+concept Is = std::same_as<std::remove_const_t<T>, Of>;
+
+template <class Archive, Is<Location> T>
+void fields(Archive& archive, T& x) {
+    archive(x.face, x.barycentric);
+}
+template <class Archive, Is<SurfacePlace> T>
+void fields(Archive& archive, T& x) {
+    archive(x.kind, x.element, x.weights);
+}
+template <class Archive, Is<Measure> T>
+void fields(Archive& archive, T& x) {
+    archive(x.tool, x.points, x.locations, x.direction, x.value, x.unit, x.stale, x.exact, x.repeats, x.uncertainty);
+}
+template <class Archive, Is<Descriptor> T>
+void fields(Archive& archive, T& x) {
+    archive(x.values, x.is_list, x.file, x.unit, x.stale);
+}
+template <class Archive, Is<Attribute> T>
+void fields(Archive& archive, T& x) {
+    archive(x.id, x.name, x.type, x.note, x.measure, x.descriptor, x.origin);
+}
+template <class Archive, Is<Information> T>
+void fields(Archive& archive, T& x) {
+    archive(x.kind, x.value, x.title, x.sha256);
+}
+template <class Archive, Is<Annotation> T>
+void fields(Archive& archive, T& x) {
+    archive(x.id, x.tag, x.colour, x.type, x.points, x.polylines, x.faces, x.curves, x.all, x.attributes, x.information, x.note);
+}
+template <class Archive, Is<AnnotationSet> T>
+void fields(Archive& archive, T& x) {
+    archive(x.object_class, x.unit, x.up, x.annotations, x.provenance, x.notes);
+}
+
+}  // namespace ostraka::python

@@ -1,0 +1,212 @@
+#include "running.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+#include "ostraka/core/parallel.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace ostraka::python {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds poll{50}, patience{600};
+constexpr int interrupted_polls = 4;  ///< in which the main thread handles an interrupt: it waits for this thread
+
+/// Work under way, owned by the thread that works and by the one that waits.
+struct Job {
+    std::shared_ptr<Watch> watch;
+    std::function<void()> work;
+    std::mutex mutex;
+    std::condition_variable ended;
+    bool done = false;
+    std::exception_ptr failure;
+    bool at_end = false;                               ///< of Python, which this call is a part of
+    std::atomic<bool> abandoned{false};                ///< nobody waits for it; set under Python's lock
+    std::optional<py::error_already_set> raised = {};  ///< by Python while it worked; touched under Python's lock only
+};
+
+/// The work of all threads; a process that was forked has none of its parent's. Never destroyed: threads may outlive it.
+class Jobs {
+public:
+    void add(const Job* job) {
+        change([&] { jobs_.insert(job); });
+    }
+    void remove(const Job* job) {
+        change([&] { jobs_.erase(job); });
+    }
+    /// Cancels all; whether there are any.
+    bool cancel() {
+        bool any = false;
+        change([&] {
+            for (const Job* job : jobs_) job->watch->cancel();
+            any = !jobs_.empty();
+        });
+        return any;
+    }
+
+private:
+    template <class Change>
+    void change(const Change& work) {
+        const std::lock_guard lock(mutex_);
+        work();
+    }
+    std::mutex mutex_;
+    std::set<const Job*> jobs_;
+};
+/// Forgotten, not destroyed, in a process that was forked: the threads are those of its parent.
+std::atomic<Jobs*> jobs{nullptr};
+
+void add_jobs() { jobs = new Jobs; }
+
+bool python_ends() {
+#if PY_VERSION_HEX >= 0x030D0000
+    return Py_IsFinalizing() != 0;
+#else
+    return _Py_IsFinalizing() != 0;
+#endif
+}
+
+void work_on(const std::shared_ptr<Job>& job, Jobs* list) {
+    try {
+        set_threads(wanted_threads);  // a setting of each thread
+        const WatchScope watched(job->watch.get());
+        job->work();
+    } catch (...) {
+        job->failure = std::current_exception();
+    }
+    job->work = nullptr;  // and what it owns
+    list->remove(job.get());
+    const std::lock_guard lock(job->mutex);
+    job->done = true;
+    job->ended.notify_one();
+}
+
+/// Keeps what Python has raised, and cancels the work.
+void stop(Job& job) {
+    py::error_already_set error;
+    if (!job.raised) job.raised.emplace(std::move(error));
+    job.watch->cancel();
+}
+
+std::function<void(const std::string&, double)> calls(const std::weak_ptr<Job>& of, const py::object& progress) {
+    return [of, function = progress.ptr()](const std::string& phase, double share) {
+        const std::shared_ptr<Job> job = of.lock();
+        if (!job || job->abandoned || python_ends()) return;
+        const py::gil_scoped_acquire python;
+        if (job->abandoned || job->raised) return;
+        PyObject* answer = PyObject_CallFunction(function, "sd", phase.c_str(), share);
+        if (answer == nullptr) stop(*job);
+        Py_XDECREF(answer);
+    };
+}
+
+/// Lets the handlers of signals run, and what other threads have raised in this one. `polls`: for how many calls in a row the
+/// main thread has been handling an interrupt.
+void hear(Job& job, int& polls) {
+    if (PyErr_CheckSignals() != 0) return stop(job);
+    PyObject* module = PyImport_ImportModule("ostraka._interrupts");
+    PyObject* answer = module == nullptr ? nullptr : PyObject_CallMethod(module, "main_thread_state", nullptr);
+    Py_XDECREF(module);
+    const long state = answer == nullptr ? -1 : PyLong_AsLong(answer);
+    Py_XDECREF(answer);
+    if (PyErr_Occurred() != nullptr) return stop(job);
+    polls = state == 1 ? polls + 1 : 0;
+    if (state == 2 || polls >= interrupted_polls) {
+        PyErr_SetNone(PyExc_KeyboardInterrupt);
+        stop(job);
+    }
+}
+
+/// While Python ends, whoever asks for its lock would be ended within this code: all threads but the one that ends it wait for
+/// the end of the process.
+void wait_if_python_ends(const Job& job) {
+    while (!job.at_end && python_ends()) ::pause();
+}
+
+/// Until it has ended, or was told to 0.6 s ago. Without Python's lock; whether it has ended.
+bool wait_for(Job& job) {
+    int polls = 0;
+    std::optional<Clock::time_point> last;
+    for (std::unique_lock lock(job.mutex); !job.ended.wait_for(lock, poll, [&] { return job.done; });) {
+        lock.unlock();
+        wait_if_python_ends(job);
+        {
+            const py::gil_scoped_acquire python;
+            if (!job.raised) hear(job, polls);
+            if (job.raised && !last) last = Clock::now() + patience;
+            if (last && Clock::now() > *last) {
+                job.abandoned = true;
+                return false;
+            }
+        }
+        lock.lock();
+    }
+    wait_if_python_ends(job);
+    return true;
+}
+
+}  // namespace
+
+void run_watched(const std::shared_ptr<Watch>& watch, const py::object& progress, std::function<void()> work) {
+    const auto job = std::make_shared<Job>();
+    job->watch = watch;
+    job->work = std::move(work);
+    job->at_end = python_ends();
+    watch->memory_limit = wanted_memory;
+    if (!progress.is_none()) watch->on_progress = calls(job, progress);
+    {
+        const py::gil_scoped_release free;
+        jobs.load()->add(job.get());
+        std::thread worker;
+        try {
+            worker = std::thread(work_on, job, jobs.load());
+        } catch (const std::system_error&) {
+            jobs.load()->remove(job.get());
+            throw Error(ErrorKind::failure, "", "the system gives no further thread", "end other work first");
+        }
+        if (wait_for(*job)) worker.join();
+        else worker.detach();
+    }
+    if (!job->abandoned) watch->on_progress = nullptr;
+    if (job->raised) {
+        py::error_already_set raised(std::move(*job->raised));
+        job->raised.reset();
+        throw raised;
+    }
+    try {
+        if (job->failure) std::rethrow_exception(job->failure);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::failure, "", "the memory does not suffice", "end other programs, or give a smaller object");
+    }
+}
+
+void hold_spare_team() {
+    std::thread([] {
+        std::atomic<int> members{0};
+#pragma omp parallel num_threads(2)
+        ++members;
+        for (;;) ::pause();  // the team lasts as long as its first thread
+    }).detach();
+}
+
+void stop_work_at_exit() {
+    add_jobs();
+    ::pthread_atfork(nullptr, nullptr, add_jobs);
+    // All of Python has ended by then. What works on would use what the end of the process takes apart.
+    Py_AtExit([] {
+        if (!jobs.load()->cancel()) return;
+        abandon_outputs();
+        ::on_exit([](int status, void* /*none*/) { ::_exit(status); }, nullptr);
+    });
+}
+
+}  // namespace ostraka::python

@@ -1,0 +1,476 @@
+#include "saved.h"
+
+#include "archive.h"
+
+#include "ostraka/core/json_build.h"
+#include "ostraka/core/memory.h"
+#include "ostraka/core/npy.h"
+#include "ostraka/core/safe_path.h"
+#include "ostraka/operation/operation.h"
+#include "ostraka/render/values.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ostraka::python {
+
+template <class Archive, Is<MeshExtras> T>
+void fields(Archive& archive, T& x) {
+    archive(x.vertex_colours, x.face_colours, x.vertex_labels, x.face_labels, x.vertex_texture, x.corner_texture, x.tetrahedra);
+}
+template <class Archive, Is<PolygonSoup> T>
+void fields(Archive& archive, T& x) {
+    archive(x.points, x.polygon_begin, x.corners, x.extras, x.notes);
+}
+template <class Archive, Is<IndexMap> T>
+void fields(Archive& archive, T& x) {
+    archive(x.kind, x.map, x.to, x.description, x.nearest);
+}
+template <class Archive, Is<PackagedFile> T>
+void fields(Archive& archive, T& x) {
+    archive(x.role, x.name, x.sha256);
+}
+template <class Archive, Is<TemplateFile> T>
+void fields(Archive& archive, T& x) {
+    archive(x.object_class, x.unit, x.up, x.contents);
+}
+
+namespace {
+
+constexpr std::string_view magic = "ostraka object 1\n";  ///< with the version of what follows
+constexpr std::size_t digest_size = 64;
+
+/// What an object is, and what is read for it. The order is part of the format.
+enum class Type { mesh, polygons, annotations, text, document, values, coordinates, index_map, folder, template_package };
+constexpr Type last_of(Type /*any*/) { return Type::template_package; }
+
+using Files = std::vector<std::pair<std::string, std::string>>;  ///< names and bytes
+
+Files files_of_folder(const Path& folder) {
+    Files files;
+    for (const std::string& file : files_in(folder)) files.emplace_back(file, read_file(folder / file));
+    return files;
+}
+/// What the object writes for a file of this name, and beside it.
+Files files_of_object(const Object& object, const std::string& name) {
+    const InMemory place(name);
+    write_object(object, place.file);
+    return files_of_folder(place.folder);
+}
+std::string bytes_of_object(const Object& object, const std::string& name) {
+    const InMemory place(name);
+    write_object(object, place.file);
+    return read_file(place.file);
+}
+std::string file_name_of(const Object& object) { return Path(object.name).filename().string(); }
+
+// ---- meshes: how they are written is part of them ----
+
+/// What an operation said of the writing of a mesh. A PLY file holds all of it; the other formats hold less.
+struct MeshWriting {
+    std::string comment;
+    bool ascii = false;
+    Files files;  ///< by extension: of PLY, of the format that the mesh's name says, and of those that hold polygons
+};
+}  // namespace
+
+template <class Archive, Is<MeshWriting> T>
+void fields(Archive& archive, T& x) {
+    archive(x.comment, x.ascii, x.files);
+}
+
+namespace {
+
+/// Of a PLY file that the toolkit writes.
+std::size_t faces_of_ply(std::string_view ply) {
+    constexpr std::string_view line = "\nelement face ";
+    const std::size_t begin = ply.find(line);
+    return begin == std::string_view::npos ? 0 : std::strtoull(ply.data() + begin + line.size(), nullptr, 10);
+}
+
+/// `faces`: of the object; a file that holds others holds polygons for its triangles.
+MeshWriting writing_of(const Object& object, std::size_t faces) {
+    MeshWriting writing;
+    const auto add = [&](const std::string& ending) {
+        if (std::none_of(writing.files.begin(), writing.files.end(), [&](const auto& one) { return one.first == ending; }))
+            writing.files.emplace_back(ending, bytes_of_object(object, "mesh" + ending));
+    };
+    add(".ply");
+    add(extension(object.name));
+    if (faces_of_ply(writing.files.front().second) != faces)
+        for (const char* ending : {".obj", ".off"}) add(ending);
+    const std::string_view ply = writing.files.front().second;
+    writing.ascii = ply.starts_with("ply\nformat ascii");
+    constexpr std::string_view comment = "\ncomment ";
+    const std::size_t begin = ply.find(comment), end = ply.find("\nend_header");
+    if (begin < end) writing.comment = ply.substr(begin + comment.size(), ply.find('\n', begin + 1) - begin - comment.size());
+    return writing;
+}
+
+/// A way to write the mesh: the bytes that are kept, where there are any for the format, else by `write`.
+template <class Write>
+std::function<void(const Path&)> write_mesh_with(MeshWriting writing, Write write) {
+    return [writing = std::make_shared<const MeshWriting>(std::move(writing)), write](const Path& file) {
+        check_mesh_extension(file);
+        for (const auto& [ending, bytes] : writing->files)
+            if (ending == extension(file)) return write_file(file, bytes);
+        WriteOptions options;
+        options.comment = writing->comment;
+        if (writing->ascii) options.encoding = Encoding::ascii;
+        write(file, options);
+    };
+}
+
+void check_count(std::size_t given, std::size_t elements, const char* what) {
+    if (given != 0 && given != elements) fail_archive(std::string("has another number of ") + what + " than of elements");
+}
+
+void check_indices(const std::vector<Index>& list, std::size_t below) {
+    if (std::any_of(list.begin(), list.end(), [&](Index i) { return i >= below; }))
+        fail_archive("names an element that is not there");
+}
+
+void check_mesh(const PolygonSoup& soup) {
+    const std::size_t vertices = soup.points.size();
+    for (const auto& point : soup.points)
+        if (!std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); }))
+            fail_archive("has a point that is not finite");
+    const auto& begin = soup.polygon_begin;
+    if (vertices >= no_index || begin.empty() || begin.front() != 0 || begin.back() != soup.corners.size() ||
+        !std::is_sorted(begin.begin(), begin.end()))
+        fail_archive("has polygons that do not follow each other");
+    check_indices(soup.corners, vertices);
+    const MeshExtras& extras = soup.extras;
+    check_count(extras.vertex_colours.size(), vertices, "colours");
+    check_count(extras.vertex_labels.size(), vertices, "labels");
+    check_count(extras.vertex_texture.size(), vertices, "texture coordinates");
+    check_count(extras.face_colours.size(), soup.polygon_count(), "colours");
+    check_count(extras.face_labels.size(), soup.polygon_count(), "labels");
+    check_count(extras.corner_texture.size(), soup.corners.size(), "texture coordinates");
+    for (const auto& tetrahedron : extras.tetrahedra) check_indices({tetrahedron.begin(), tetrahedron.end()}, vertices);
+}
+
+PolygonSoup soup_of(const MeshFile& file) {
+    PolygonSoup soup;
+    TriangleSoup triangles = to_soup(file.mesh);
+    soup.points = std::move(triangles.points);
+    soup.corners.reserve(3 * triangles.triangles.size());
+    for (const auto& corners : triangles.triangles) {
+        soup.corners.insert(soup.corners.end(), corners.begin(), corners.end());
+        soup.polygon_begin.push_back(static_cast<Index>(soup.corners.size()));
+    }
+    soup.extras = file.extras;
+    soup.notes = file.notes;
+    return soup;
+}
+
+/// The same halfedges as reading makes.
+MeshFile mesh_of(PolygonSoup soup, std::vector<Index> triangle_polygon) {
+    TriangleSoup triangles;
+    for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
+        if (soup.polygon_begin[i + 1] != 3 * (i + 1)) fail_archive("has polygons that are no triangles");
+        triangles.triangles.push_back({soup.corners[3 * i], soup.corners[3 * i + 1], soup.corners[3 * i + 2]});
+    }
+    check_count(triangle_polygon.size(), soup.polygon_count(), "polygons");
+    triangles.points = std::move(soup.points);
+    return {build_mesh(triangles), std::move(soup.extras), std::move(triangle_polygon), std::move(soup.notes)};
+}
+
+Object restored_mesh(Reader& reader) {
+    PolygonSoup soup;
+    std::vector<Index> triangle_polygon;
+    MeshWriting writing;
+    reader(soup, triangle_polygon, writing);
+    check_mesh(soup);
+    const auto mesh = std::make_shared<const MeshFile>(mesh_of(std::move(soup), std::move(triangle_polygon)));
+    Object object(mesh);
+    object.write = write_mesh_with(std::move(writing), [mesh](const Path& file, const WriteOptions& options) {
+        write_mesh(file, mesh->mesh, mesh->extras, options);
+    });
+    return object;
+}
+
+Object restored_polygons(Reader& reader) {
+    PolygonSoup read;
+    MeshWriting writing;
+    reader(read, writing);
+    check_mesh(read);
+    const auto soup = std::make_shared<const PolygonSoup>(std::move(read));
+    Object object(soup);
+    object.write = write_mesh_with(std::move(writing), [soup](const Path& file, const WriteOptions& options) {
+        const TriangulatedSoup made = triangulate(PolygonSoup(*soup));
+        write_triangles(file, made.soup, made.extras, options);
+    });
+    return object;
+}
+
+// ---- arrays ----
+
+std::vector<double> numbers_of(const WeightMatrix& matrix) { return {matrix.data(), matrix.data() + matrix.size()}; }
+
+void save_matrix(Writer& writer, const WeightMatrix& matrix) {
+    writer(static_cast<std::uint64_t>(matrix.rows()), static_cast<std::uint64_t>(matrix.cols()), numbers_of(matrix));
+}
+WeightMatrix restored_matrix(Reader& reader) {
+    std::uint64_t rows = 0, columns = 0;
+    std::vector<double> numbers;
+    reader(rows, columns, numbers);
+    const bool fits = rows == 0 || columns == 0 ? numbers.empty() && std::max(rows, columns) < no_index
+                                                : numbers.size() % rows == 0 && numbers.size() / rows == columns;
+    if (!fits) fail_archive("holds an array of another size than it says");
+    if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
+        fail_archive("has a weight that is not finite");
+    return Eigen::Map<const WeightMatrix>(numbers.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+}
+
+void save_sparse(Writer& writer, const SparseWeights& matrix) {
+    SparseWeights packed = matrix;
+    packed.makeCompressed();
+    const auto count = static_cast<std::size_t>(packed.nonZeros()), rows = static_cast<std::size_t>(packed.rows());
+    writer(static_cast<std::uint64_t>(packed.cols()), std::vector<int>(packed.outerIndexPtr(), packed.outerIndexPtr() + rows + 1),
+           std::vector<int>(packed.innerIndexPtr(), packed.innerIndexPtr() + count),
+           std::vector<double>(packed.valuePtr(), packed.valuePtr() + count));
+}
+SparseWeights restored_sparse(Reader& reader, const WeightMatrix& dense) {
+    std::uint64_t columns = 0;
+    std::vector<int> begin, column;
+    std::vector<double> values;
+    reader(columns, begin, column, values);
+    const auto count = static_cast<int>(values.size());
+    if (begin.empty() || begin.front() != 0 || begin.back() != count || !std::is_sorted(begin.begin(), begin.end()) ||
+        column.size() != values.size() || begin.size() - 1 != static_cast<std::size_t>(dense.rows()) ||
+        columns != static_cast<std::uint64_t>(dense.cols()))
+        fail_archive("holds weights of another size than it says");
+    for (std::size_t row = 0; row + 1 < begin.size(); ++row)
+        for (int i = begin[row]; i < begin[row + 1]; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            if (column[at] < 0 || column[at] >= static_cast<int>(columns) || (i > begin[row] && column[at] <= column[at - 1]) ||
+                !std::isfinite(values[at]))
+                fail_archive("holds weights that are in no order");
+        }
+    return Eigen::Map<const SparseWeights>(dense.rows(), dense.cols(), count, begin.data(), column.data(), values.data());
+}
+
+void save_coordinates(Writer& writer, const Object& object, const Coordinates& coordinates) {
+    const std::string header = coordinate_header_file("weights.npy").string();
+    const Files files = files_of_object(object, "weights.npy");
+    const auto found = std::find_if(files.begin(), files.end(), [&](const auto& one) { return one.first == header; });
+    if (found == files.end()) fail_usage("coordinates without a header cannot be kept");
+    writer(coordinates.kind, coordinates.seconds, found->second);
+    save_matrix(writer, coordinates.vertex);
+    save_matrix(writer, coordinates.normal);
+    writer(coordinates.is_sparse());
+    if (coordinates.is_sparse()) save_sparse(writer, coordinates.sparse);
+}
+
+/// The files of coordinates as write_coordinates makes them; `header`: theirs, with other names.
+void write_restored(const Path& weights, const Coordinates& coordinates, const std::string& header) {
+    if (extension(weights) != ".npy") fail_usage("'" + weights.string() + "' is no name for a NumPy array", "end it in .npy");
+    Json document = parse_json(header, "pickle");
+    auto& allocator = document.GetAllocator();
+    const auto write_list = [&](JsonValue& array, const Path& file, const auto& numbers, const std::vector<std::size_t>& shape) {
+        array["file"].SetString(file.filename().string(), allocator);
+        if (write_npy(file, numbers, shape) != text_in(array, "sha256"))
+            fail_archive("has weights that are not those of their header");
+    };
+    const auto write_matrix = [&](JsonValue& array, const Path& file, const WeightMatrix& matrix) {
+        write_list(array, file, std::span(matrix.data(), static_cast<std::size_t>(matrix.size())),
+                   {static_cast<std::size_t>(matrix.rows()), static_cast<std::size_t>(matrix.cols())});
+    };
+    if (coordinates.is_sparse()) {
+        const SparseWeights& sparse = coordinates.sparse;
+        const auto count = static_cast<std::size_t>(sparse.nonZeros()), rows = static_cast<std::size_t>(sparse.rows());
+        const std::vector<std::int64_t> columns(sparse.innerIndexPtr(), sparse.innerIndexPtr() + count),
+            begins(sparse.outerIndexPtr(), sparse.outerIndexPtr() + rows + 1);
+        write_list(document["vertex"], weights, std::span(sparse.valuePtr(), count), {count});
+        write_list(document["sparse"]["column"], sparse_columns_file(weights), columns, {columns.size()});
+        write_list(document["sparse"]["row"], sparse_rows_file(weights), begins, {begins.size()});
+    } else {
+        write_matrix(document["vertex"], weights, coordinates.vertex);
+    }
+    if (coordinates.has_normals()) write_matrix(document["normal"], normal_weights_file(weights), coordinates.normal);
+    write_json(coordinate_header_file(weights), document);
+}
+
+Object restored_coordinates(Reader& reader) {
+    Coordinates read;
+    std::string header;
+    bool is_sparse = false;
+    reader(read.kind, read.seconds, header);
+    read.vertex = restored_matrix(reader);
+    read.normal = restored_matrix(reader);
+    reader(is_sparse);
+    if (is_sparse) read.sparse = restored_sparse(reader, read.vertex);
+    const Json document = parse_json(header, "pickle");
+    validate(document, "coordinates", "pickle");
+    if ((find_member(document, "sparse") != nullptr) != is_sparse ||
+        (find_member(document, "normal") != nullptr) != read.has_normals())
+        fail_archive("has weights that are not those of their header");
+    const auto coordinates = std::make_shared<const Coordinates>(std::move(read));
+    Object object(coordinates);
+    object.write = [coordinates, header](const Path& file) { write_restored(file, *coordinates, header); };
+    return object;
+}
+
+Object restored_values(Reader& reader) {
+    std::vector<double> read;
+    reader(read);
+    return object_of_values(std::move(read));
+}
+
+Object restored_index_map(Reader& reader) {
+    IndexMap map;
+    std::string text;
+    reader(map, text);
+    Object object = Object::of(std::move(map));
+    object.write = [text](const Path& file) { write_file(file, text); };
+    return object;
+}
+
+// ---- documents, annotations ----
+
+Object restored_document(Reader& reader) {
+    std::string text;
+    bool has_write = false;
+    reader(text, has_write);
+    const auto document = std::make_shared<const Json>(parse_json(text, "pickle"));
+    Object object(document);
+    if (has_write) object.write = [document](const Path& file) { write_json(file, *document); };
+    return object;
+}
+
+Object restored_annotations(Reader& reader) {
+    AnnotationSet set;
+    std::string text;
+    reader(set, text);
+    Object object = Object::of(std::move(set));
+    object.write = [text](const Path& file) { write_file(file, text); };
+    return object;
+}
+
+// ---- several files ----
+
+/// Into a folder in memory that a context of their own keeps.
+Path put_files(const Files& files, Context& context, const std::string& name) {
+    const Path folder = context.memory(name);
+    OutputTransaction own;
+    for (const auto& [file, bytes] : files) {
+        require_plain_name(file, "pickle", "files");
+        write_file(folder / file, bytes);
+    }
+    own.commit();
+    return folder;
+}
+
+Held restored_folder(Reader& reader) {
+    Files files;
+    reader(files);
+    const auto context = std::make_shared<Context>();
+    return {Object::of(put_files(files, *context, "folder")), context};
+}
+
+constexpr const char* template_name = "saved.template.json";
+
+void save_template(Writer& writer, const Object& object, const Template& known) {
+    std::vector<std::string> parts;  // by their names in the folder
+    for (const PackagedFile& part : known.file.contents) parts.push_back(part.file.filename().string());
+    writer(known.file, parts, files_of_object(object, template_name));
+}
+
+Held restored_template(Reader& reader) {
+    TemplateFile file;
+    std::vector<std::string> parts;
+    Files files;
+    reader(file, parts, files);
+    if (parts.size() != file.contents.size()) fail_archive("has another number of parts than it says");
+    const auto context = std::make_shared<Context>();
+    const Path folder = put_files(files, *context, "template");
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        require_plain_name(parts[i], "pickle", "parts");
+        file.contents[i].file = folder / parts[i];
+    }
+    TemplateOptions options;
+    options.allow_outside = options.force_mesh = true;  // as whoever made it has allowed
+    Object object = Object::of(load_template(std::move(file), options));
+    object.write = [files = std::make_shared<const Files>(std::move(files))](const Path& path) {
+        for (const auto& [name, bytes] : *files) write_file(name == template_name ? path : path.parent_path() / name, bytes);
+    };
+    return {std::move(object), context};
+}
+
+Held restored(Type type, Reader& reader) {
+    switch (type) {
+        case Type::mesh:
+            return {restored_mesh(reader)};
+        case Type::polygons:
+            return {restored_polygons(reader)};
+        case Type::annotations:
+            return {restored_annotations(reader)};
+        case Type::document:
+            return {restored_document(reader)};
+        case Type::values:
+            return {restored_values(reader)};
+        case Type::coordinates:
+            return {restored_coordinates(reader)};
+        case Type::index_map:
+            return {restored_index_map(reader)};
+        case Type::folder:
+            return restored_folder(reader);
+        case Type::template_package:
+            return restored_template(reader);
+        case Type::text:
+            break;
+    }
+    std::string bytes;
+    reader(bytes);
+    return {Object::of(std::move(bytes))};
+}
+
+void save_data(Writer& writer, const Object& object) {
+    if (const auto mesh = object.as<MeshFile>())
+        writer(Type::mesh, soup_of(*mesh), mesh->triangle_polygon, writing_of(object, mesh->mesh.number_of_faces()));
+    else if (const auto soup = object.as<PolygonSoup>()) writer(Type::polygons, *soup, writing_of(object, soup->polygon_count()));
+    else if (const auto set = object.as<AnnotationSet>())
+        writer(Type::annotations, *set, bytes_of_object(object, file_name_of(object)));
+    // A graph is held against the annotations when it is read.
+    else if (object.as<RelationGraph>()) writer(Type::text, bytes_of_object(object, file_name_of(object)));
+    else if (const auto document = object.as<Json>()) writer(Type::document, to_text(*document), static_cast<bool>(object.write));
+    else if (const auto values = object.as<std::vector<double>>()) writer(Type::values, *values);
+    else if (const auto coordinates = object.as<Coordinates>())
+        writer(Type::coordinates), save_coordinates(writer, object, *coordinates);
+    else if (const auto map = object.as<IndexMap>()) writer(Type::index_map, *map, bytes_of_object(object, "map.json"));
+    else if (const auto folder = object.as<Path>()) writer(Type::folder, files_of_folder(*folder));
+    else if (const auto known = object.as<Template>()) writer(Type::template_package), save_template(writer, object, *known);
+    else if (const auto text = object.as<std::string>()) writer(Type::text, *text);
+    else throw Error(ErrorKind::usage, object.name, "is no object that can be pickled", "save it as a file");
+}
+
+}  // namespace
+
+std::string state_of(const Held& held) {
+    const Object& object = held.object;
+    Writer writer;
+    writer.bytes = magic;
+    writer(object.name, object.sha256);
+    save_data(writer, object);
+    return writer.bytes + sha256(writer.bytes);
+}
+
+Held held_of(const std::string& state) {
+    const std::string_view all = state;
+    if (!all.starts_with(magic)) fail_archive("is no object of this version of the toolkit");
+    if (all.size() < magic.size() + digest_size) fail_archive("is shorter than what it holds");
+    const std::string_view content = all.substr(0, all.size() - digest_size);
+    if (sha256(content) != all.substr(content.size())) fail_archive("is damaged (its checksum differs)");
+    Reader reader(content.substr(magic.size()));
+    std::string name, checksum;
+    Type type{};
+    reader(name, checksum, type);
+    Held held = restored(type, reader);
+    reader.end();
+    held.object.name = std::move(name);
+    held.object.sha256 = std::move(checksum);
+    return held;
+}
+
+}  // namespace ostraka::python

@@ -1,0 +1,92 @@
+#include "ostraka/core/run_apart.h"
+
+#include "ostraka/core/progress.h"
+
+#include <omp.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace ostraka {
+
+namespace {
+
+/// What the two threads share.
+struct Apart {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool done = false;
+    std::exception_ptr failure;
+    Watch watch;  ///< of the work, which is cancelled too
+};
+
+/// Work that nobody waits for any more. The process does not exit under it: libraries would be taken down while they compute.
+class Abandoned {
+public:
+    ~Abandoned() {
+        std::unique_lock lock(mutex_);
+        ended_.wait(lock, [&] { return count_ == 0; });
+    }
+    void add(int change) {
+        const std::lock_guard lock(mutex_);
+        count_ += change;
+        if (count_ == 0) ended_.notify_all();
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    int count_ = 0;
+};
+
+Abandoned& abandoned() {
+    static Abandoned all;
+    return all;
+}
+
+}  // namespace
+
+void run_apart(std::function<void()> work) {
+    Watch* const watch = current_watch();
+    if (watch == nullptr) return work();
+    check_cancelled();
+    abandoned().add(1);
+    const auto shared = std::make_shared<Apart>();
+    shared->watch.memory_limit = watch->memory_limit;
+    const int threads = omp_get_max_threads();
+    std::thread thread([shared, threads, work = std::move(work)]() mutable {
+        omp_set_num_threads(threads);  // OpenMP keeps it for each thread
+        const WatchScope watched(&shared->watch);
+        std::exception_ptr failure;
+        try {
+            work();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        work = nullptr;  // where it is abandoned, all it holds is freed here
+        {
+            const std::lock_guard lock(shared->mutex);
+            shared->failure = failure;
+            shared->done = true;
+            shared->changed.notify_all();
+        }
+        abandoned().add(-1);
+    });
+    std::unique_lock lock(shared->mutex);
+    while (!shared->changed.wait_for(lock, std::chrono::milliseconds(20), [&] { return shared->done; })) {
+        if (!watch->is_cancelled()) continue;
+        shared->watch.cancel();
+        lock.unlock();
+        thread.detach();
+        check_cancelled();
+    }
+    lock.unlock();
+    thread.join();
+    if (shared->failure) std::rethrow_exception(shared->failure);
+    check_cancelled();
+}
+
+}  // namespace ostraka

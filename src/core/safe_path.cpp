@@ -1,0 +1,90 @@
+#include "ostraka/core/safe_path.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+/// Where the first link of a resolved path leads that leads to nothing yet; the path itself where there is none.
+Path behind_dangling_link(const Path& place) {
+    std::error_code code;
+    Path begun;
+    for (auto part = place.begin(); part != place.end(); ++part) {
+        begun /= *part;
+        if (!std::filesystem::is_symlink(begun, code)) continue;
+        Path target = begun.parent_path() / std::filesystem::read_symlink(begun, code);
+        while (++part != place.end()) target /= *part;
+        return target;
+    }
+    return place;
+}
+
+/// Links resolved, also those to what is not there: who writes to one makes what it names. Empty where that fails (a circle of
+/// links).
+Path resolved(const Path& path) {
+    constexpr int most_links = 40;
+    std::error_code code;
+    Path whole = std::filesystem::absolute(path, code);
+    for (int links = 0; !code && links < most_links; ++links) {
+        const Path place = std::filesystem::weakly_canonical(whole, code);
+        if (code) return {};
+        whole = behind_dangling_link(place);
+        if (whole == place) return place.lexically_normal();
+    }
+    return {};
+}
+
+}  // namespace
+
+void require_file_name(const std::string& name, const std::string& where, const std::string& at) {
+    if (name.find('\0') != std::string::npos)
+        fail_input(where, "at " + at + ": the name holds a character that no file name can", "mend it");
+}
+
+void require_plain_name(const std::string& name, const std::string& where, const std::string& at) {
+    const bool is_plain = !name.empty() && name != "." && name != ".." && std::none_of(name.begin(), name.end(), [](char c) {
+        return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 32 || c == 127;
+    });
+    if (!is_plain)
+        fail_input(where, "at " + at + ": '" + printable(name, 100) + "' is no name of a file",
+                   "give a name without folders and control characters");
+}
+
+Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& at,
+                 const std::string& whose, const std::string& remedy) {
+    require_file_name(name, where, at);
+    const Path path(name);
+    if (path.is_absolute()) fail_input(where, "at " + at + ": '" + printable(name, 200) + "' is no relative name", remedy);
+    const Path home = folder.empty() ? Path(".") : folder;
+    if (name.empty() || *path.lexically_normal().begin() == ".." || !is_inside(home / path, home))
+        fail_input(where, "at " + at + ": '" + printable(name, 200) + "' leads out of " + whose, remedy);
+    return folder / path;
+}
+
+bool is_inside(const Path& path, const Path& folder) {
+    const Path place = resolved(path), home = resolved(folder.empty() ? Path(".") : folder);
+    if (place.empty() || home.empty()) return false;
+    const Path relative = place.lexically_relative(home);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+bool is_inside_any(const Path& path, const std::vector<Path>& folders) {
+    return std::any_of(folders.begin(), folders.end(), [&](const Path& folder) { return is_inside(path, folder); });
+}
+
+void require_writable_inside(const Path& file, const Path& folder) {
+    if (is_memory(file)) return;
+    const std::string remedy = "remove it, or name another folder";
+    if (!is_inside(file, folder)) fail_input(file.string(), "is a link that leads out of '" + folder.string() + "'", remedy);
+    std::error_code code;
+    const auto type = std::filesystem::status(file, code).type();
+    using Type = std::filesystem::file_type;
+    if (type != Type::not_found && type != Type::regular && type != Type::directory && type != Type::none)
+        fail_input(file.string(), "is a device or a pipe", remedy);
+}
+
+}  // namespace ostraka

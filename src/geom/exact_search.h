@@ -1,0 +1,111 @@
+// The library's search for shortest ways over a surface, so that it can be cancelled.
+#pragma once
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/memory.h"
+#include "ostraka/core/mesh.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/core/text.h"
+
+#include <CGAL/Surface_mesh_shortest_path.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory_resource>
+#include <string>
+
+namespace ostraka::detail {
+
+using PlainTraits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
+
+inline constexpr const char* coarser = "measure along edges, up to a limit, or on a coarser copy (ostraka mesh simplify)";
+
+/// The windows of a search come to at least 6 kB a face on a rough surface, where they soon end, and grow with the power 1.5 of
+/// the faces on a smooth one (measured: 11 kB a face at 40 thousand faces, 17 at 90, 31 at 400).
+inline void require_for_search(double faces) {
+    require_memory(std::max(6e3 * faces, 15 * std::pow(faces, 1.5)),
+                   "the exact shortest way over " + std::to_string(static_cast<long long>(faces)) + " faces", coarser);
+}
+
+/// Asks the watch, and now and then whether the memory is still enough.
+class SearchCheck {
+public:
+    void operator()() {
+        cancelled_();
+        if ((++steps_ & 0x3FFFFU) != 0) return;
+        if (const double limit = memory_limit(); limit > 0 && resident_memory() > limit)
+            fail_work("", "the exact shortest way takes more than the " + digits(limit / 1e9, 2) + " GB of memory there are",
+                      coarser);
+    }
+
+private:
+    CancelCheck cancelled_;
+    unsigned steps_ = 0;
+};
+
+/// Asks whenever a window is carried across an edge.
+struct WatchedTraits : PlainTraits {
+    [[nodiscard]] Construct_triangle_3_along_segment_2_flattening construct_triangle_3_along_segment_2_flattening_object() const {
+        check();
+        return PlainTraits::construct_triangle_3_along_segment_2_flattening_object();
+    }
+    mutable SearchCheck check;
+};
+
+/// Where the events of a search lie: the library forgets those that wait when it is interrupted, and here they end all the same.
+/// One search at a time in each thread.
+class EventMemory {
+public:
+    EventMemory() : outer_(current) { current = this; }
+    ~EventMemory() { current = outer_; }
+    EventMemory(const EventMemory&) = delete;
+    EventMemory& operator=(const EventMemory&) = delete;
+
+    static void* take(std::size_t size) { return current->memory_.allocate(size); }
+    static void give_back(void* place, std::size_t size) { current->memory_.deallocate(place, size); }
+
+private:
+    inline static thread_local EventMemory* current = nullptr;
+    EventMemory* outer_;
+    std::pmr::unsynchronized_pool_resource memory_;
+};
+
+}  // namespace ostraka::detail
+
+/// The library's event, whose memory is that of the search.
+template <>
+struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostraka::detail::WatchedTraits> {
+    using Traits = ostraka::detail::WatchedTraits;
+    using Segment_2 = Traits::Segment_2;
+    using FT = Traits::FT;
+    enum Expansion_type { LEFT_CHILD, RIGHT_CHILD, PSEUDO_SOURCE };
+
+    Cone_tree_node<Traits>* m_parent;
+    FT m_distanceEstimate;
+    Expansion_type m_type;
+    Segment_2 m_windowSegment;
+    bool m_cancelled = false;
+
+    Cone_expansion_event(Cone_tree_node<Traits>* parent, const FT& distance, Expansion_type type, const Segment_2& window = {})
+        : m_parent(parent), m_distanceEstimate(distance), m_type(type), m_windowSegment(window) {}
+
+    static void* operator new(std::size_t size) { return ostraka::detail::EventMemory::take(size); }
+    static void operator delete(void* place, std::size_t size) { ostraka::detail::EventMemory::give_back(place, size); }
+};
+
+namespace ostraka::detail {
+
+/// Shortest ways from sources over a mesh. Throws Error (failure) where they would take too much memory. Building may throw Error
+/// (cancelled, failure): it is of no use then.
+class ExactSearch : private EventMemory, public CGAL::Surface_mesh_shortest_path<WatchedTraits> {
+public:
+    explicit ExactSearch(const Mesh& mesh) : Surface_mesh_shortest_path(checked(mesh)) {}
+
+private:
+    static const Mesh& checked(const Mesh& mesh) {
+        require_for_search(static_cast<double>(mesh.number_of_faces()));
+        return mesh;
+    }
+};
+
+}  // namespace ostraka::detail

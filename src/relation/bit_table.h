@@ -1,0 +1,43 @@
+// Which of many belong together, a bit for each pair. Private to the module.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace ostraka::detail {
+
+/// A square table of bits.
+class BitTable {
+public:
+    BitTable(std::size_t rows, std::size_t columns) : words_((columns + 63) / 64), bits_(rows * words_, 0) {}
+    [[nodiscard]] std::uint64_t* row(std::size_t r) { return bits_.data() + r * words_; }
+    [[nodiscard]] const std::uint64_t* row(std::size_t r) const { return bits_.data() + r * words_; }
+    [[nodiscard]] bool test(std::size_t r, std::size_t c) const { return (row(r)[c / 64] >> (c % 64) & 1U) != 0; }
+    void set(std::size_t r, std::size_t c) { row(r)[c / 64] |= std::uint64_t{1} << (c % 64); }
+    void clear(std::size_t r, std::size_t c) { row(r)[c / 64] &= ~(std::uint64_t{1} << (c % 64)); }
+    void fill(std::size_t r) { std::fill_n(row(r), words_, ~std::uint64_t{0}); }
+    void zero(std::size_t r) { std::fill_n(row(r), words_, 0); }
+    void keep(std::size_t r, const std::vector<std::uint64_t>& mask) { keep(r, mask, 0, words_); }
+    void keep(std::size_t r, const std::vector<std::uint64_t>& mask, std::size_t first, std::size_t last) {
+        for (std::size_t w = first; w < last; ++w) row(r)[w] &= mask[w];
+    }
+    void add(std::size_t r, const std::uint64_t* mask) { add(r, mask, 0, words_); }
+    void add(std::size_t r, const std::uint64_t* mask, std::size_t first, std::size_t last) {
+        for (std::size_t w = first; w < last; ++w) row(r)[w] |= mask[w];
+    }
+    [[nodiscard]] std::size_t words() const { return words_; }
+    template <class Visit>
+    void each(std::size_t r, Visit&& visit) const {
+        for (std::size_t w = 0; w < words_; ++w)
+            for (std::uint64_t left = row(r)[w]; left != 0; left &= left - 1)
+                visit(w * 64 + static_cast<std::size_t>(std::countr_zero(left)));
+    }
+
+private:
+    std::size_t words_;
+    std::vector<std::uint64_t> bits_;
+};
+
+}  // namespace ostraka::detail

@@ -1,0 +1,153 @@
+// Meshes, clouds and exchange formats as subjects.
+#include "subjects.h"
+
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/point_cloud/point_cloud.h"
+
+#include <sstream>
+
+namespace ostraka::fuzz {
+
+namespace {
+
+constexpr const char* medit = R"(MeshVersionFormatted 2
+Dimension 3
+Vertices
+5
+0 0 0 0
+1 0 0 0
+0 1 0 0
+0 0 1 0
+1 1 1 0
+Triangles
+2
+1 2 3 0
+2 3 5 0
+Tetrahedra
+2
+1 2 3 4 1
+2 3 4 5 1
+End
+)";
+
+constexpr const char* vtu = R"(<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points>
+<Cells><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3 1 2 3 4</DataArray>
+<DataArray type="Int32" Name="offsets" format="ascii">4 8</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray></Cells>
+</Piece></UnstructuredGrid></VTKFile>
+)";
+
+std::string points_text(const Mesh& mesh, const char* before, std::size_t every) {
+    std::ostringstream text;
+    std::size_t i = 0;
+    for (const auto vertex : mesh.vertices())
+        if (i++ % every == 0) text << before << mesh.point(vertex) << '\n';
+    return text.str();
+}
+
+std::string read_cloud(const Path& file) {
+    const auto cloud = read_point_cloud(file);
+    if (!cloud) return "a file with faces";
+    const std::size_t normals = estimate_normals(cloud->points).size();
+    return std::to_string(cloud->points.size()) + " points, " + std::to_string(normals) + " normals";
+}
+
+void add_call(std::vector<Subject>& subjects, const std::string& name, std::vector<SubjectFile> files, Target target,
+              const std::string& call) {
+    Subject subject;
+    subject.name = name;
+    subject.files = std::move(files);
+    subject.files.push_back({"call.json", {}, call});
+    subject.folders = {"out"};
+    subject.targets = {std::move(target)};
+    subject.act = call_of_file;
+    subjects.push_back(std::move(subject));
+}
+
+/// Recipes of the project, on the meshes that are there.
+void add_recipes(const Path& project, std::vector<Subject>& subjects) {
+    for (const std::string& name : files_in(project / "data")) {
+        if (!name.ends_with(".recipe.json")) continue;
+        const std::string mesh = name.substr(0, name.find_first_of(".-")) + ".ply";
+        if (!file_exists(project / "data" / mesh)) continue;
+        add_call(subjects, "recipe " + name, {{name, project / "data" / name}, {mesh, project / "data" / mesh}}, {"recipe", name},
+                 call_text("annotation apply",
+                           R"({"mesh":")" + mesh + R"(","recipe":")" + name + R"(","output":"out/out.ant.json"})"));
+    }
+}
+
+}  // namespace
+
+void make_formats(const Path& project) {
+    const Path inputs = project / "data" / "conformance" / "inputs";
+    make_folder("meshes");
+    const MeshFile sphere = read_mesh(inputs / "sphere.ply"), box = read_mesh(inputs / "box.ply");
+    for (const char* ending : {".obj", ".off", ".stl", ".glb"}) {
+        write_mesh(Path("meshes") / (std::string("sphere") + ending), sphere.mesh, sphere.extras);
+        write_mesh(Path("meshes") / (std::string("box") + ending), box.mesh, box.extras);
+    }
+    WriteOptions ascii;
+    ascii.encoding = Encoding::ascii;
+    MeshExtras coloured = box.extras;
+    coloured.vertex_colours.assign(box.mesh.number_of_vertices(), {200, 100, 50, 255});
+    coloured.face_labels.assign(box.mesh.number_of_faces(), 1);
+    write_mesh("meshes/box-text.ply", box.mesh, coloured, ascii);
+    write_mesh("meshes/box-text.stl", box.mesh, {}, ascii);
+    write_mesh("meshes/sphere.ply", sphere.mesh, sphere.extras);
+    write_file("meshes/two.mesh", medit);
+    write_file("meshes/two.vtu", vtu);
+    write_file("meshes/quads.obj", read_file(inputs / "box-of-quads.obj"));
+    make_folder("clouds");
+    write_file("clouds/points.xyz", points_text(sphere.mesh, "", 1));
+    write_file("clouds/points.obj", points_text(sphere.mesh, "v ", 2));
+    write_file("clouds/points.ply", read_file(inputs / "points-only.ply"));
+    make_folder("exchange");
+    Stopper stopper;
+    const auto quoted = [](const Path& file) { return "\"" + file.string() + "\""; };
+    for (const char* name : {"a.csv", "a.tps", "a.pp", "a.mrk.json", "a.fcsv", "a.jsonld", "a.glb", "a.ant", "a.fct"})
+        call_operation("annotation export",
+                       R"({"mesh":)" + quoted(inputs / "box.ply") + R"(,"annotations":)" + quoted(inputs / "box.ant.json") +
+                           R"(,"output":"exchange/)" + name + "\"}",
+                       stopper);
+    for (const char* name : {"a.ttl", "a.rdf"})
+        call_operation("vocabulary convert",
+                       R"({"input":)" + quoted(inputs / "terracotta.vocabulary.json") + R"(,"output":"exchange/)" + name + "\"}",
+                       stopper);
+}
+
+void add_formats(const Path& project, const Path& seeds, std::vector<Subject>& subjects) {
+    const Path inputs = project / "data" / "conformance" / "inputs";
+    for (const std::string& name : files_in(seeds / "meshes")) {
+        const std::string file = R"({"input":")" + name + "\"", kind = extension(name).substr(1);
+        const SubjectFile seed{name, seeds / "meshes" / name};
+        add_call(subjects, "info " + name, {seed}, {kind, name}, call_text("mesh info", file + "}"));
+        add_call(subjects, "convert " + name, {seed}, {kind, name},
+                 call_text("mesh convert", file + R"(,"output":"out/out.ply"})"));
+        add_call(subjects, "repair " + name, {seed}, {kind, name},
+                 call_text("mesh repair", file + R"(,"output":"out/out.ply"})"));
+    }
+    for (const std::string& name : files_in(seeds / "clouds")) {
+        Subject subject;
+        subject.name = "cloud " + name;
+        subject.files = {{name, seeds / "clouds" / name}};
+        subject.targets = {{"cloud", name}};
+        subject.act = [name](Stopper&) { return read_cloud(name); };
+        subjects.push_back(std::move(subject));
+    }
+    for (const std::string& name : files_in(seeds / "exchange")) {
+        const SubjectFile seed{name, seeds / "exchange" / name};
+        if (name.ends_with(".ttl") || name.ends_with(".rdf"))
+            add_call(subjects, "convert " + name, {seed}, {"exchange", name},
+                     call_text("vocabulary convert", R"({"input":")" + name + R"(","output":"out/out.vocabulary.json"})"));
+        else
+            add_call(
+                subjects, "import " + name, {seed, {"box.ply", inputs / "box.ply"}}, {"exchange", name},
+                call_text("annotation import", R"({"mesh":"box.ply","input":")" + name + R"(","output":"out/out.ant.json"})"));
+    }
+    add_recipes(project, subjects);
+}
+
+}  // namespace ostraka::fuzz
