@@ -415,7 +415,7 @@ private:
         if (ended_.wait_for(lock, patience, [this] { return has_ended_; })) return;
         abandon_outputs();
         kill_children();
-        constexpr std::string_view message = "ostraka: cancelled (nothing was written)\n";
+        constexpr std::string_view message = "ostraka: cancelled (what was not complete is gone)\n";
         static_cast<void>(::write(2, message.data(), message.size()) == 0);
         std::_Exit(cancelled);
     }

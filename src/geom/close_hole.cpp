@@ -10,9 +10,9 @@ namespace {
 
 /// Asks the watch at every step of the library.
 struct WatchedFilling : CGAL::Polygon_mesh_processing::Hole_filling::Default_visitor {
-    void quadratic_step() { check(); }
-    void cubic_step() { check(); }
-    CancelCheck check;
+    void quadratic_step() const { check(); }
+    void cubic_step() const { check(); }
+    mutable CancelCheck check;
 };
 
 }  // namespace

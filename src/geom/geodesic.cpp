@@ -3,6 +3,7 @@
 #include "exact_search.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/run_apart.h"
 #include "ostraka/geom/shortest_path.h"
 #include "surface_patch.h"
 
@@ -63,6 +64,19 @@ double distance_to_face(const Mesh& mesh, Face face, const Point& p) {
     return distance(point_at(mesh, face, weights), p);
 }
 
+/// search(patch) with the patch, which it may not outlive. What a search over a large patch has taken is given back slowly: it is
+/// apart, so that nobody waits for that who is cancelled. So it must own all that it works on beside the patch.
+template <class Search>
+auto searched(SurfacePatch patch, Search search) {
+    using Job = std::pair<SurfacePatch, decltype(search(patch))>;
+    const auto work = [search](Job& job) { job.second = search(job.first); };
+    constexpr std::size_t large = 20000;
+    Job job(std::move(patch), {});
+    if (job.first.faces.size() >= large) return run_apart_on(std::move(job), work);
+    work(job);
+    return job;
+}
+
 }  // namespace
 
 std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start, double limit) {
@@ -112,17 +126,26 @@ std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index
     } else {
         faces = grow_faces(mesh, start, [](Face) { return true; });
     }
-    const SurfacePatch patch = cut_out(mesh, std::move(faces), places.front());
-    ExactSearch search(patch.mesh);
-    for (const Vertex v : patch.mesh.vertices())
-        if (result[patch.vertices[v]] == 0) search.add_source_point(v);
-    search.build_sequence_tree();
+    SurfacePatch whole = cut_out(mesh, std::move(faces), places.front());
+    std::vector<Vertex> from;
+    for (const Vertex v : whole.mesh.vertices())
+        if (result[whole.vertices[v]] == 0) from.push_back(v);
+    const auto [patch, lengths] = searched(std::move(whole), [from](const SurfacePatch& own) {
+        ExactSearch search(own.mesh);
+        for (const Vertex v : from) search.add_source_point(v);
+        search.build_sequence_tree();
+        std::vector<double> list;
+        CancelCheck check;
+        for (const Vertex v : own.mesh.vertices()) {
+            check();
+            list.push_back(search.shortest_distance_to_source_points(v).first);
+        }
+        return list;
+    });
     const std::vector<double> along_edges = edge_distances(mesh, gates, limit);
     for (std::size_t v = 0; v < result.size(); ++v) result[v] = std::min(result[v], along_edges[v]);
-    CancelCheck check;
     for (const Vertex v : patch.mesh.vertices()) {
-        check();
-        const double exact = patch.scale * search.shortest_distance_to_source_points(v).first;
+        const double exact = patch.scale * lengths[v];
         if (exact >= 0 && exact <= limit) result[patch.vertices[v]] = std::min(result[patch.vertices[v]], exact);
     }
     return result;
@@ -143,16 +166,33 @@ double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const Surfac
     const auto met = [&](Face face) {  // a face whose distances are no numbers is kept
         return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
     };
-    const SurfacePatch patch = cut_out(mesh, grow_faces(mesh, start, met), from.point);
-    ExactSearch search(patch.mesh);
-    const auto source = place_in(mesh, patch, from, start.front());
-    search.add_source_point(source.first, source.second);
-    const auto target = place_in(mesh, patch, to, end.front());
-    const double exact = patch.scale * search.shortest_distance_to_source_points(target.first, target.second).first;
+    SurfacePatch whole = cut_out(mesh, grow_faces(mesh, start, met), from.point);
+    const auto source = place_in(mesh, whole, from, start.front()), target = place_in(mesh, whole, to, end.front());
+    const auto [patch, length] = searched(std::move(whole), [source, target](const SurfacePatch& own) {
+        ExactSearch search(own.mesh);
+        search.add_source_point(source.first, source.second);
+        return static_cast<double>(search.shortest_distance_to_source_points(target.first, target.second).first);
+    });
+    const double exact = patch.scale * length;
     return exact >= 0 ? std::min(exact, shortest) : shortest;
 }
 
 namespace {
+
+/// What a path of a patch runs through: vertices, and halfedges at a share of their length.
+struct PathSteps {
+    struct Step {
+        Vertex vertex;
+        Halfedge halfedge;
+        double along = 0;
+    };
+    std::vector<Step> steps;
+    double length = -1;
+
+    void operator()(Mesh::Vertex_index v) { steps.push_back({v, Mesh::null_halfedge(), 0}); }
+    void operator()(Mesh::Halfedge_index h, Kernel::FT along) { steps.push_back({Mesh::null_vertex(), h, along}); }
+    void operator()(Mesh::Face_index, PathTraits::Barycentric_coordinates) {}  // one of the ends, which is known
+};
 
 /// The places that a path of a patch runs through, on the whole mesh.
 struct PathPlaces {
@@ -175,7 +215,6 @@ struct PathPlaces {
         }
         add(node_at(mesh, place));
     }
-    void operator()(Mesh::Face_index, PathTraits::Barycentric_coordinates) {}  // one of the ends, which is known
 };
 
 }  // namespace
@@ -197,14 +236,22 @@ std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& 
     const auto met = [&](Face face) {
         return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
     };
-    const SurfacePatch patch = cut_out(mesh, grow_faces(mesh, start, met), from.point);
-    ExactSearch search(patch.mesh);
+    SurfacePatch whole = cut_out(mesh, grow_faces(mesh, start, met), from.point);
     // From the end on, so that the sequence runs from the start.
-    const auto source = place_in(mesh, patch, to, end.front());
-    search.add_source_point(source.first, source.second);
-    const auto target = place_in(mesh, patch, from, start.front());
+    const auto source = place_in(mesh, whole, to, end.front()), target = place_in(mesh, whole, from, start.front());
+    const auto [patch, path] = searched(std::move(whole), [source, target](const SurfacePatch& own) {
+        ExactSearch search(own.mesh);
+        search.add_source_point(source.first, source.second);
+        PathSteps steps;
+        steps.length = search.shortest_path_sequence_to_source_points(target.first, target.second, steps).first;
+        return steps;
+    });
     PathPlaces places{mesh, patch, {}};
-    const double exact = patch.scale * search.shortest_path_sequence_to_source_points(target.first, target.second, places).first;
+    for (const auto& step : path.steps) {
+        if (step.halfedge == Mesh::null_halfedge()) places(step.vertex);
+        else places(step.halfedge, step.along);
+    }
+    const double exact = patch.scale * path.length;
     if (exact >= 0 && exact <= sum) {
         std::vector<SurfaceNode> nodes{from};
         const auto add = [&](const SurfaceNode& node) {

@@ -1,8 +1,8 @@
 #include "ostraka/geom/insert_curves.h"
 
 #include "face_cutter.h"
-#include "ostraka/geom/shortest_path.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/geom/shortest_path.h"
 
 #include <algorithm>
 #include <cmath>

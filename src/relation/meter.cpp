@@ -219,12 +219,23 @@ void add_contacts(const Mesh& mesh, const AnnotationSet& set, Contacts& found) {
         std::set_difference(regions[f].begin(), regions[f].end(), regions[g].begin(), regions[g].end(), std::back_inserter(of_f));
         std::set_difference(regions[g].begin(), regions[g].end(), regions[f].begin(), regions[f].end(), std::back_inserter(of_g));
         const Vector3d p = eigen(mesh.point(mesh.source(h))), q = eigen(mesh.point(mesh.target(h)));
+        const auto add = [&](Cloud& cloud) {
+            cloud.points.emplace_back((p + q) / 2);
+            cloud.weights.push_back((q - p).norm());
+        };
+        if (of_f.size() * of_g.size() > found.size()) {  // fewer pairs are asked for than meet here
+            const auto holds = [](const std::vector<int>& list, int id) {
+                return std::binary_search(list.begin(), list.end(), id);
+            };
+            for (auto& [pair, cloud] : found)
+                if ((holds(of_f, pair.first) && holds(of_g, pair.second)) ||
+                    (holds(of_g, pair.first) && holds(of_f, pair.second)))
+                    add(cloud);
+            continue;
+        }
         for (const int a : of_f)
             for (const int b : of_g)
-                if (const auto entry = found.find(std::minmax(a, b)); entry != found.end()) {
-                    entry->second.points.emplace_back((p + q) / 2);
-                    entry->second.weights.push_back((q - p).norm());
-                }
+                if (const auto entry = found.find(std::minmax(a, b)); entry != found.end()) add(entry->second);
     }
 }
 

@@ -1,9 +1,9 @@
 // A template's parts, each by itself and all together.
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/safe_path.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/core/npy.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/relation/rules.h"

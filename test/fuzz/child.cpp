@@ -181,6 +181,8 @@ std::string to_string(Outcome outcome) {
     return names[static_cast<std::size_t>(outcome)];
 }
 
+bool measures_memory() { return !is_sanitized; }
+
 bool can_confine() { return landlock_version() >= 1; }
 
 Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits) {

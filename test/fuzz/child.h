@@ -56,6 +56,9 @@ struct Limits {
     double memory = 0;    ///< bytes, what the process itself takes included
 };
 
+/// Whether memory is limited and measured: sanitizers take too much of their own.
+bool measures_memory();
+
 /// Whether the system can keep a process from writing elsewhere (Linux's Landlock).
 bool can_confine();
 

@@ -18,7 +18,8 @@ namespace {
 
 constexpr const char* usage =
     R"(ostraka_fuzz --seed N (--runs K | --seconds S) [--first I] [--kind NAME] [--keep FOLDER] [--limit S]
-ostraka_fuzz [--say] FILE...   what was kept (or folders of it), once more; --say: with all that it has to say
+ostraka_fuzz [--say] [--expected] FILE...   what was kept (or folders of it), once more; --say: with all that it has to say;
+                               --expected: what comes of each file is what its name begins with
 ostraka_fuzz --kinds           kinds of files
 )";
 
@@ -29,7 +30,7 @@ struct Words {
     double seconds = 0, limit = 10;
     std::string kind;
     Path keep;
-    bool kinds = false, say = false;
+    bool kinds = false, say = false, expected = false;
     std::vector<Path> files;
 };
 
@@ -37,8 +38,8 @@ Words words_of_call(const std::vector<std::string>& given) {
     Words words;
     for (std::size_t i = 0; i < given.size(); ++i) {
         const std::string& flag = given[i];
-        if (flag == "--kinds" || flag == "--say") {
-            (flag == "--say" ? words.say : words.kinds) = true;
+        if (flag == "--kinds" || flag == "--say" || flag == "--expected") {
+            (flag == "--say" ? words.say : flag == "--kinds" ? words.kinds : words.expected) = true;
             continue;
         }
         if (!flag.starts_with("--")) {
@@ -185,7 +186,9 @@ int repeat(Arena& arena, const std::vector<Subject>& subjects, const Words& word
             for (const std::string& name : files_in(given))
                 if (name.ends_with(".json")) files.push_back(given / name);
     Tally tally;
+    bool as_expected = true;
     for (const Path& file : files) {
+        if (words.expected && !measures_memory() && file.filename().string().starts_with("memory")) continue;
         const Finding finding = read_finding(file);
         const auto subject =
             std::find_if(subjects.begin(), subjects.end(), [&](const Subject& s) { return s.name == finding.subject; });
@@ -194,10 +197,11 @@ int repeat(Arena& arena, const std::vector<Subject>& subjects, const Words& word
         const Verdict verdict = arena.run(*subject, finding.changes, words.limit);
         tally.add(verdict, finding.kind);
         tell(file.filename().string(), {&*subject, finding.kind, finding.changes}, verdict, arena.said());
+        as_expected = as_expected && file.filename().string().starts_with(to_string(verdict.outcome));
         if (words.say) std::cout << arena.said() << std::endl;
     }
     tally.print(0);
-    return tally.is_clean() ? 0 : 1;
+    return (words.expected ? as_expected && !files.empty() : tally.is_clean()) ? 0 : 1;
 }
 
 int run(const Words& words) {

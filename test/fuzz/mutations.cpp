@@ -122,6 +122,21 @@ const std::vector<std::string>& hostile_texts() {
     return texts;
 }
 
+/// Those that lead to canaries, from folders of any depth.
+std::vector<std::string> make_leading_out() {
+    std::vector<std::string> texts;
+    for (const char* name : {"secret.ply", "secret.txt", "secret.json", "made"}) {
+        texts.push_back(std::string(canaries_mark) + "/" + name);
+        for (const char* way : {"../canaries/", "../../canaries/", "../../../canaries/", "link-out/", "../link-out/"})
+            texts.push_back(std::string(way) + name);
+    }
+    return texts;
+}
+const std::vector<std::string>& leading_out() {
+    static const std::vector<std::string> texts = make_leading_out();
+    return texts;
+}
+
 // ---- bytes ----
 
 std::size_t stretch(const std::string& text, std::size_t at, Dice& dice) {
@@ -236,7 +251,7 @@ JsonValue other_value(const JsonValue& old, Dice& dice, JsonAllocator& a) {
                 return JsonValue(static_cast<int>(number));
             else return JsonValue(number);
         case 1:
-            return json_string(dice.pick(hostile_texts()), a);
+            return json_string(dice.pick(dice.once_in(2) ? leading_out() : hostile_texts()), a);
         case 2:
             return JsonValue(rapidjson::kNullType);
         case 3:

@@ -186,6 +186,7 @@ std::vector<Subject> list_subjects(const Path& project, const Path& seeds) {
     add_studies(project, seeds, subjects);
     add_sessions(seeds, subjects);
     add_kits(seeds, subjects);
+    add_wrongdoer(subjects);
     return subjects;
 }
 

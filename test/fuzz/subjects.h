@@ -47,6 +47,8 @@ void add_formats(const Path& project, const Path& seeds, std::vector<Subject>& s
 void add_studies(const Path& project, const Path& seeds, std::vector<Subject>& subjects);
 void add_sessions(const Path& seeds, std::vector<Subject>& subjects);
 void add_kits(const Path& seeds, std::vector<Subject>& subjects);
+/// What does wrong all that can be found, as the file what.txt says: a test of the finding.
+void add_wrongdoer(std::vector<Subject>& subjects);
 
 void make_formats(const Path& project);
 void make_studies(const Path& project);
