@@ -512,7 +512,7 @@ private:
         if (!program.wait([&] { return watch.is_cancelled(); })) {
             program.signal(SIGTERM);
             const Stopwatch since;
-            program.wait([&] { return since.seconds() > 2; });
+            program.wait([&] { return since.seconds() > 0.4; });  // then it is killed
             throw Error(ErrorKind::cancelled, "", "cancelled", "nothing was written");
         }
         const int exit_code = program.code();

@@ -59,7 +59,9 @@ ParameterValue case_value(const JsonValue& value, std::size_t number) {
     return made;
 }
 
-ParameterValue file_value(const Path& file) {
+/// Named as any other file of the study: relative to its folder.
+ParameterValue file_value(const Study& study, const Path& found) {
+    const Path file = study.relative(found);
     ParameterValue made;
     made.label = file.stem().string();
     made.members[""] = text_value(file.string());
@@ -92,7 +94,7 @@ StudyParameter read_parameter(const Study& study, const std::string& name, const
         study.require_readable(before_wildcards(pattern), place + "/files");
         for (const Path& file : matching_files(pattern)) {
             study.require_readable(file, place + "/files");
-            parameter.values.push_back(file_value(file));
+            parameter.values.push_back(file_value(study, file));
         }
         if (parameter.values.empty())
             fail_input(study.at(place + "/files"), "no file is called '" + pattern.string() + "'",

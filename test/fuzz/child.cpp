@@ -19,6 +19,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <iostream>
 #include <new>
 #include <thread>
@@ -133,17 +134,36 @@ int act_and_tell(const Act& act, Stopper& stopper) {
     ::_exit(act_and_tell(act, stopper));
 }
 
-/// Waits for it, and ends it when it takes too long by the clock, waiting for something that never comes.
+/// Whether one of its threads has work, whether the machine lets it or not.
+bool is_at_work(pid_t child) {
+    std::error_code code;
+    const Path tasks = Path("/proc") / std::to_string(child) / "task";
+    for (std::filesystem::directory_iterator task(tasks, code), end; !code && task != end; task.increment(code)) {
+        std::ifstream stream(task->path() / "stat");
+        std::string text;
+        std::getline(stream, text);
+        const std::size_t behind_name = text.rfind(") ");
+        if (behind_name != std::string::npos && (text[behind_name + 2] == 'R' || text[behind_name + 2] == 'D')) return true;
+    }
+    return false;
+}
+
+/// Waits for it, and ends it when it has waited too long for something that never comes. What works is ended by its limits.
 int wait_for(pid_t child, double seconds, rusage& used) {
     using Clock = std::chrono::steady_clock;
+    constexpr double between = 0.25;
+    double idle = 0, looked = 0;
     const auto begin = Clock::now();
-    bool told = false;
     for (unsigned pause = 200;; pause = std::min(pause * 2, 5000U)) {
         int status = 0;
         if (::wait4(child, &status, WNOHANG, &used) == child) return status;
         const double gone = std::chrono::duration<double>(Clock::now() - begin).count();
-        if (!told && gone > 3 * seconds) ::kill(child, SIGTERM), told = true;
-        if (gone > 3 * seconds + 2 * grace) ::kill(-child, SIGKILL), ::kill(child, SIGKILL);
+        if (gone > looked + between) {
+            idle = is_at_work(child) ? 0 : idle + gone - looked;
+            looked = gone;
+            if (idle > seconds) ::kill(child, SIGTERM);
+            if (idle > seconds + grace) ::kill(-child, SIGKILL), ::kill(child, SIGKILL);
+        }
         ::usleep(pause);
     }
 }

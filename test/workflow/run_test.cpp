@@ -461,3 +461,21 @@ TEST(RunStudy, SeveralProcessesRunIntoOneFolder) {
     for (auto* files : {&together, &alone}) std::erase_if(*files, [](const auto& one) { return one.first == "run.json"; });
     EXPECT_EQ(together, alone);
 }
+
+TEST(StudyPlan, FilesOfAPatternAreRelativeToTheStudy) {
+    const Scratch scratch;
+    std::filesystem::create_directories(scratch / "f/scans");
+    for (const char* name : {"f/scans/a.ply", "f/scans/b.ply"})
+        ASSERT_EQ(run_command("mesh make sphere " + (scratch / name).string() + " --vertices 400").code, 0);
+    write_file(scratch / "f/s.study.json", study_text_of(R"("parameters": {"scan": {"files": "scans/*.ply"}},
+        "steps": {"info": {"operation": "mesh info", "with": {"input": "${scan}"}}})"));
+    const auto run = [&](const std::string& before, const std::string& file) {
+        return run_command("run " + file + " --dry-run --json", "cd " + (scratch / before).string() + ";");
+    };
+    for (const auto& [folder, file] : {std::pair("f", "s.study.json"), std::pair(".", "f/s.study.json")}) {
+        const auto result = run(folder, file);
+        ASSERT_EQ(result.code, 0) << result.err;
+        EXPECT_EQ(parse_json(result.out, "report")["result"]["instances"].GetInt(), 2);
+    }
+    EXPECT_EQ(plan_of(scratch / "f/s.study.json").instances[0].inputs[0].file, scratch / "f/scans/a.ply");
+}
