@@ -65,6 +65,11 @@ Collection from_folder(const Path& folder) {
     for (const std::string& name : files_in(folder, &others)) {
         const Path file = folder / name;
         if (name.front() == '.') continue;
+        if (!is_memory(folder) && !is_inside(file, folder)) {
+            if (is_object_file(file))
+                collection.left_out.emplace_back(printable(name, 60), "is a link that leads out of the folder");
+            continue;
+        }
         if (name.ends_with(markup_ending)) markups[name.substr(0, name.size() - std::string(markup_ending).size())] = file;
         else if (name.ends_with(".ant.json")) annotations.insert(name);
         else if (std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end())

@@ -53,6 +53,9 @@ std::string file_of(const ConformanceCase& one, const std::string& what) {
     return slash == std::string::npos ? output->second : (Path(output->second) / what.substr(slash + 1)).string();
 }
 
+/// Flags of all commands, which are for who runs the kit.
+constexpr const char* callers_flags[]{"json", "show", "quiet", "threads", "memory", "help"};
+
 /// A name below a folder that is new, so that it holds no links.
 void require_below(const std::string& name, const std::string& where, const std::string& at) {
     require_file_name(name, where, at);
@@ -63,6 +66,25 @@ void require_below(const std::string& name, const std::string& where, const std:
                    "give a relative name without '..'");
 }
 
+/// Names become flags of a command line: no other text, and none of the flags that all commands have.
+void require_setting(const std::string& name, const std::string& where, const std::string& at) {
+    const bool is_plain = !name.empty() && name[0] >= 'a' && name[0] <= 'z' && std::all_of(name.begin(), name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    });
+    const bool is_common =
+        std::any_of(std::begin(callers_flags), std::end(callers_flags), [&](const char* flag) { return name == flag; });
+    if (!is_plain || is_common) fail_input(where, "at " + at + ": is no option that a case may set", "leave it out");
+}
+
+/// Values that stand without their names on a command line do not begin as flags do.
+void require_no_flag(const JsonValue& value, const std::string& where, const std::string& at) {
+    const auto begins_as_one = [](const JsonValue& one) {
+        return one.IsString() && one.GetStringLength() > 1 && one.GetString()[0] == '-' && !number_of(text_of(one));
+    };
+    const bool is_wrong = begins_as_one(value) || (value.IsArray() && std::any_of(value.Begin(), value.End(), begins_as_one));
+    if (is_wrong) fail_input(where, "at " + at + ": begins with a dash", "write it otherwise");
+}
+
 /// What a case names lies in the kit or in the folder of the case, and it sets nothing that is the caller's to set.
 void check_names(const ConformanceKit& kit, const ConformanceCase& one, const Call& call, const std::string& where) {
     const std::string remedy = "put the file into the kit";
@@ -71,10 +93,12 @@ void check_names(const ConformanceKit& kit, const ConformanceCase& one, const Ca
     };
     for (const auto& member : one.with->GetObject()) {
         const std::string name = text_of(member.name), at = "/with/" + printable(name, 60);
+        require_setting(name, where, at);
         const Slot* slot = call.parameters().slot(name);
         const Option* option = slot == nullptr ? call.parameters().options.find(name) : nullptr;
         if (option != nullptr && !option->from_files)
             fail_input(where, "at " + at + ": only the caller may set it", "leave it out");
+        if (option != nullptr && option->is_positional) require_no_flag(member.value, where, at);
         if (slot == nullptr) continue;
         if (slot->role == Role::output) fail_input(where, "at " + at + ": is an output", "name it in 'outputs'");
         const auto check = [&](const JsonValue& value) {
@@ -89,7 +113,14 @@ void check_names(const ConformanceKit& kit, const ConformanceCase& one, const Ca
         if (member.value.IsArray())
             for (const auto& value : member.value.GetArray()) check(value);
     }
-    for (const auto& [output, file] : one.outputs) require_below(file, where, "/outputs/" + printable(output, 60));
+    for (const auto& [output, file] : one.outputs) {
+        const std::string at = "/outputs/" + printable(output, 60);
+        require_setting(output, where, at);
+        const Slot* slot = call.parameters().slot(output);
+        if ((slot != nullptr && slot->role != Role::output) || call.parameters().options.find(output) != nullptr)
+            fail_input(where, "at " + at + ": is no output", "name it in 'with'");
+        require_below(file, where, at);
+    }
     const Path expected = Path("expected") / one.id;
     require_in_kit((expected / "report.json").string(), "/id");
     for (const Comparison& comparison : one.comparisons) {
@@ -183,6 +214,9 @@ Json settings_of(const ConformanceKit& kit, const ConformanceCase& one, const Pa
         add_member(settings, name, std::move(value), allocator);
     }
     for (const auto& [output, file] : one.outputs) add_member(settings, output, (folder / file).string(), allocator);
+    // Where nobody names the folder of a run it is made where one stands.
+    if (one.operation == "run" && !one.outputs.contains("output"))
+        add_member(settings, "output", (folder / "unnamed-run").string(), allocator);
     return settings;
 }
 

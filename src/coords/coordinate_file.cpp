@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/npy.h"
+#include "ostraka/core/safe_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -231,6 +232,8 @@ CoordinateHeader read_coordinate_header(const Path& weights) {
         if (array.file != expected.filename().string())
             fail_input(file.string(), "speaks of the array '" + array.file + "' instead of " + expected.filename().string(),
                        "give the files their old names, or compute them anew");
+        if (!is_memory(expected) && !is_inside(expected, file.parent_path()))
+            fail_input(expected.string(), "is a link that leads out of the folder", "copy the array there, or compute it anew");
     };
     check(header.vertex, weights);
     if (header.normal) check(*header.normal, normal_weights_file(weights));

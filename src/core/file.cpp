@@ -1,6 +1,7 @@
 #include "ostraka/core/file.h"
 
 #include "ostraka/core/error.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/transaction.h"
 #include "output_sweep.h"
@@ -241,6 +242,7 @@ std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* 
 
 void make_folder(const Path& folder) {
     if (is_memory(folder) || folder.empty()) return;
+    WriteScope::check(folder);
     std::error_code code;
     std::vector<Path> made;
     for (Path one = folder; !one.empty() && !std::filesystem::exists(one, code); one = one.parent_path()) made.push_back(one);
@@ -314,6 +316,7 @@ std::string read_file(const Path& file) {
 // A link keeps pointing where it points: what is replaced is the file behind it.
 AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? std::move(file) : behind_links(std::move(file))) {
     if (is_memory(file_)) return;
+    WriteScope::check(file_);
     std::error_code code;
     if (std::filesystem::is_directory(file_, code)) fail_work(file_.string(), "is a folder", "name a file to write");
     // A device or a pipe (/dev/null, /dev/stdout) is written to, not replaced by a file.

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/transaction.h"
 
 #include <omp.h>
@@ -28,6 +29,7 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
     std::atomic<long long> first_block = std::numeric_limits<long long>::max();
     Watch* const watch = current_watch();
     OutputTransaction* const transaction = current_transaction();
+    const WriteScope* const scope = WriteScope::current();
 #pragma omp parallel for schedule(dynamic, 1) if (blocks > 1)
     for (long long b = 0; b < blocks; ++b) {
         if (b > first_block) continue;  // an earlier block has failed: this one is of no use
@@ -35,6 +37,7 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
         try {
             const WatchScope watched(watch);
             const TransactionScope written(transaction);
+            const WriteScope::Within within(scope);
             check_cancelled();
             body(begin, std::min(count, begin + block));
         } catch (...) {

@@ -9,6 +9,8 @@ namespace ostraka {
 
 namespace {
 
+thread_local const WriteScope* scope_of_thread = nullptr;
+
 /// Where the first link of a resolved path leads that leads to nothing yet; the path itself where there is none.
 Path behind_dangling_link(const Path& place) {
     std::error_code code;
@@ -85,6 +87,17 @@ void require_writable_inside(const Path& file, const Path& folder) {
     using Type = std::filesystem::file_type;
     if (type != Type::not_found && type != Type::regular && type != Type::directory && type != Type::none)
         fail_input(file.string(), "is a device or a pipe", remedy);
+}
+
+WriteScope::WriteScope(Path folder) : folder_(std::move(folder)), outer_(scope_of_thread) { scope_of_thread = this; }
+WriteScope::~WriteScope() { scope_of_thread = outer_; }
+
+const WriteScope* WriteScope::current() { return scope_of_thread; }
+WriteScope::Within::Within(const WriteScope* scope) : outer_(scope_of_thread) { scope_of_thread = scope; }
+WriteScope::Within::~Within() { scope_of_thread = outer_; }
+
+void WriteScope::check(const Path& file) {
+    if (scope_of_thread != nullptr) require_writable_inside(file, scope_of_thread->folder_);
 }
 
 }  // namespace ostraka

@@ -5,6 +5,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/label_file.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/surface_search.h"
@@ -226,6 +227,11 @@ struct MakeReport final : Operation {
     /// name.
     void read_folder(Context& context, Report& report, const Path& folder) {
         std::vector<std::string> files = files_in(folder);
+        std::erase_if(files, [&](const std::string& name) {
+            if (is_memory(folder) || is_inside(folder / name, folder)) return false;
+            context.note(name + " is left out: it is a link that leads out of the folder");
+            return true;
+        });
         std::sort(files.begin(), files.end());
         const auto stem = [](const std::string& name) { return Path(name).stem().string(); };
         // Documents by the names of the meshes that they are of; empty: of none.

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/npy.h"
+#include "ostraka/core/safe_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,8 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
 Path beside(const Path& file, const std::string& name, const std::string& where) {
     if (name.empty() || Path(name).filename() != Path(name) || name == "..")
         fail_input(where, "names '" + name + "', which does not stand beside it", "learn the class anew");
-    return file.parent_path() / name;
+    return file_inside(name, file.parent_path(), file.string(), "a name of another file", "the folder of the class",
+                       "learn the class anew");
 }
 
 /// What learning makes, and what no other file has: a mean of the members' size, modes of length one, and coefficients with the

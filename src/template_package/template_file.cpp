@@ -108,6 +108,7 @@ std::string part_name(const Path& folder, const Path& part) {
 
 TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance) {
     TemplateFile copy = file;
+    const WriteScope written(folder);
     for (PackagedFile& part : copy.contents) {
         part.name = part.file.filename().string();
         if (std::any_of(copy.contents.begin(), copy.contents.end(), [&](const PackagedFile& other) {
@@ -123,7 +124,8 @@ TemplateFile copy_template(const TemplateFile& file, const Path& folder, const s
             if (extension(part.file) == ".npy")
                 for (const Path& companion :
                      {coordinate_header_file(part.file), sparse_columns_file(part.file), sparse_rows_file(part.file)})
-                    if (file_exists(companion)) write_file(folder / companion.filename().string(), read_file(companion));
+                    if (file_exists(companion) && is_inside(companion, part.file.parent_path()))
+                        write_file(folder / companion.filename().string(), read_file(companion));
         }
         part.sha256 = sha256(bytes);
         part.file = place;

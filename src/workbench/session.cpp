@@ -106,18 +106,35 @@ void Session::read() {
     for (const JsonValue& one : list_in(document, "steps")) {
         SessionStep step{text_in(one, "name"), text_in(one, "title"),   text_in(one, "operation"), {}, {}, {},
                          !flag_in(one, "no"),  state_from(one["state"])};
-        if (const JsonValue* with = find_member(one, "with")) step.with = copy_of(*with);
-        if (const JsonValue* keep = find_member(one, "keep")) step.keep = copy_of(*keep);
+        const auto settings = [&](const char* name) {
+            const JsonValue* value = find_member(one, name);
+            return value == nullptr ? Json(rapidjson::kObjectType) : copy_of(*value);
+        };
+        step.with = settings("with");
+        step.keep = settings("keep");
         if (const JsonValue* made = find_member(one, "sha256"))
             for (const auto& member : made->GetObject()) step.sha256[text_of(member.name)] = text_of(member.value);
         steps_.push_back(std::move(step));
     }
     place_ = std::min(steps_.size(), static_cast<std::size_t>(number_or(document, "place", 0)));
     counter_ = static_cast<std::size_t>(number_or(document, "counter", 0));
+    check_numbers();
     for (const SessionStep& step : steps_) check_files(step);
     for (const SessionObject& object : state().objects)
         for (const auto& [part, name] : object.parts) check_file(name);
     sweep();
+}
+
+/// Each step has a number of its own, which no step to come gets.
+void Session::check_numbers() const {
+    std::size_t last = 0;
+    for (const SessionStep& step : steps_) {
+        const std::size_t number = std::stoul(step.name.substr(1));  // the schema says how names look
+        if (number <= last || number > counter_)
+            fail_input((folder_ / file_name).string(), "step " + step.name + " is out of order",
+                       "begin another session (--session)");
+        last = number;
+    }
 }
 
 /// What a step names lies in the session or where objects are opened from.

@@ -187,6 +187,8 @@ Report Session::run(const JsonValue& request, Context& context) {
     };
     std::error_code ignored;
     check_folders();
+    const WriteScope written(folder_);  // also over links that the folder held when it came
+    for (const auto& [file, text] : settings.documents) require_writable_inside(file, folder_);
     std::filesystem::remove_all(folder, ignored);  // of a run that was killed
     try {
         make_folder(folder);
@@ -271,7 +273,7 @@ Path Session::save(const std::string& name, Context& context) const {
     const Path folder = root_ / name, saved = folder / (name + ".template.json");
     if (file_exists(folder) || (is_folder(folder) && !std::filesystem::is_empty(folder) && !file_exists(saved)))
         fail_input(folder.string(), "is there already and holds something else", "give another name");
-    require_writable_inside(folder, root_);
+    const WriteScope written(root_);
     make_folder(folder);
     Call call(find_operation("template pack"));
     call.set("copy", true);

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
 #include <algorithm>
@@ -30,6 +31,26 @@ std::string folder_name(const std::string& label) {
 
 std::string file_of(const std::string& step, const std::string& output, const std::string& ending) {
     return (output == "output" ? step : step + "-" + output) + ending;
+}
+
+/// Whether a text holds an absolute name, or one that climbs, also behind a sign that programs take for the end of a key.
+bool leads_out(const std::string& text) {
+    static const std::string signs = "=,:;@";
+    std::string part;
+    const auto is_out = [&] {
+        const Path path(part);
+        return path.is_absolute() || std::any_of(path.begin(), path.end(), [](const Path& one) { return one == ".."; }) ||
+               (part.starts_with("-") && part.find('/') != std::string::npos);
+    };
+    for (const char c : text) {
+        if (signs.find(c) == std::string::npos) {
+            part += c;
+            continue;
+        }
+        if (is_out()) return true;
+        part.clear();
+    }
+    return is_out();
 }
 
 }  // namespace
@@ -120,10 +141,8 @@ StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::siz
         for (const auto& [output, text] : step.keep) {
             std::string name = filled(text, instance);
             if (name.empty()) name = file_of(step.name, output, call.usual_ending(output));
-            if (name.find('/') != std::string::npos || name == "." || name == "..")
-                fail_input(study.at(step.place + "/keep/" + output), "'" + printable(name, 60) + "' is no name for a file",
-                           "give a name without folders: each instance has a folder of its own");
-            if (name == "report.json" || name == "record.json")
+            require_plain_name(name, study.file.string(), step.place + "/keep/" + output);
+            if (name == "report.json" || name == "record.json" || name == "output.txt")
                 fail_input(study.at(step.place + "/keep/" + output), "'" + name + "' is written for every step",
                            "name it otherwise");
             instance.outputs[output] = name;
@@ -180,17 +199,16 @@ void StudyPlan::check_word(const StudySetting& word, const StudyText& text, cons
     };
     const auto references = text.references();
     if (study.allow_programs || std::any_of(references.begin(), references.end(), is_the_callers)) return;
-    static const std::string own = "${folder}", studys = "${study}";
-    const bool begins_own = filled.starts_with(own), begins_studys = filled.starts_with(studys);
     const std::size_t equals = filled.starts_with("-") ? filled.find('=') : std::string::npos;
-    const std::string named = begins_own      ? filled.substr(own.size())
-                              : begins_studys ? filled.substr(studys.size())
-                                              : filled.substr(equals == std::string::npos ? 0 : equals + 1);
-    if (begins_studys) return study.require_readable(study.folder / ("." + named), word.place);
-    const Path path(named);
-    const bool climbs = std::any_of(path.begin(), path.end(), [](const Path& part) { return part == ".."; });
-    const bool is_flag = named.starts_with("-") && named.find('/') != std::string::npos;
-    if (climbs || is_flag || (!begins_own && path.is_absolute()) || named.find("${study}") != std::string::npos)
+    std::string named = filled.substr(equals == std::string::npos ? 0 : equals + 1);
+    const auto takes = [&](const std::string& mark) {  // at the beginning, and as a folder
+        if (!named.starts_with(mark)) return false;
+        named.erase(0, mark.size());
+        return named.empty() || named.front() == '/';
+    };
+    const bool is_in_study = takes("${study}"), is_in_folder = !is_in_study && takes("${folder}");
+    if (is_in_study) study.require_readable(study.folder / ("." + named), word.place);
+    if (leads_out(is_in_study || is_in_folder ? "." + named : named) || named.find("${") != std::string::npos)
         fail_input(study.at(word.place), "'" + printable(filled, 100) + "' may lead out of the folder of the step",
                    "use ${folder}, ${study} or an output of a step; --allow-programs allows any words");
 }

@@ -316,6 +316,7 @@ private:
         }
         try {
             const WatchScope watched(&context->watch);
+            const WriteScope written(folder_);
             make_folder(folder_of(i));
             const FolderLock lock(folder_of(i), [&] { return context->watch.is_cancelled(); });
             check_cancelled();

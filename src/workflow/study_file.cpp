@@ -1,6 +1,7 @@
 #include "ostraka/workflow/study_file.h"
 
 #include "ostraka/core/nearest_name.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
@@ -92,7 +93,8 @@ StudyParameter read_parameter(const Study& study, const std::string& name, const
     } else if (value.IsObject() && find_member(value, "files") != nullptr) {
         const Path pattern = (study.folder / text_in(value, "files")).lexically_normal();
         study.require_readable(before_wildcards(pattern), place + "/files");
-        for (const Path& file : matching_files(pattern)) {
+        for (const Path& file :
+             matching_files(pattern, [&](const Path& folder) { return is_inside_any(folder, study.readable); })) {
             study.require_readable(file, place + "/files");
             parameter.values.push_back(file_value(study, file));
         }
@@ -208,11 +210,17 @@ private:
             values[name].first = &value;
             if (!options.set_from_file) allow_given(value);
         }
+        std::size_t count = 0;
         for (const std::string& name : names) {
+            check_cancelled();
             study_.parameters.push_back(read_parameter(study_, name, *values.at(name).first, values.at(name).second));
             study_.parameters.back().by_caller =
                 !options.set_from_file &&
                 std::any_of(given.begin(), given.end(), [&](const auto& one) { return one.first == name; });
+            count += study_.parameters.back().values.size();
+            if (count > 2 * static_cast<std::size_t>(maximum_values))
+                fail_input(study_.at("/parameters"),
+                           "the parameters have more than " + std::to_string(2 * maximum_values) + " values", "give fewer");
         }
     }
 
@@ -558,7 +566,24 @@ Study read_study(const Path& file, const FindOperation& find, const StudyOptions
     return study;
 }
 
-std::vector<Path> matching_files(const Path& pattern) {
+namespace {
+
+/// Names in a folder that fit, sorted.
+std::vector<std::string> fitting_names(const Path& folder, const std::string& pattern) {
+    std::vector<std::string> names;
+    std::error_code code;
+    for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end; !code && entry != end;
+         entry.increment(code)) {
+        std::string name = entry->path().filename().string();
+        if (!name.starts_with('.') && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) names.push_back(std::move(name));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+}  // namespace
+
+std::vector<Path> matching_files(const Path& pattern, const std::function<bool(const Path&)>& may_enter) {
     std::vector<Path> found{pattern.root_path()};
     const auto is_pattern = [](const std::string& part) { return part.find_first_of("*?") != std::string::npos; };
     const Path relative = pattern.relative_path();
@@ -566,18 +591,20 @@ std::vector<Path> matching_files(const Path& pattern) {
     for (const Path& part : relative) {
         --left;
         std::vector<Path> next;
+        std::set<Path> known;  // folders, links resolved: one that has many names is looked into once
         for (const Path& folder : found) {
+            check_cancelled();
             if (!is_pattern(part.string())) {
                 next.push_back(folder / part);
                 continue;
             }
-            std::error_code code;
-            for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end; !code && entry != end;
-                 entry.increment(code)) {
-                const std::string name = entry->path().filename().string();
-                if (name.starts_with('.') || ::fnmatch(part.c_str(), name.c_str(), 0) != 0) continue;
-                std::error_code own;
-                if (left == 0 ? entry->is_regular_file(own) : entry->is_directory(own)) next.push_back(folder / name);
+            for (const std::string& name : fitting_names(folder, part.string())) {
+                const Path path = folder / name;
+                std::error_code code;
+                if (left == 0 ? std::filesystem::is_regular_file(path, code)
+                              : std::filesystem::is_directory(path, code) && (!may_enter || may_enter(path)) &&
+                                    known.insert(std::filesystem::weakly_canonical(path, code)).second)
+                    next.push_back(path);
             }
         }
         found = std::move(next);

@@ -28,4 +28,34 @@ bool is_inside_any(const Path& path, const std::vector<Path>& folders);
 /// Throws Error (input) where writing to `file` would leave `folder` over a link, or would write to a device or a pipe.
 void require_writable_inside(const Path& file, const Path& folder);
 
+/// While it lives, files and folders are made on this thread, and in parallel loops that it starts, within `folder` only, links
+/// resolved: others are refused with Error (input). For work on folders that somebody else may have filled with links.
+class WriteScope {
+public:
+    explicit WriteScope(Path folder);
+    ~WriteScope();
+    WriteScope(const WriteScope&) = delete;
+    WriteScope& operator=(const WriteScope&) = delete;
+
+    /// That of this thread, or none.
+    static const WriteScope* current();
+    /// Makes it (or none) that of this thread as long as the other one lives.
+    class Within {
+    public:
+        explicit Within(const WriteScope* scope);
+        ~Within();
+        Within(const Within&) = delete;
+        Within& operator=(const Within&) = delete;
+
+    private:
+        const WriteScope* outer_;
+    };
+    /// Throws Error (input) where the file would lie outside of the scope of this thread.
+    static void check(const Path& file);
+
+private:
+    Path folder_;
+    const WriteScope* outer_;
+};
+
 }  // namespace ostraka

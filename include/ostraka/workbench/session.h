@@ -103,6 +103,7 @@ private:
     void add(SessionStep step);
     void write() const;
     void read();
+    void check_numbers() const;
     void check_files(const SessionStep& step) const;
     void check_file(const std::string& file) const;
     void check_folders() const;
