@@ -202,9 +202,9 @@ void StudyPlan::check_word(const StudySetting& word, const StudyText& text, cons
     const std::size_t equals = filled.starts_with("-") ? filled.find('=') : std::string::npos;
     std::string named = filled.substr(equals == std::string::npos ? 0 : equals + 1);
     const auto takes = [&](const std::string& mark) {  // at the beginning, and as a folder
-        if (!named.starts_with(mark)) return false;
+        if (!named.starts_with(mark) || (named.size() > mark.size() && named[mark.size()] != '/')) return false;
         named.erase(0, mark.size());
-        return named.empty() || named.front() == '/';
+        return true;
     };
     const bool is_in_study = takes("${study}"), is_in_folder = !is_in_study && takes("${folder}");
     if (is_in_study) study.require_readable(study.folder / ("." + named), word.place);

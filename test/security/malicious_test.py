@@ -672,6 +672,18 @@ def a_case_that_runs_a_kit_with_a_program(place):
     return kit(place, operation="conformance run", **{"with": {"command": ["sh", "-c", f"echo > {place.outside('made')}"]}}, outputs={})
 
 
+@refused("conformance.json", "/with/allow-programs=true")
+def kit_flag_in_a_name(place):
+    """A name that becomes a flag with its value, in a case that expects a refusal."""
+    return kit(place, operation="run", **{"with": {"study": "inputs/x.study.json", "allow-programs=true": True}}, code=2, compare=[], outputs={})
+
+
+@refused("conformance.json", "/outputs/programs")
+def kit_option_as_an_output(place):
+    """An option that only the caller may set, named as an output."""
+    return kit(place, operation="run", **{"with": {"study": "inputs/x.study.json"}}, outputs={"output": "o/", "programs": "p"})
+
+
 @refused("conformance.json", "/with/allow-programs")
 def a_case_that_allows_programs(place):
     write(place.inside("kit/inputs/x.study.json"), {"format": "ostraka-study", "version": 1, "steps": {

@@ -300,11 +300,31 @@ TEST(Session, IsRefusedWhereItLeadsOutOfItsFolders) {
         std::filesystem::remove(folder / "steps/s002/report.json");
         std::filesystem::create_symlink(outside / "secret.txt", folder / "steps/s002/report.json");
     });
+    refused("a step that comes again",
+            [&](const Path&, std::string& text) { replaced(text, "\"counter\": 2", "\"counter\": 1"); });
     refused("a device", [&](const Path&, std::string& text) { replaced(text, "\"../ball.ply\"", "\"/dev/zero\""); });
     refused("the study as a link", [&](const Path& folder, std::string&) {
         std::filesystem::remove(folder / "session.study.json");
         std::filesystem::create_symlink(outside / "secret.txt", folder / "session.study.json");
     });
+}
+
+TEST(Session, WritesNoDocumentOverALink) {
+    const Scratch outside;
+    write_file(outside / "kept.json", "kept");
+    Bench bench;
+    bench.ask(R"({"id":1,"do":"open","name":"ball.ply"})");
+    bench.ask(filled(annotate("cap", 0.5), false, false));
+    bench.ask(R"({"id":1,"do":"go","place":1})");  // the next step is the third
+    const Path documents = bench.scratch / "session/documents";
+    make_folder(documents);
+    std::filesystem::create_symlink(outside / "kept.json", documents / "s003-recipe.json");
+    EXPECT_NE(
+        bench.refused(
+            R"({"id":1,"do":"run","operation":"annotation apply","with":{"mesh":{"part":"mesh"},"recipe":{"document":{"format":"ostraka-recipe","version":1,"annotations":[]}}}})"),
+        "");
+    EXPECT_EQ(read_file(outside / "kept.json"), "kept");
+    EXPECT_EQ(bench.workbench->session().place(), 1U);
 }
 
 TEST(Session, IsForItsOwnerAndSweepsWhatKilledStepsLeft) {

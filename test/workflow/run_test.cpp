@@ -55,6 +55,10 @@ TEST(MatchingFiles, FollowPatternsInEachPart) {
     EXPECT_EQ(matching_files(scratch / "a/t*o.ply").size(), 1U);
     EXPECT_EQ(matching_files(scratch / "a/one.ply").size(), 1U);
     EXPECT_TRUE(matching_files(scratch / "d/*").empty());
+    // Links back do not multiply what there is.
+    for (int i = 0; i < 12; ++i) std::filesystem::create_directory_symlink(".", scratch / ("link" + std::to_string(i)));
+    EXPECT_EQ(matching_files(scratch / "*/*/*/*/*/*/*.ply").size(), 3U);
+    EXPECT_TRUE(matching_files(scratch / "*/*.ply", [](const Path&) { return false; }).empty());
 }
 
 TEST(StudyPlan, HasAnInstanceForEachValueThatAStepVariesWith) {
@@ -387,6 +391,18 @@ TEST(RunStudy, NeverLeavesTheRunFolder) {
     std::filesystem::remove_all(step);
     std::filesystem::create_directory_symlink(outside.path(), step);
     refused("the folder of a step as a link");
+    // Files that an operation writes beside the one that is kept.
+    const StudyPlan weights = plan_of(scratch.file("w.study.json", study_text_of(R"("steps": {
+        "ball": {"operation": "mesh make", "with": {"object": "sphere", "vertices": 300}},
+        "cage": {"operation": "cage make", "with": {"mesh": "${ball.output}", "vertices": 30}},
+        "w": {"operation": "cage weights", "with": {"mesh": "${ball.output}", "cage": "${cage.output}"}, "keep": {"output": "w.npy"}}})")));
+    const Path other = scratch / "other";
+    make_folder(other / "steps/w");
+    std::filesystem::create_symlink(outside / "kept.txt", other / "steps/w/w.coordinates.json");
+    const auto results = run_all(weights, other);
+    EXPECT_EQ(results.back().state, InstanceState::failed);
+    EXPECT_NE(results.back().problem.find("leads out"), std::string::npos) << results.back().problem;
+    EXPECT_EQ(read_file(outside / "kept.txt"), "kept");
     make();
     std::filesystem::create_symlink(outside / "kept.txt", out / "page.md");
     const auto page = run_command("run " + (scratch / "t.study.json").string() + " --quick --output " + out.string());
