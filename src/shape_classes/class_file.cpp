@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 namespace ostraka {
 
@@ -242,8 +244,14 @@ ShapeClass read_class(const Path& file) {
     const std::string archetype = document["archetype"].GetString();
     if (learnt.members[modes.archetype].name != archetype)
         fail_input(where, "has the archetype '" + archetype + "', which is none of its members", "learn the class anew");
-    for (const auto& range : document["ranges"].GetArray())
-        learnt.ranges.push_back(range_from(range, learnt.members.size(), learnt.strangers.size(), where));
+    std::set<std::tuple<int, int, std::string, std::string>> known;
+    for (const auto& value : document["ranges"].GetArray()) {
+        LearntRange range = range_from(value, learnt.members.size(), learnt.strangers.size(), where);
+        const ClassQuantity& of = range.quantity;
+        if (!known.emplace(static_cast<int>(of.kind), of.id, of.name, of.of).second)
+            fail_input(where, "has two ranges of " + of.text(), "keep one of them, or learn the class anew");
+        learnt.ranges.push_back(std::move(range));
+    }
     for (const auto& range : document["fragments"].GetArray())
         learnt.fragments.push_back(range_from(range, learnt.members.size(), learnt.strangers.size(), where));
     return learnt;
