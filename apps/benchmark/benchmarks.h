@@ -56,8 +56,9 @@ int run_read_and_build_tree(const std::vector<std::string>& files);
 inline constexpr const char* read_mesh_only = "--read-mesh";
 int run_read_mesh(const std::string& file);
 
-/// How long operations on a million faces take to stop when they are cancelled, as a program of its own: works in the folder named by
-/// the argument after this one, on the operations whose names contain the next one, and prints a table. Returns the exit code.
+/// How long operations on a million faces take to stop when they are cancelled, as a program of its own: works in the folder
+/// named by the argument after this one, on the operations whose names contain the next one, and prints a table. Returns the exit
+/// code.
 inline constexpr const char* measure_cancelling = "--cancelling";
 int run_cancelling(const std::string& folder, const std::string& only);
 
