@@ -44,7 +44,7 @@ Path resolved(const Path& path) {
 
 void require_file_name(const std::string& name, const std::string& where, const std::string& at) {
     if (name.find('\0') != std::string::npos)
-        fail_input(where, "at " + at + ": the name holds a character that no file name can", "mend it");
+        fail_input(where, "at " + at + ": the name holds a zero byte", "remove it from the name");
 }
 
 void require_plain_name(const std::string& name, const std::string& where, const std::string& at) {
