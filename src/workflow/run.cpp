@@ -1,5 +1,7 @@
 #include "ostraka/workflow/run.h"
 
+#include "run_folder.h"
+
 #include "ostraka/core/child_process.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/memory.h"
@@ -10,12 +12,9 @@
 #include "ostraka/core/words.h"
 #include "ostraka/operation/object_files.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
@@ -49,39 +48,6 @@ struct Work {
     double expected = -1;              ///< seconds, of an earlier run
     std::size_t input_bytes = 0;
 };
-
-/// Folder of an instance that no other process works in while this lives.
-class FolderLock {
-public:
-    /// Waits as long as another process has it, until `stop` says otherwise.
-    FolderLock(const Path& folder, const std::function<bool()>& stop)
-        : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-        // Where the file system knows no locks, nobody waits.
-        while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && !stop()) {
-            waited_ = true;
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-    }
-    ~FolderLock() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-    [[nodiscard]] bool waited() const { return waited_; }
-
-private:
-    int descriptor_;
-    bool waited_ = false;
-};
-
-/// Removes what a folder holds, and leaves the folder, which is locked.
-void empty_folder(const Path& folder) {
-    std::error_code code;
-    std::vector<Path> entries;
-    for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
-        entries.push_back(entry->path());
-    for (const Path& entry : entries) std::filesystem::remove_all(entry, code);
-}
 
 class Runner {
 public:
@@ -615,35 +581,6 @@ private:
 std::string to_string(InstanceState state) {
     static constexpr const char* names[]{"left out", "unchanged", "would run", "done", "failed", "skipped"};
     return names[static_cast<std::size_t>(state)];
-}
-
-namespace {
-/// What is written for all instances together.
-std::vector<std::string> collected_names(const StudyPlan& plan) {
-    std::vector<std::string> names{"page.md", "run.json", "run.study.json", "ro-crate-metadata.json"};
-    const auto add = [&](const char* what, const std::vector<const char*>& endings) {
-        if (const JsonValue* list = find_member(*plan.study.document, what))
-            for (const auto& one : list->GetObject())
-                for (const char* ending : endings) names.push_back(text_of(one.name) + ending);
-    };
-    add("tables", {".csv", ".md", ".tex"});
-    add("plots", {".svg"});
-    return names;
-}
-}  // namespace
-
-void check_run_folder(const StudyPlan& plan, const Path& run_folder) {
-    for (const std::string& name : collected_names(plan)) require_writable_inside(run_folder / name, run_folder);
-    for (const StudyInstance& instance : plan.instances) {
-        check_cancelled();
-        const Path folder = run_folder / instance.folder;
-        require_writable_inside(folder, run_folder);
-        if (!is_folder(folder)) continue;
-        static_cast<void>(read_record(folder));
-        std::vector<std::string> written{"report.json", "record.json", "output.txt"};
-        for (const std::string& output : instance.kept) written.push_back(instance.outputs.at(output));
-        for (const std::string& name : written) require_writable_inside(folder / name, run_folder);
-    }
 }
 
 std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options) {

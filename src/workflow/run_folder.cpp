@@ -1,0 +1,66 @@
+#include "run_folder.h"
+
+#include "ostraka/core/progress.h"
+#include "ostraka/core/safe_path.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <thread>
+
+namespace ostraka {
+
+FolderLock::FolderLock(const Path& folder, const std::function<bool()>& stop)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    // Where the file system knows no locks, nobody waits.
+    while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && !stop()) {
+        waited_ = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void empty_folder(const Path& folder) {
+    std::error_code code;
+    std::vector<Path> entries;
+    for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
+        entries.push_back(entry->path());
+    for (const Path& entry : entries) std::filesystem::remove_all(entry, code);
+}
+
+namespace {
+/// What is written for all instances together.
+std::vector<std::string> collected_names(const StudyPlan& plan) {
+    std::vector<std::string> names{"page.md", "run.json", "run.study.json", "ro-crate-metadata.json"};
+    const auto add = [&](const char* what, const std::vector<const char*>& endings) {
+        if (const JsonValue* list = find_member(*plan.study.document, what))
+            for (const auto& one : list->GetObject())
+                for (const char* ending : endings) names.push_back(text_of(one.name) + ending);
+    };
+    add("tables", {".csv", ".md", ".tex"});
+    add("plots", {".svg"});
+    return names;
+}
+}  // namespace
+
+void check_run_folder(const StudyPlan& plan, const Path& run_folder) {
+    for (const std::string& name : collected_names(plan)) require_writable_inside(run_folder / name, run_folder);
+    for (const StudyInstance& instance : plan.instances) {
+        check_cancelled();
+        const Path folder = run_folder / instance.folder;
+        require_writable_inside(folder, run_folder);
+        if (!is_folder(folder)) continue;
+        static_cast<void>(read_record(folder));
+        std::vector<std::string> written{"report.json", "record.json", "output.txt"};
+        for (const std::string& output : instance.kept) written.push_back(instance.outputs.at(output));
+        for (const std::string& name : written) require_writable_inside(folder / name, run_folder);
+    }
+}
+
+}  // namespace ostraka
