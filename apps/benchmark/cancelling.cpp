@@ -1,5 +1,6 @@
 // How long operations on a million faces take to stop when they are cancelled.
 #include "benchmarks.h"
+#include "calls.h"
 #include "ostraka/core/json.h"
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/operations/table.h"
@@ -94,25 +95,6 @@ const Step steps[]{
      R"({"template": "statuette.template.json", "members": ["statuette.ply"], "output": "propagated"})"},
 };
 
-Call call_of(const Step& step, const Path& folder) {
-    const Json settings = parse_json(step.settings, step.operation);
-    Call call(find_operation(step.operation));
-    Json rest(rapidjson::kObjectType);
-    for (const auto& member : settings.GetObject()) {
-        const std::string name = member.name.GetString();
-        if (call.parameters().slot(name) == nullptr) {
-            rest.AddMember(JsonValue(name, rest.GetAllocator()), JsonValue(member.value, rest.GetAllocator()),
-                           rest.GetAllocator());
-        } else if (member.value.IsArray()) {
-            for (const auto& one : member.value.GetArray()) call.set_file(name, folder / one.GetString());
-        } else {
-            call.set_file(name, folder / member.value.GetString());
-        }
-    }
-    call.set(rest);
-    return call;
-}
-
 /// Seconds from the wish to stop to the end; none where the work was done before. Throws where it ends with another error.
 std::optional<double> seconds_to_stop(const Step& step, const Path& folder, double after) {
     Context context;
@@ -127,7 +109,7 @@ std::optional<double> seconds_to_stop(const Step& step, const Path& folder, doub
     bool is_cancelled = false;
     std::exception_ptr failure;
     try {
-        static_cast<void>(call_of(step, folder).run(context));
+        static_cast<void>(test::call_in(folder, step.operation, step.settings).run(context));
     } catch (const Error& error) {
         is_cancelled = error.kind() == ErrorKind::cancelled;
         if (!is_cancelled) failure = std::current_exception();
@@ -144,7 +126,7 @@ void measure_step(const Step& step, const Path& folder) {
     const Stopwatch clock;
     {
         Context context;
-        static_cast<void>(call_of(step, folder).run(context));
+        static_cast<void>(test::call_in(folder, step.operation, step.settings).run(context));
     }
     const double whole = clock.seconds();
     std::cout << "| " << name << " | " << std::fixed << std::setprecision(1) << whole << " | " << std::setprecision(2);

@@ -12,6 +12,7 @@
 #include "ostraka/remesh/simplify.h"
 #include "ostraka/select/scalars.h"
 
+#include "calls.h"
 #include "meshes.h"
 #include "scratch.h"
 
@@ -86,25 +87,6 @@ void furnish(const Scratch& scratch) {
         write_file(scratch / name, read_file(Path(OSTRAKA_SOURCE_DIR) / "data" / name));
 }
 
-Call call_of(const Step& step, const Path& folder) {
-    const Json settings = parse_json(step.settings, step.operation);
-    Call call(find_operation(step.operation));
-    Json rest(rapidjson::kObjectType);
-    for (const auto& member : settings.GetObject()) {
-        const std::string name = member.name.GetString();
-        if (call.parameters().slot(name) == nullptr) {
-            rest.AddMember(JsonValue(name, rest.GetAllocator()), JsonValue(member.value, rest.GetAllocator()),
-                           rest.GetAllocator());
-        } else if (member.value.IsArray()) {
-            for (const auto& one : member.value.GetArray()) call.set_file(name, folder / one.GetString());
-        } else {
-            call.set_file(name, folder / member.value.GetString());
-        }
-    }
-    call.set(rest);
-    return call;
-}
-
 /// Every file below a folder, hidden ones too, with the checksum of its bytes.
 std::map<std::string, std::string> files_below(const Path& folder) {
     std::map<std::string, std::string> files;
@@ -127,7 +109,7 @@ std::optional<ErrorKind> cancelled_after(double seconds, const Step& step, const
     });
     std::optional<ErrorKind> kind;
     try {
-        static_cast<void>(call_of(step, folder).run(context));
+        static_cast<void>(call_in(folder, step.operation, step.settings).run(context));
     } catch (const Error& error) {
         kind = error.kind();
         EXPECT_EQ(error.kind(), ErrorKind::cancelled) << step.operation << ": " << error.what();
@@ -150,7 +132,7 @@ TEST(Cancelling, LeavesNoFileAndSpoilsNothingThatIsKept) {
         const auto begin = std::chrono::steady_clock::now();
         {
             Context first;  // what the others keep is not known yet
-            static_cast<void>(call_of(step, scratch.path()).run(first));
+            static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(first));
         }
         const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         const auto after = files_below(scratch.path());
@@ -168,7 +150,7 @@ TEST(Cancelling, LeavesNoFileAndSpoilsNothingThatIsKept) {
         // With what the cancelled ones have kept it makes the same.
         Context last;
         last.share_objects(kept);
-        static_cast<void>(call_of(step, scratch.path()).run(last));
+        static_cast<void>(call_in(scratch.path(), step.operation, step.settings).run(last));
         for (const auto& [name, sum] : files_below(scratch.path()))
             EXPECT_EQ(after.contains(name) ? after.at(name) : "nothing", sum) << step.operation << ": " << name;
     }

@@ -1,5 +1,6 @@
 // Laws of the whole table: every operation is declared soundly, its report keeps its schema, and from objects in memory it gives
 // the same bytes as from files.
+#include "calls.h"
 #include "ostraka/core/json.h"
 #include "ostraka/operations/pages.h"
 #include "ostraka/vocabulary/vocabulary.h"
@@ -181,20 +182,7 @@ class EveryOperation : public ::testing::Test {
 protected:
     /// Runs a step on files of the folder; checks the report against its schema.
     static Json on_files(const Step& step, const Path& folder) {
-        const Json settings = parse_json(step.settings, step.operation);
-        Call call(find_operation(step.operation));
-        Json rest(rapidjson::kObjectType);
-        for (const auto& member : settings.GetObject()) {
-            const std::string name = member.name.GetString();
-            if (call.parameters().slot(name) == nullptr) {
-                add_member(rest, name, JsonValue(member.value, rest.GetAllocator()), rest.GetAllocator());
-                continue;
-            }
-            if (member.value.IsArray())
-                for (const auto& one : member.value.GetArray()) call.set_file(name, folder / one.GetString());
-            else call.set_file(name, folder / member.value.GetString());
-        }
-        call.set(rest);
+        Call call = call_in(folder, step.operation, step.settings);
         Context context;
         const Report report = call.run(context);
         Json schemas;
