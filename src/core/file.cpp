@@ -508,9 +508,8 @@ namespace {
 /// The same text for every spelling of a place, whether anything stands there or not.
 Path one_spelling(const Path& file) {
     std::error_code code;
-    const Path whole = behind_links(std::filesystem::absolute(file, code));
-    const Path place = std::filesystem::weakly_canonical(whole, code);
-    return code ? whole.lexically_normal() : place.lexically_normal();
+    const Path place = resolved(file);
+    return place.empty() ? std::filesystem::absolute(file, code).lexically_normal() : place;
 }
 }  // namespace
 

@@ -25,8 +25,8 @@ Path behind_dangling_link(const Path& place) {
     return place;
 }
 
-/// Links resolved, also those to what is not there: who writes to one makes what it names. Empty where that fails (a circle of
-/// links).
+}  // namespace
+
 Path resolved(const Path& path) {
     constexpr int most_links = 40;
     std::error_code code;
@@ -39,8 +39,6 @@ Path resolved(const Path& path) {
     }
     return {};
 }
-
-}  // namespace
 
 void require_file_name(const std::string& name, const std::string& where, const std::string& at) {
     if (name.find('\0') != std::string::npos)

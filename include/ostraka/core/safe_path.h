@@ -21,6 +21,10 @@ void require_plain_name(const std::string& name, const std::string& where, const
 Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& at,
                  const std::string& whose, const std::string& remedy);
 
+/// The absolute path with links resolved, also those that lead to nothing yet: writing to one makes what it names. Empty where
+/// that fails (a circle of links).
+Path resolved(const Path& path);
+
 /// Whether the path, links resolved, is the folder or lies in it. The path need not exist. False where it cannot be resolved.
 bool is_inside(const Path& path, const Path& folder);
 bool is_inside_any(const Path& path, const std::vector<Path>& folders);
