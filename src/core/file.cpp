@@ -181,6 +181,14 @@ void rename_file(const Path& from, const Path& to) {
         fail_work(to.string(), "cannot be written: " + reason(), "check the rights of its folder");
 }
 
+/// Whether the name is that of something in the folder, wherever links lead.
+bool is_below(const Path& file, const Path& folder) {
+    std::error_code code;
+    const auto full = [&](const Path& path) { return std::filesystem::absolute(path, code).lexically_normal(); };
+    const Path relative = full(file).lexically_relative(full(folder));
+    return !relative.empty() && *relative.begin() != "..";
+}
+
 /// What a link points to, whether that exists or not.
 Path behind_links(Path file) {
     std::error_code code;
@@ -314,9 +322,13 @@ std::string read_file(const Path& file) {
 }
 
 // A link keeps pointing where it points: what is replaced is the file behind it.
-AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? std::move(file) : behind_links(std::move(file))) {
+AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? file : behind_links(file)) {
     if (is_memory(file_)) return;
     WriteScope::check(file_);
+    // Nobody named the files of a folder that a command fills: links in it do not lead out.
+    for (const OutputTransaction* open = open_transaction; open != nullptr; open = open->outer_)
+        for (const auto& [folder, owner] : open->replaced_)
+            if (is_below(file, folder)) require_writable_inside(file, folder);
     std::error_code code;
     if (std::filesystem::is_directory(file_, code)) fail_work(file_.string(), "is a folder", "name a file to write");
     // A device or a pipe (/dev/null, /dev/stdout) is written to, not replaced by a file.

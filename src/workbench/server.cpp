@@ -133,8 +133,8 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     std::atomic<bool> tells{false};  ///< progress that is not told yet
 
     // Of the network's thread.
-    std::list<Visit*> strangers;  ///< by age
-    std::list<Visit*> served;     ///< have said the token, and get the page
+    std::list<Visit*> unauthenticated;  ///< by age
+    std::list<Visit*> served;           ///< have said the token, and get the page
     std::set<Peer*> peers;
 
     std::mutex mutex;
@@ -317,7 +317,7 @@ private:
 class Visit : public std::enable_shared_from_this<Visit> {
 public:
     Visit(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
-        : stream_(std::move(socket)), state_(std::move(state)), list_(&state_->strangers) {
+        : stream_(std::move(socket)), state_(std::move(state)), list_(&state_->unauthenticated) {
         place_ = list_->insert(list_->end(), this);
         parser_.header_limit(static_cast<std::uint32_t>(state_->limits.header));
         parser_.body_limit(0);
@@ -434,7 +434,7 @@ void WorkbenchServer::State::accept() {
 }
 
 void WorkbenchServer::State::take(tcp::socket&& socket) {
-    while (!strangers.empty() && strangers.size() >= limits.strangers) strangers.front()->drop();
+    while (!unauthenticated.empty() && unauthenticated.size() >= limits.unauthenticated) unauthenticated.front()->drop();
     std::make_shared<Visit>(std::move(socket), shared_from_this())->begin();
 }
 
@@ -521,7 +521,7 @@ void WorkbenchServer::State::drop_all() {
     error_code ignored;
     acceptor.close(ignored);
     pause.cancel();
-    while (!strangers.empty()) strangers.front()->drop();
+    while (!unauthenticated.empty()) unauthenticated.front()->drop();
     while (!served.empty()) served.front()->drop();
     for (Peer* peer : std::set<Peer*>(peers)) peer->drop();
 }

@@ -35,6 +35,14 @@ void empty_folder(const Path& folder) {
 }
 
 namespace {
+/// An entry of a folder that is checked already: only a link can lead out, or be something else than it seems.
+void check_entry(const Path& entry, const Path& run_folder) {
+    std::error_code code;
+    const auto type = std::filesystem::symlink_status(entry, code).type();
+    using Type = std::filesystem::file_type;
+    if (type != Type::not_found && type != Type::regular && type != Type::directory) require_writable_inside(entry, run_folder);
+}
+
 /// What is written for all instances together.
 std::vector<std::string> collected_names(const StudyPlan& plan) {
     std::vector<std::string> names{"page.md", "run.json", "run.study.json", "ro-crate-metadata.json"};
@@ -50,16 +58,17 @@ std::vector<std::string> collected_names(const StudyPlan& plan) {
 }  // namespace
 
 void check_run_folder(const StudyPlan& plan, const Path& run_folder) {
-    for (const std::string& name : collected_names(plan)) require_writable_inside(run_folder / name, run_folder);
+    for (const std::string& name : collected_names(plan)) check_entry(run_folder / name, run_folder);
+    check_entry(run_folder / "steps", run_folder);
+    for (const StudyStep& step : plan.study.steps) check_entry(run_folder / "steps" / step.name, run_folder);
     for (const StudyInstance& instance : plan.instances) {
         check_cancelled();
         const Path folder = run_folder / instance.folder;
-        require_writable_inside(folder, run_folder);
+        check_entry(folder, run_folder);
         if (!is_folder(folder)) continue;
         static_cast<void>(read_record(folder));
-        std::vector<std::string> written{"report.json", "record.json", "output.txt"};
-        for (const std::string& output : instance.kept) written.push_back(instance.outputs.at(output));
-        for (const std::string& name : written) require_writable_inside(folder / name, run_folder);
+        for (const char* name : {"report.json", "record.json", "output.txt"}) check_entry(folder / name, run_folder);
+        for (const std::string& output : instance.kept) check_entry(folder / instance.outputs.at(output), run_folder);
     }
 }
 

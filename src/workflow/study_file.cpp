@@ -4,8 +4,7 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
-
-#include <fnmatch.h>
+#include "ostraka/workflow/file_pattern.h"
 
 #include <algorithm>
 #include <functional>
@@ -70,16 +69,6 @@ ParameterValue file_value(const Study& study, const Path& found) {
     made.members["stem"] = text_value(file.stem().string());
     made.members["folder"] = text_value(file.parent_path().string());
     return made;
-}
-
-/// The folder that a pattern without ".." behind a wildcard begins with.
-Path before_wildcards(const Path& pattern) {
-    Path folder;
-    for (const Path& part : pattern) {
-        if (part.string().find_first_of("*?[") != std::string::npos) break;
-        folder /= part;
-    }
-    return folder.empty() ? Path(".") : folder;
 }
 
 StudyParameter read_parameter(const Study& study, const std::string& name, const JsonValue& value, const std::string& place) {
@@ -564,54 +553,6 @@ Study read_study(const Path& file, const FindOperation& find, const StudyOptions
     check_format(*study.document, "ostraka-study", file.string(), "name a study file (.study.json)");
     Reader(study, find).read(options);
     return study;
-}
-
-namespace {
-
-/// Names in a folder that fit, sorted.
-std::vector<std::string> fitting_names(const Path& folder, const std::string& pattern) {
-    std::vector<std::string> names;
-    std::error_code code;
-    for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end; !code && entry != end;
-         entry.increment(code)) {
-        std::string name = entry->path().filename().string();
-        if (!name.starts_with('.') && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) names.push_back(std::move(name));
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-}  // namespace
-
-std::vector<Path> matching_files(const Path& pattern, const std::function<bool(const Path&)>& may_enter) {
-    std::vector<Path> found{pattern.root_path()};
-    const auto is_pattern = [](const std::string& part) { return part.find_first_of("*?") != std::string::npos; };
-    const Path relative = pattern.relative_path();
-    std::size_t left = static_cast<std::size_t>(std::distance(relative.begin(), relative.end()));
-    for (const Path& part : relative) {
-        --left;
-        std::vector<Path> next;
-        std::set<Path> known;  // folders, links resolved: one that has many names is looked into once
-        for (const Path& folder : found) {
-            check_cancelled();
-            if (!is_pattern(part.string())) {
-                next.push_back(folder / part);
-                continue;
-            }
-            for (const std::string& name : fitting_names(folder, part.string())) {
-                const Path path = folder / name;
-                std::error_code code;
-                if (left == 0 ? std::filesystem::is_regular_file(path, code)
-                              : std::filesystem::is_directory(path, code) && (!may_enter || may_enter(path)) &&
-                                    known.insert(std::filesystem::weakly_canonical(path, code)).second)
-                    next.push_back(path);
-            }
-        }
-        found = std::move(next);
-    }
-    std::erase_if(found, [](const Path& file) { return !file_exists(file); });
-    std::sort(found.begin(), found.end());
-    return found;
 }
 
 }  // namespace ostraka

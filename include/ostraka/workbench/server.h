@@ -10,7 +10,7 @@ namespace ostraka {
 /// What one may ask of the server. Connections that have not said the token are counted apart from pages, so that they cannot
 /// keep a page out.
 struct ServerLimits {
-    std::size_t strangers = 128;            ///< connections that have not said the token; beyond, the oldest is dropped
+    std::size_t unauthenticated = 128;      ///< connections that have not said the token; beyond, the oldest is dropped
     std::size_t pages = 32;                 ///< connections that have said it; beyond, further ones are refused
     std::size_t header = 8192;              ///< bytes
     std::size_t message = 4'000'000;        ///< bytes of a message from the page

@@ -4,7 +4,6 @@
 #include "ostraka/core/json.h"
 #include "ostraka/operation/operation.h"
 
-#include <functional>
 #include <map>
 #include <string>
 #include <variant>
@@ -99,9 +98,5 @@ bool is_own_program(const std::string& name);
 
 /// How a value of a parameter stands in a text.
 std::string scalar_text(const JsonValue& value);
-
-/// The paths, in order, that a pattern with * and ? in its parts names. A folder with several names (links) counts once; those
-/// that `may_enter` refuses do not count.
-std::vector<Path> matching_files(const Path& pattern, const std::function<bool(const Path&)>& may_enter = {});
 
 }  // namespace ostraka
