@@ -1,9 +1,9 @@
 // Operations as commands.
 #include "command_line.h"
 
+#include "signals.h"
 #include "workbench.h"
 
-#include "ostraka/core/child_process.h"
 #include "ostraka/core/file.h"
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/parallel.h"
@@ -14,21 +14,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include <semaphore.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
-#include <condition_variable>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <map>
-#include <mutex>
-#include <thread>
 
 namespace ostraka::app {
 
@@ -374,61 +367,6 @@ void check_standard_output() {
     if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
 }
 
-/// Cancels the work on SIGINT, SIGTERM and SIGHUP. Work that has not ended by itself soon after is ended with the process: its
-/// temporary files, scratch folders and programs go, files that have their names stay.
-class SignalWatch {
-public:
-    explicit SignalWatch(Watch& watch) {
-        ::sem_init(&wanted_, 0, 0);
-        keeper_ = std::thread([this, &watch] { wait(watch); });
-        stop_wanted_ = &wanted_;
-        handle([](int) {
-            ::sem_post(stop_wanted_);
-            handle(SIG_DFL);  // a second one ends the process
-        });
-    }
-    ~SignalWatch() {
-        handle(SIG_DFL);
-        {
-            const std::lock_guard lock(mutex_);
-            has_ended_ = true;
-        }
-        ended_.notify_one();
-        ::sem_post(&wanted_);
-        keeper_.join();
-        ::sem_destroy(&wanted_);
-    }
-    SignalWatch(const SignalWatch&) = delete;
-    SignalWatch& operator=(const SignalWatch&) = delete;
-
-private:
-    static void handle(void (*handler)(int)) {
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, handler);
-    }
-
-    void wait(Watch& watch) {
-        while (::sem_wait(&wanted_) != 0) {
-        }
-        std::unique_lock lock(mutex_);
-        if (has_ended_) return;
-        watch.cancel();
-        if (ended_.wait_for(lock, patience, [this] { return has_ended_; })) return;
-        abandon_outputs();
-        kill_children();
-        constexpr std::string_view message = "ostraka: cancelled (what was not complete is gone)\n";
-        static_cast<void>(::write(2, message.data(), message.size()) == 0);
-        std::_Exit(cancelled);
-    }
-
-    static constexpr std::chrono::milliseconds patience{700};
-    static inline sem_t* stop_wanted_ = nullptr;
-    sem_t wanted_{};
-    std::mutex mutex_;
-    std::condition_variable ended_;
-    bool has_ended_ = false;
-    std::thread keeper_;
-};
-
 /// Allocations beyond the limit fail, whoever makes them: what the guesses of operations miss ends in words all the same. Stacks
 /// of threads count for the system, though hardly any of them is used: they come on top.
 void limit_allocations(double bytes) {
@@ -454,7 +392,8 @@ int run_call(Call& call, const Common& common) {
         };
     context.watch.memory_limit = common.memory * 1e9;
     limit_allocations(context.watch.memory_limit);
-    const SignalWatch signals(context.watch);
+    const Signals signals;
+    signals.stop([&context] { context.watch.cancel(); });
     bool shown = false;
     const auto show = [&](const Report& report) {
         const ReportFormat format = common.json || common.show == "json" ? ReportFormat::json

@@ -2,6 +2,7 @@
 #include "workbench.h"
 
 #include "command_line.h"
+#include "signals.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -78,59 +79,6 @@ private:
     }
 
     Path file_;
-};
-
-/// The signals that end a program: a thread of its own waits for them, and does what `stop` said. Before that is known, at a
-/// second signal, and where the work does not end within `patience`, the process ends at once: a session loses no step by that.
-class Signals {
-public:
-    Signals() {
-        sigset_t signals;
-        sigemptyset(&signals);
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-        pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-        std::thread([shared = shared_, signals] { shared->wait(signals); }).detach();
-    }
-    ~Signals() {
-        const std::lock_guard lock(shared_->mutex);
-        shared_->stop = {};
-        shared_->is_over = true;
-    }
-    Signals(const Signals&) = delete;
-    Signals& operator=(const Signals&) = delete;
-
-    void stop(std::function<void()> how) const {
-        const std::lock_guard lock(shared_->mutex);
-        shared_->stop = std::move(how);
-    }
-
-private:
-    static constexpr timespec patience{0, 700'000'000};
-
-    struct Shared {
-        std::mutex mutex;
-        std::function<void()> stop;
-        bool is_over = false;
-
-        void wait(const sigset_t& signals) {
-            int signal = 0;
-            sigwait(&signals, &signal);
-            if (!begin_to_stop()) end();
-            sigtimedwait(&signals, nullptr, &patience);
-            const std::lock_guard lock(mutex);
-            if (!is_over) end();
-        }
-        bool begin_to_stop() {
-            const std::lock_guard lock(mutex);
-            if (stop) stop();
-            return stop || is_over;
-        }
-        [[noreturn]] static void end() {
-            abandon_outputs();
-            std::_Exit(cancelled);
-        }
-    };
-    std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
 };
 
 }  // namespace

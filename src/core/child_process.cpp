@@ -102,7 +102,11 @@ ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& o
     if (!options.errors.empty() && options.errors == options.output) posix_spawn_file_actions_adddup2(&settings.actions, 1, 2);
     else if (!options.errors.empty()) settings.print_to(2, options.errors);
     if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&settings.actions, options.folder.c_str());
-    posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETPGROUP);
+    // Signals that this program keeps to one of its threads are the child's own again.
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&settings.attributes, &none);
+    posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
     std::vector<std::string> variables = variables_for(options.threads);
     const int failed = ::posix_spawnp(&id_, words.front().c_str(), &settings.actions, &settings.attributes,
                                       pointers(words).data(), pointers(variables).data());
