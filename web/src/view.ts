@@ -86,7 +86,9 @@ export class View {
     this.controls.smoothTime = reducedMotion ? 0.001 : 0.12;
     this.controls.draggingSmoothTime = reducedMotion ? 0.001 : 0.06;
     this.controls.dollyToCursor = true;
-    this.controls.addEventListener("update", () => this.draw());
+    // Pictures are drawn on demand, so what the pointer, the wheel, fingers or a command start must wake the drawing:
+    // "update" comes only from within it.
+    for (const event of ["controlstart", "control", "transitionstart"] as const) this.controls.addEventListener(event, () => this.draw());
   }
 
   /** What there is to see, instead of what there was. */

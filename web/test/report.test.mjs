@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
+import { turnsByHand } from "./pointer.mjs";
 
 const [command, project] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "ostraka-page-"));
@@ -209,6 +210,15 @@ try {
     await page.keyboard.press("Escape");
     assert.equal(await page.evaluate(() => globalThis.ostraka.state.chosen.value), -1);
     await close();
+  });
+
+  await test("pointer, wheel and fingers turn, move and zoom, with and without motion", async () => {
+    for (const reducedMotion of ["reduce", "no-preference"]) {
+      const { page, told, close } = await open(at("pot.html"), { hasTouch: true, reducedMotion });
+      await turnsByHand(page);
+      assert.deepEqual(told, []);
+      await close();
+    }
   });
 
   await test("a slice is drawn where the plane cuts, and slider and plot set the height", async () => {

@@ -8,6 +8,7 @@ import { tmpdir } from "node:os";
 import { join, relative } from "node:path";
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
+import { turnsByHand } from "./pointer.mjs";
 
 const [command, project, pictures, only] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "ostraka-workbench-"));
@@ -228,6 +229,19 @@ try {
     await again.stop();
     assert.deepEqual(told, []);
     session = at("pot-session");
+  });
+
+  await test("pointer, wheel and fingers turn, move and zoom, with and without motion", async () => {
+    copyFileSync(at("pot.ply"), at("turned.ply"));
+    const server = serve(at("turned.ply"));
+    for (const reducedMotion of ["reduce", "no-preference"]) {
+      const { page, told, close } = await open(await server.address, { hasTouch: true, reducedMotion });
+      await steps(page, 1);
+      await turnsByHand(page);
+      assert.deepEqual(told, []);
+      await close();
+    }
+    await server.stop();
   });
 
   await test("the secret is in the page's address alone", async () => {

@@ -1,5 +1,5 @@
 import { effect, signal } from "@preact/signals";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Language } from "../data";
 import { Picture, drawn, view } from "../picture";
 import * as page from "../state";
@@ -324,7 +324,8 @@ function Footer() {
 function Palette() {
   const input = useRef<HTMLInputElement>(null);
   const [said, setSaid] = useState("");
-  useEffect(() => {
+  // Before the next key is read: what is typed at once after Ctrl+K belongs here.
+  useLayoutEffect(() => {
     if (palette.value) input.current?.focus();
     else setSaid("");
   }, [palette.value]);
