@@ -239,6 +239,29 @@ void wear_experiment(const MouldExperimentOptions& options) {
     write_plot(Path(options.output) / "wear.svg", plot);
 }
 
+/// Figure 3.8: heads in the first two directions of the embedding, a series for each group that the thesis's choice finds,
+/// labelled with what they come from.
+void draw_groups(const Path& file, const std::string& title, const MouldGroups& groups, const std::vector<std::string>& kinds) {
+    Plot plot;
+    plot.title = title;
+    plot.x.label = "first direction of the embedding";
+    plot.y.label = "second";
+    plot.equal = true;
+    for (int group = 0; group < group_count(groups.labels); ++group) {
+        PlotSeries series;
+        series.name = "group " + std::to_string(group + 1);
+        series.joined = false;
+        for (std::size_t i = 0; i < groups.labels.size(); ++i) {
+            if (groups.labels[i] != group) continue;
+            const auto row = static_cast<Eigen::Index>(i);
+            series.points.push_back({groups.coordinates(row, 0), groups.coordinates(row, 1)});
+            series.labels.push_back(kinds[i]);
+        }
+        plot.series.push_back(std::move(series));
+    }
+    write_plot(file, plot);
+}
+
 /// The thesis's runs: 43 moulded heads, some bearded, and heads formed by hand.
 void run_experiment(const MouldExperimentOptions& options) {
     MouldPopulationOptions population;
@@ -255,15 +278,16 @@ void run_experiment(const MouldExperimentOptions& options) {
         const char* name;
         std::function<bool(std::size_t)> chosen;
         std::vector<HeadPart> without;
+        const char* drawn = nullptr;  ///< the plot's file
     };
     const std::vector<StudyVariant> runs{
-        {"moulded, faces only", moulded, {HeadPart::back}},
+        {"moulded, faces only", moulded, {HeadPart::back}, "moulded.svg"},
         {"short hair, heads without beards", [&](std::size_t i) { return short_hair(i) && !heads.beard[i]; }, {HeadPart::back}},
         {"short hair, with beards", short_hair, {HeadPart::back}},
         {"short hair, beards removed", short_hair, {HeadPart::back, HeadPart::beard}},
         {"short hair, beards and chins removed", short_hair, {HeadPart::back, HeadPart::beard, HeadPart::chin}},
         {"formed by hand, whole heads (truth: hats)", [&](std::size_t i) { return !moulded(i); }, {}},
-        {"all together, whole heads (truth: moulds, hats)", everyone, {}}};
+        {"all together, whole heads (truth: moulds, hats)", everyone, {}, "all.svg"}};
     TextTable table({"run", "heads", "kinds", "groups", "adjusted Rand index", "silhouette", "thesis's choice: groups",
                      "its index", "moulded against hand-made"});
     for (const StudyVariant& run : runs) {
@@ -279,6 +303,9 @@ void run_experiment(const MouldExperimentOptions& options) {
                    fixed(groups.silhouette, 2), std::to_string(group_count(theirs.labels)),
                    fixed(adjusted_rand_index(theirs.labels, compared.truth), 2),
                    mixed == 0 ? "apart" : std::to_string(mixed) + " mixed groups"});
+        if (run.drawn != nullptr)
+            draw_groups(Path(options.output) / run.drawn, std::string(run.name) + ": groups as the thesis finds them", theirs,
+                        compared.moulds);
         std::cerr << run.name << " done\n";
     }
     std::cout

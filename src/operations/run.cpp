@@ -9,6 +9,7 @@
 #include "ostraka/workflow/crate.h"
 
 #include <algorithm>
+#include <set>
 
 namespace ostraka {
 
@@ -157,11 +158,26 @@ struct Run final : Operation {
     }
 
 private:
+    /// Of the steps that were asked for, and of those that they need.
     void check_programs(const StudyPlan& plan, const RunStudyOptions& options) const {
-        for (const StudyStep& step : plan.study.steps)
+        std::set<std::size_t> asked;
+        std::vector<std::size_t> next;
+        for (std::size_t i = 0; i < plan.instances.size(); ++i) {
+            const std::string& name = plan.study.steps[plan.instances[i].step].name;
+            if (options.only.empty() || std::find(options.only.begin(), options.only.end(), name) != options.only.end())
+                next.push_back(i);
+        }
+        while (!next.empty()) {
+            const std::size_t i = next.back();
+            next.pop_back();
+            if (asked.insert(i).second) next.insert(next.end(), plan.instances[i].needs.begin(), plan.instances[i].needs.end());
+        }
+        for (const std::size_t i : asked) {
+            const StudyStep& step = plan.study.steps[plan.instances[i].step];
             if (step.operation == nullptr)
                 static_cast<void>(find_program(text_of(*step.program.front().value), options.program_folder,
                                                plan.study.at(step.place + "/program/0")));
+        }
     }
 
     static Path run_folder(const Path& file) {
