@@ -44,10 +44,45 @@ struct StudyMake : Operation {
 /// Those that make statuettes.
 struct StudyMakeStatuettes : StudyMake {
     static std::string name_of(std::size_t i, std::size_t count) { return "statuette-" + padded(i + 1, count); }
+    /// Generates one of a population. Sizes that give no sound surface (arms that touch the head, say) are drawn again, as those
+    /// of the same place in the population of another seed; then `drawn` changes. Throws as generate_statuette after ten times.
+    template <class Population>
+    static Statuette generate_one(Population population, std::size_t i, StatuetteParameters& drawn) {
+        constexpr int attempts = 10;
+        for (int attempt = 1;; ++attempt) {
+            try {
+                return generate_statuette(drawn);
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::failure || attempt == attempts) throw;
+            }
+            population.seed = (population.seed + 1000003) % 1000000000;
+            drawn = draw_population(population).at(i);
+        }
+    }
+
+    /// All of a population, as they were drawn in the end. Says which were drawn again.
+    template <class Population>
+    std::vector<StatuetteParameters> make_population(Context& context, const Population& population, bool coloured,
+                                                     const std::function<void(std::size_t, const Statuette&)>& look = {}) const {
+        std::vector<StatuetteParameters> list = draw_population(population);
+        std::vector<char> is_drawn_again(list.size(), 0);
+        const std::string command = context.provenance().command;
+        make_each("statuettes", list.size(), [&](std::size_t i) {
+            const std::uint64_t seed = list[i].seed;
+            const Statuette statuette = generate_one(population, i, list[i]);
+            is_drawn_again[i] = list[i].seed != seed ? 1 : 0;
+            write_one(name_of(i, list.size()), statuette, list[i], command, coloured);
+            if (look) look(i, statuette);
+        });
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (is_drawn_again[i] != 0)
+                context.note(name_of(i, list.size()) + " was drawn again: its first sizes gave no sound surface");
+        return list;
+    }
+
     /// Writes mesh and annotations, whose provenance is what the one statuette was made of.
-    void make_one(const std::string& name, const StatuetteParameters& parameters, const std::string& command, bool coloured,
-                  const std::function<void(const Statuette&)>& look = {}) const {
-        const Statuette statuette = generate_statuette(parameters);
+    void write_one(const std::string& name, const Statuette& statuette, const StatuetteParameters& parameters,
+                   const std::string& command, bool coloured) const {
         const Provenance provenance{command, list_options(parameters), {}};
         MeshExtras extras;
         extras.face_labels = statuette.face_labels;
@@ -59,7 +94,6 @@ struct StudyMakeStatuettes : StudyMake {
         write(name, statuette.mesh, extras, provenance);
         write_annotations(folder.in(name + ".ant.json"), annotate_statuette(statuette), statuette.mesh, name + ".ply",
                           provenance);
-        if (look) look(statuette);
     }
 };
 
@@ -87,9 +121,7 @@ struct StudyMakeProportions final : StudyMakeStatuettes {
     }
 
     void run(Context& context, Report& report) override {
-        const std::vector<StatuetteParameters> list = draw_population(options);
-        const std::string command = context.provenance().command;
-        make_each("statuettes", list.size(), [&](std::size_t i) { make_one(name_of(i, list.size()), list[i], command, false); });
+        const std::vector<StatuetteParameters> list = make_population(context, options, false);
         std::string truth =
             csv_row({"name", "total height [mm]", "base diameter [mm]", "right arm [mm]", "left arm [mm]", "head height [mm]"});
         for (std::size_t i = 0; i < list.size(); ++i) {
@@ -121,25 +153,23 @@ struct StudyMakeTechnique final : StudyMakeStatuettes {
     }
 
     void run(Context& context, Report& report) override {
-        const std::vector<StatuetteParameters> list = draw_population(options);
-        const std::string command = context.provenance().command;
-        std::vector<std::vector<std::string>> rows(list.size());
-        make_each("statuettes", list.size(), [&](std::size_t i) {
-            const std::string name = name_of(i, list.size());
-            rows[i] = {name, option_text(list[i], "technique")};
-            for (const auto& [key, value] : list_options(list[i]))
-                if (key != "technique") rows[i].push_back(value);
-            make_one(name, list[i], command, true, [&](const Statuette& made) {
-                rows[i].push_back(std::to_string(made.mesh.number_of_vertices()));
-                rows[i].emplace_back(CGAL::is_closed(made.mesh) ? "true" : "false");
+        std::vector<std::array<std::string, 2>> meshes(static_cast<std::size_t>(options.objects));
+        const std::vector<StatuetteParameters> list =
+            make_population(context, options, true, [&](std::size_t i, const Statuette& made) {
+                meshes[i] = {std::to_string(made.mesh.number_of_vertices()), CGAL::is_closed(made.mesh) ? "true" : "false"};
             });
-        });
         std::vector<std::string> header{"name", "label"};
         for (const auto& [key, value] : list_options(list.front()))
             if (key != "technique") header.push_back(key);
         header.insert(header.end(), {"mesh-vertices", "closed"});
         std::string truth = csv_row(header);
-        for (const auto& row : rows) truth += csv_row(row);
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            std::vector<std::string> row{name_of(i, list.size()), option_text(list[i], "technique")};
+            for (const auto& [key, value] : list_options(list[i]))
+                if (key != "technique") row.push_back(value);
+            row.insert(row.end(), meshes[i].begin(), meshes[i].end());
+            truth += csv_row(row);
+        }
         write_file(folder.in("truth.csv"), truth);
 
         const auto wheel = static_cast<std::size_t>(std::count_if(
