@@ -2,6 +2,8 @@
 
 #include "face_cutter.h"
 
+#include "ostraka/core/progress.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -266,6 +268,7 @@ private:
 }  // namespace
 
 CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, const std::vector<Index>& seeds) {
+    check_cancelled();
     CurveFilling filling;
     filling.sides.assign(mesh.number_of_faces(), FaceSide::out);
     std::vector<bool> known(mesh.number_of_faces(), false);

@@ -10,6 +10,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/io/glb.h"
@@ -31,6 +32,7 @@ using Eigen::Vector3d;
 using glb::append;
 
 constexpr std::size_t exact_in_float = std::size_t{1} << 24;
+constexpr std::size_t check_every = 1 << 16;  ///< elements between two looks at whether the work was cancelled
 
 /// What a primitive's vertices are: places of the mesh with the feature of each set.
 struct Corners {
@@ -96,6 +98,7 @@ private:
         for (Index i = 0; i < none(); ++i) {
             const Annotation& annotation = set_.annotations[i];
             if (annotation.type != AnnotationType::region || annotation.faces.empty()) continue;
+            check_cancelled();
             regions.emplace_back(area_of(mesh_, annotation.faces), i);
         }
         std::sort(regions.begin(), regions.end());
@@ -123,6 +126,7 @@ private:
         std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(mesh_.number_of_vertices());
         std::vector<Index> kind(sets.size());
         for (const Face face : mesh_.faces()) {
+            if (face.idx() % check_every == 0) check_cancelled();
             for (std::size_t s = 0; s < sets.size(); ++s) kind[s] = sets[s][face];
             const Index number = kinds.emplace(kind, static_cast<Index>(kinds.size())).first->second;
             for (const Vertex v : corners(mesh_, face)) {
@@ -196,6 +200,7 @@ private:
         low.fill(std::numeric_limits<float>::max());
         high.fill(std::numeric_limits<float>::lowest());
         for (std::size_t i = 0; i < count; ++i) {
+            if (i % check_every == 0) check_cancelled();
             const Point& p = mesh_.point(Vertex(corners_.vertices[i]));
             for (int k = 0; k < 3; ++k) {
                 if (std::fabs(p[k]) > static_cast<double>(std::numeric_limits<float>::max()))
