@@ -120,6 +120,7 @@ public:
         follow_steps(edit);
         for (const Index handle : handles) last_.touched[handle] = true;
         last_.by_handles = true;
+        is_under_way_ = true;
         cage = last_.handles;
         const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
         edited_ = columns_of(shape);
@@ -264,6 +265,7 @@ private:
         const semantic::State now(mesh);
         semantic::State edited(edited_mesh_);
         edited.asked = asked_;
+        edited.is_under_way = is_under_way_;
         for (std::size_t i = 0; i < statements_.size(); ++i) {
             if (!active[i]) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
@@ -423,6 +425,7 @@ private:
         const semantic::State last(mesh);
         semantic::State edited(edited_mesh_);
         edited.asked = asked_;
+        edited.is_under_way = is_under_way_;
         for (std::size_t i = 0; i < statements_.size(); ++i) {
             if (!active[i]) continue;
             const bool axes = statements_[i].follows && !statements_[i].until_it_holds;
@@ -506,7 +509,8 @@ private:
     std::string where_, graph_where_;
     Points rest_;
     EditState last_;
-    std::vector<bool> asked_;  ///< vertices that the edit asks to move; empty: none is told from others
+    std::vector<bool> asked_;    ///< vertices that the edit asks to move; empty: none is told from others
+    bool is_under_way_ = false;  ///< handles are being dragged
     Mesh edited_mesh_;
     Points edited_;
     std::vector<semantic::Statement> statements_;  ///< of the constraints in the report

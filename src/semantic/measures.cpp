@@ -200,10 +200,18 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     const Gauge other(*read, "measure2", 1);
     const Range range = read->range(part->gauge().at_rest() / other.at_rest());
     const bool tapes = part->gauge().is_tape() || other.is_tape();
+    read->read_leader();
     Statement statement;
     statement.anchors = part->anchors();
     statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) {
+        if (const auto leader = read->leader(edited)) {
+            Statement::Constraints list = only(read->as_edited(*leader, edited));
+            const double led = (*leader == 0 ? part->gauge() : other).value(edited);
+            list.push_back(*leader == 0 ? Stretch(read, 1, other).to({led / range.max, led / range.min}, edited, now)
+                                        : part->to({range.min * led, range.max * led}, edited, now));
+            return list;
+        }
         const double size = other.value(now);
         return only(tapes ? part->to({range.min * size, range.max * size}, edited, now)
                           : part->against(other, range, edited, now));
@@ -238,10 +246,13 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
         for (const auto& part : parts) sum += part->gauge().value(state);
         return sum / static_cast<double>(parts.size());
     };
+    read->read_leader();
     statement.lower = [=](const State& edited, const State& now) {
-        const double size = mean(now);
+        const auto leader = read->leader(edited);
+        const double size = leader ? parts[*leader]->gauge().value(edited) : mean(now);
         Statement::Constraints list;
-        for (const auto& part : parts) list.push_back(part->to({size, size}, edited, now));
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            list.push_back(i == leader ? read->as_edited(i, edited) : parts[i]->to({size, size}, edited, now));
         return list;
     };
     const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};

@@ -93,15 +93,25 @@ Statement part_similarity(const ReaderPtr& read, const RelationOptions& toleranc
     for (std::size_t i = 0; i < read->members(); ++i) at_rest.push_back(surface(read->shape().mesh, read->faces(i)));
     for (const double area : at_rest)
         if (!(area > 0)) read->fail("has a part without area", "use other parts");
+    read->read_leader();
     Statement statement;
     statement.follows = true;
-    // Each keeps its shape at rest, and all are as many times as large: the mean of what they are now.
-    statement.lower = [=](const State&, const State& now) {
-        double factor = 0;
-        for (std::size_t i = 0; i < at_rest.size(); ++i)
-            factor += std::sqrt(surface(now.mesh, read->faces(i)) / at_rest[i]) / static_cast<double>(at_rest.size());
+    // Each keeps its shape at rest, and all are as many times as large: as the one that leads, else the mean of what they are
+    // now.
+    statement.lower = [=](const State& edited, const State& now) {
+        const auto leader = read->leader(edited);
+        const auto growth = [&](const State& state, std::size_t i) {
+            return std::sqrt(surface(state.mesh, read->faces(i)) / at_rest[i]);
+        };
+        double factor = leader ? growth(edited, *leader) : 0;
+        if (!leader)
+            for (std::size_t i = 0; i < at_rest.size(); ++i) factor += growth(now, i) / static_cast<double>(at_rest.size());
         Statement::Constraints list;
         for (std::size_t i = 0; i < at_rest.size(); ++i) {
+            if (i == leader) {
+                list.push_back(read->as_edited(i, edited));
+                continue;
+            }
             ConstraintParameters parameters;
             parameters.min = parameters.max = factor;
             list.push_back(read->make("Similarity", ids_of(read->vertices(i)), parameters));
@@ -122,14 +132,17 @@ Statement same_length(const ReaderPtr& read, const RelationOptions& tolerances) 
         return sum / static_cast<double>(ways.size());
     };
     if (!(mean(read->shape().rest) > 0)) read->fail("has lines without length", "use other lines");
+    read->read_leader();
     Statement statement;
     statement.follows = statement.until_it_holds = true;
-    statement.lower = [=](const State&, const State& now) {
+    statement.lower = [=](const State& edited, const State& now) {
+        const auto leader = read->leader(edited);
         ConstraintParameters parameters;
-        parameters.min = parameters.max = mean(now.points);
+        parameters.min = parameters.max = leader ? length_along(ways[*leader], edited.points) : mean(now.points);
         parameters.absolute = true;
         Statement::Constraints list;
-        for (const auto& way : ways) list.push_back(read->make("PolylineLength", way, parameters));
+        for (std::size_t i = 0; i < ways.size(); ++i)
+            list.push_back(i == leader ? read->as_edited(i, edited) : read->make("PolylineLength", ways[i], parameters));
         return list;
     };
     const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};

@@ -127,12 +127,16 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
         read->fail("has a mirror image for less than half of annotation " + std::to_string(read->member(0).id),
                    "give the plane, or a greater --distance");
     parameters.coefficients = partners.coefficients;
+    if (read->members() == 2) read->read_leader();
     Statement statement;
-    statement.lower = [=](const State&, const State&) {
+    statement.lower = [=](const State& edited, const State&) {
         ConstraintParameters given = parameters;
         given.target.emplace(3, static_cast<Eigen::Index>(partners.gaps.size()));
         for (std::size_t i = 0; i < partners.gaps.size(); ++i) given.target->col(static_cast<Eigen::Index>(i)) = partners.gaps[i];
-        return only(read->make("MirrorSymmetry", partners.ids, given));
+        Statement::Constraints list = only(read->make("MirrorSymmetry", partners.ids, given));
+        if (const auto leader = read->members() == 2 ? read->leader(edited) : std::nullopt)
+            list.push_back(read->as_edited(*leader, edited));
+        return list;
     };
     const Deviation distance{"distance", 0.0, tolerance, read->shape().set.unit};
     statement.measure = [=](const State& deformed) {

@@ -162,6 +162,35 @@ public:
         return *found;
     }
 
+    /// The member that the others follow: the one that "follow" names (id or tag), or with "follow": true the one of which the
+    /// edit asks the largest share to move, the first of equals. None without "follow", and where the edit asks for none of them.
+    [[nodiscard]] std::optional<std::size_t> leader(const State& edited) const {
+        const JsonValue* value = given("follow");
+        if (value == nullptr || (value->IsBool() && !value->GetBool())) return {};
+        if (!value->IsBool()) return named_member("follow", *value);
+        std::optional<std::size_t> best;
+        double most = 0;
+        if (edited.asked.empty() || edited.is_under_way) return best;
+        for (std::size_t i = 0; i < members(); ++i) {
+            const std::vector<Index> list = vertices(i);
+            const auto asked = std::count_if(list.begin(), list.end(), [&](Index v) { return edited.asked[v]; });
+            const double share = static_cast<double>(asked) / static_cast<double>(list.size());
+            if (share > most) most = share, best = i;
+        }
+        return best;
+    }
+    /// Checks "follow" before there is an edit.
+    void read_leader() const { static_cast<void>(leader(State(shape_.mesh))); }
+    /// What keeps a member as the edit leaves it.
+    [[nodiscard]] std::unique_ptr<Constraint> as_edited(std::size_t i, const State& edited) const {
+        const std::vector<Index> list = vertices(i);
+        ConstraintParameters parameters;
+        parameters.target.emplace(3, static_cast<Eigen::Index>(list.size()));
+        for (std::size_t k = 0; k < list.size(); ++k)
+            parameters.target->col(static_cast<Eigen::Index>(k)) = edited.points.col(list[k]);
+        return make("Closeness", ids_of(list), parameters);
+    }
+
     const Shape& shape() const { return shape_; }
     const Relationship& relationship() const { return relationship_; }
     [[nodiscard]] std::unique_ptr<Constraint> make(const char* kind, std::vector<int> ids, const ConstraintParameters& parameters,
@@ -181,6 +210,13 @@ public:
     }
 
 private:
+    [[nodiscard]] std::size_t named_member(const char* name, const JsonValue& value) const {
+        for (std::size_t i = 0; i < members(); ++i)
+            if ((value.IsInt() && value.GetInt() == member(i).id) || (value.IsString() && value.GetString() == member(i).tag))
+                return i;
+        fail(std::string(name) + " names none of its annotations",
+             "give true, or the id or tag of the one that the others follow");
+    }
     const JsonValue* given(const char* name) const {
         asked_.insert(name);
         return find_member(parameters_, name);

@@ -147,11 +147,15 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
         statement.reattachment = reattachment_of(*read, level.direction);
         statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     } else {
-        statement.lower = [=](const State&, const State&) {
+        read->read_leader();
+        statement.lower = [=](const State& edited, const State&) {
+            const auto leader = read->leader(edited);
             Statement::Constraints list;
+            if (leader) list.push_back(read->as_edited(*leader, edited));
             if (shapes == "keep")
                 for (std::size_t i = 0; i < read->members(); ++i)
-                    if (const auto ids = ids_of(read->vertices(i)); ids.size() > 1) list.push_back(read->make("Rigid", ids, {}));
+                    if (const auto ids = ids_of(read->vertices(i)); i != leader && ids.size() > 1)
+                        list.push_back(read->make("Rigid", ids, {}));
             list.push_back(read->make(means ? "MeansOnLevel" : "Orientation", references, level));
             return list;
         };

@@ -24,6 +24,7 @@ struct State {
     const Mesh& mesh;
     Points points;
     std::vector<bool> asked = {};  ///< of an edited shape: vertices that the edit asked to move; empty: any
+    bool is_under_way = false;     ///< of an edited shape: handles are being dragged, it is not yet what they ask for
 };
 
 struct Measured {

@@ -2,6 +2,7 @@
 #include "caged.h"
 #include "meshes.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 
 #include <gtest/gtest.h>
@@ -98,6 +99,23 @@ void expect_kept(const Column& column, const Relationship& one, const std::strin
     EXPECT_GT(report.cost_before, 0) << one.type;
 }
 
+/// Parameters of a hard constraint whose parts follow one.
+std::string follows(const std::string& leader) { return R"({"hard": true, "follow": )" + leader + "}"; }
+
+void measure_heights(Column& column) {
+    for (const int id : {foot, top}) {
+        Attribute height;
+        height.id = 1;
+        height.name = "height";
+        height.type = AttributeType::measure;
+        height.measure.tool = "bounding";
+        height.measure.direction = {0, 0, 1};
+        const auto ends = extremes(column.mesh, *column.set.find(id), {0, 0, 1});
+        height.measure.points.assign(ends.begin(), ends.end());
+        column.set.find(id)->attributes.push_back(height);
+    }
+}
+
 }  // namespace
 
 TEST(PartsKept, SelectionsDoNotChangeWithTheShape) {
@@ -150,17 +168,7 @@ TEST(PartsKept, SimilarPartsStaySimilar) {
 
 TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
     Column column;
-    for (const int id : {foot, top}) {
-        Attribute height;
-        height.id = 1;
-        height.name = "height";
-        height.type = AttributeType::measure;
-        height.measure.tool = "bounding";
-        height.measure.direction = {0, 0, 1};
-        const auto ends = extremes(column.mesh, *column.set.find(id), {0, 0, 1});
-        height.measure.points.assign(ends.begin(), ends.end());
-        column.set.find(id)->attributes.push_back(height);
-    }
+    measure_heights(column);
     Relationship equal = constraint(0, "equal attributes", {foot, top}, "{}", 1000);
     equal.parameters.attribute = "height";
     expect_kept(column, equal, R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})");
@@ -168,6 +176,98 @@ TEST(PartsKept, EqualAttributesAreThoseOfTheRelation) {
     RelationGraph graph;
     graph.relationships.push_back(equal);
     EXPECT_NE(error_of(column.space(), tilt_top, graph).find("has no measure"), std::string::npos);
+}
+
+TEST(PartsThatFollow, GrowAsMuchAsTheOneThatIsEdited) {
+    const Column column;
+    const std::string grow = R"({"select": {"annotation": "top"}, "scale": {"factor": 1.4, "centre": [0, 0, 8]}})";
+    const double foot_area = area_of(column.mesh, column.set.find(foot)->faces);
+    const double top_area = area_of(column.mesh, column.set.find(top)->faces);
+    for (const char* follow : {"true", R"("top")", "3"}) {
+        const DeformResult result = solved(column, constraint(0, "part similarity", {foot, top}, follows(follow)), grow);
+        EXPECT_EQ(result.constraints[0].verdict, Verdict::holds);
+        const Mesh there = with_points(column.mesh, result.points);
+        EXPECT_NEAR(area_of(there, column.set.find(foot)->faces) / foot_area, 1.96, 1e-4) << follow;
+        EXPECT_NEAR(area_of(there, column.set.find(top)->faces) / top_area, 1.96, 1e-4) << follow;
+    }
+    // Without it all go to what they are in the mean; led by the part that is not edited nothing grows.
+    const Mesh alike =
+        with_points(column.mesh, solved(column, constraint(0, "part similarity", {foot, top}, R"({"hard": true})"), grow).points);
+    EXPECT_LT(area_of(alike, column.set.find(top)->faces) / top_area, 1.7);
+    const Mesh led =
+        with_points(column.mesh, solved(column, constraint(0, "part similarity", {foot, top}, follows("\"foot\"")), grow).points);
+    EXPECT_NEAR(area_of(led, column.set.find(top)->faces) / top_area, 1, 1e-4);
+}
+
+TEST(PartsThatFollow, TakeItsMeasureItsLengthAndItsPlaceInAProportion) {
+    Column column;
+    measure_heights(column);
+    const std::string stretch = R"({"select": {"annotation": "top"}, "stretch": {"direction": [0, 0, 1], "factor": 1.5}})";
+    const auto height = [&](const DeformResult& result, int id) {
+        const Mesh there = with_points(column.mesh, result.points);
+        const auto ends = extremes(there, *column.set.find(id), {0, 0, 1});
+        return std::abs(there.point(Vertex(ends[1])).z() - there.point(Vertex(ends[0])).z());
+    };
+    const auto rest = points_of(column.mesh);
+    DeformResult still;
+    still.points = rest;
+    const double top_height = 1.5 * height(still, top);
+    // Of a proportion the first part changes, unless it is the one that leads.
+    for (const auto& one :
+         {constraint(0, "same measure", {foot, top}, R"({"measure": "height", "hard": true, "follow": true})"),
+          constraint(
+              0, "proportion", {top, foot},
+              R"({"measure1": "height", "measure2": "height", "minValue": 1, "maxValue": 1, "hard": true, "follow": true})"),
+          constraint(
+              0, "proportion", {foot, top},
+              R"({"measure1": "height", "measure2": "height", "minValue": 1, "maxValue": 1, "hard": true, "follow": true})")}) {
+        const DeformResult result = solved(column, one, stretch);
+        EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << one.type;
+        EXPECT_NEAR(height(result, top), top_height, 1e-3) << one.type;
+        EXPECT_NEAR(height(result, foot), top_height, 0.01) << one.type;
+    }
+    const auto length = [&](const DeformResult& result, int id) {
+        double sum = 0;
+        const auto& way = column.set.find(id)->polylines[0];
+        for (std::size_t i = 1; i < way.size(); ++i)
+            sum += (eigen(result.points[way[i]]) - eigen(result.points[way[i - 1]])).norm();
+        return sum;
+    };
+    const DeformResult result = solved(column, constraint(0, "same length", {left_line, right_line}, follows("true")),
+                                       R"({"select": {"annotation": 4}, "scale": {"factor": 1.1}})");
+    EXPECT_NEAR(length(result, left_line), 1.1 * length(still, left_line), 1e-4);
+    EXPECT_NEAR(length(result, right_line), 1.1 * length(still, left_line), 0.005);
+}
+
+TEST(PartsThatFollow, StandOnItsLevelAndMirrorIt) {
+    Column column;
+    const DeformResult level = solved(column, constraint(0, "same level", {left_line, right_line}, follows("true")),
+                                      R"({"select": {"annotation": 5}, "translate": [0, 0, 0.5]})");
+    EXPECT_NEAR(column.mean(right_line, level.points).z(), 6.5, 1e-4);
+    EXPECT_NEAR(column.mean(left_line, level.points).z(), 6.5, 1e-4);
+    for (const double side : {-1, 1}) {
+        Annotation half;
+        half.id = side < 0 ? 7 : 8;
+        half.tag = side < 0 ? "left" : "right";
+        for (const Index f : column.set.find(shaft)->faces)
+            if (side * centroid(column.mesh, Face(f)).x() > 0.5) half.faces.push_back(f);
+        column.set.annotations.push_back(half);
+    }
+    const DeformResult mirrored = solved(
+        column,
+        constraint(0, "mirror symmetry", {7, 8}, R"({"direction": [1, 0, 0], "point": [0, 0, 0], "hard": true, "follow": true})"),
+        R"({"select": {"annotation": "right"}, "translate": [0.3, 0, 0.2]})");
+    const Eigen::Vector3d at_rest = column.mean(8, points_of(column.mesh));
+    EXPECT_LT((column.mean(8, mirrored.points) - at_rest - Eigen::Vector3d(0.3, 0, 0.2)).norm(), 1e-4);
+    EXPECT_LT((column.mean(7, mirrored.points) - Eigen::Vector3d(-at_rest.x() - 0.3, at_rest.y(), at_rest.z() + 0.2)).norm(),
+              1e-3);
+}
+
+TEST(PartsThatFollow, ALeaderThatIsNoMemberIsRefused) {
+    const Column column;
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("\"spout\"")));
+    EXPECT_NE(error_of(column.space(), tilt_top, graph).find("follow names none of its annotations"), std::string::npos);
 }
 
 TEST(PartsKept, WhatMakesNoSenseIsRefused) {
