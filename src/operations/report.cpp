@@ -11,6 +11,7 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/page/page.h"
 #include "ostraka/render/values.h"
+#include "ostraka/semantic/measure_constraints.h"
 #include "ostraka/transfer/bound_mesh.h"
 
 #include <algorithm>
@@ -396,7 +397,7 @@ struct MakeReport final : Operation {
         shown.slices = one.slices ? &*one.slices : nullptr;
         shown.constraints = std::move(one.constraints);
         shown.conflicts = std::move(one.conflicts);
-        if (one.graph && one.set) shown.checks = check_relations(one.file.mesh, *one.set, *one.graph);
+        if (one.graph && one.set) shown.checks = judge_relationships(one.file.mesh, *one.set, *one.graph);
         PageTable table;
         if (one.set && !one.set->annotations.empty()) {
             table = annotation_table(one.file.mesh, *one.set, static_cast<int>(place), one.name);

@@ -41,6 +41,28 @@ Axis reference_now(const Reader& read, const Axis& rest, const State& now, AxisF
     return found.found ? found : rest;
 }
 
+}  // namespace
+
+Motion motion_back(const Reader& read, const std::vector<Index>& vertices, const State& now) {
+    std::vector<Vector3d> from, to;
+    for (const Index v : vertices) {
+        from.emplace_back(now.points.col(v));
+        to.emplace_back(read.shape().rest.col(v));
+    }
+    return fit_motion(from, to);
+}
+
+Axis axis_carried_back(const Reader& read, std::size_t i, const Axis& rest, const State& now) {
+    Axis found = axis_of_part(now.mesh, read.member(i));
+    if (!found.found) return rest;
+    const Motion back = motion_back(read, read.vertices(i), now);
+    found.point = point_of(back(eigen(found.point)));
+    found.direction = vector_of(back.rotation * eigen(found.direction));
+    return found;
+}
+
+namespace {
+
 /// Volume between the faces and the mean of the points.
 double volume(const Mesh& mesh, const Points& points) {
     const Vector3d middle = points.col(0) + (points.colwise() - points.col(0).eval()).rowwise().mean();
@@ -66,8 +88,9 @@ Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) 
             ConstraintParameters parameters;
             parameters.direction = eigen(reference.direction);
             parameters.point = eigen(reference.point);
-            parameters.rest_direction = eigen(axes[i].direction);
-            parameters.rest_point = eigen(axes[i].point);
+            const Axis own = axis_carried_back(*read, i, axes[i], now);
+            parameters.rest_direction = eigen(own.direction);
+            parameters.rest_point = eigen(own.point);
             list.push_back(read->make("CoAxiality", ids_of(read->vertices(i)), parameters));
         }
         return list;
@@ -81,13 +104,14 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
     const double angle = read->relationship().type == "perpendicular axes" ? pi / 2 : 0;
     Statement statement;
     statement.follows = true;
-    statement.lower = [read, axes, angle](const State&, const State& now) {
+    statement.lower = [read, axes, angle](const State& edited, const State& now) {
         ConstraintParameters parameters;
         parameters.direction = eigen(reference_now(*read, axes.back(), now, axis_of_part).direction);
         parameters.min = parameters.max = angle;
         Statement::Constraints list;
         for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
-            parameters.rest_direction = eigen(axes[i].direction);
+            parameters.rest_direction = eigen(axis_carried_back(*read, i, axes[i], now).direction);
+            parameters.target = columns_at(edited.points, read->vertices(i));
             list.push_back(read->make("AxisDirection", ids_of(read->vertices(i)), parameters));
         }
         return list;
@@ -102,10 +126,19 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
     const Axis rest = axis_of(*read, 1, steadiest);
     const auto segment = std::make_shared<const AxisSegment>(continuing_segment(
         read->shape().mesh, read->member(0), read->member(1), rest.direction, read->number("angle", 10, 0.1, 90)));
+    const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
+    Statement statement;
+    // Of a shape alone, a part that goes another way from the beginning on, and as a whole, does not continue the reference.
+    if (const Axis own = axis_of_part(read->shape().mesh, read->member(0)); read->shape().alone && segment->turned && own.found) {
+        const Vector3d along = eigen(own.direction), direction = eigen(rest.direction);
+        Deviation turned = angle;
+        turned.value = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
+        statement.measure = [turned](const State&) { return verdict_of({turned}); };
+        if (*turned.value > tolerances.angle) return statement;
+    }
     if (!segment->reason.empty())
         read->fail("annotation " + std::to_string(read->member(0).id) + " " + segment->reason,
                    "raise angle, refine the mesh, or state co-axiality");
-    Statement statement;
     statement.follows = true;
     statement.lower = [read, rest, segment](const State&, const State& now) {
         const Axis reference = reference_now(*read, rest, now, steadiest);
@@ -163,7 +196,6 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
             start.col(v) = to + rotation * (shape.col(v) - from);
         }
     };
-    const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
     const Deviation distance{"distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
     statement.measure = [=](const State& deformed) -> Measured {
         const Axis reference = steadiest(deformed.mesh, read->member(1));

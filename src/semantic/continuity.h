@@ -14,6 +14,7 @@ struct AxisSegment {
     std::vector<double> shares;  ///< for each, how far it is from that station to the next, 0 to 1
     int count = 0;               ///< stations
     std::string reason;          ///< why there is none, if there is none
+    bool turned = false;         ///< there is none since the part leaves the axis at once
 };
 
 /// Where the stations are on deformed points: means of the vertices around each, weighted by hat functions along the axis.

@@ -194,6 +194,16 @@ private:
         }
     }
 
+    /// By a hard constraint before it, why a hard one is not solved for: it would only crush the part.
+    [[nodiscard]] std::optional<std::pair<std::size_t, std::string>> contradicted(std::size_t i,
+                                                                                  const std::vector<bool>& active) const {
+        for (std::size_t k = 0; k < i && statements_[i].hard; ++k)
+            if (active[k] && statements_[k].hard)
+                if (std::string why = semantic::contradiction(statements_[k], statements_[i]); !why.empty())
+                    return std::pair{k, std::move(why)};
+        return {};
+    }
+
     static std::vector<bool> used(const DeformResult& result) {
         std::vector<bool> flags;
         for (const ConstraintReport& report : result.constraints) flags.push_back(report.used);
@@ -267,7 +277,7 @@ private:
         edited.asked = asked_;
         edited.is_under_way = is_under_way_;
         for (std::size_t i = 0; i < statements_.size(); ++i) {
-            if (!active[i]) continue;
+            if (!active[i] || contradicted(i, active)) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
             rotating_.insert(statements_[i].rotating.begin(), statements_[i].rotating.end());
             referred_.insert(statements_[i].referred.begin(), statements_[i].referred.end());
@@ -457,6 +467,9 @@ private:
             for (const Deviation& deviation : then.deviations) report.before_values.push_back(deviation.value.value_or(0));
             report.deviations = now.deviations;
             report.text = now.text;
+            if (const auto by = contradicted(i, used(result)))
+                report.text += (report.text.empty() ? "" : "; ") + std::string("not solved for: it contradicts ") +
+                               name_of(result.constraints[by->first]) + ", " + by->second;
             if (!outcome.texts[i].empty()) report.text += (report.text.empty() ? "" : "; ") + outcome.texts[i];
             if (now.verdict != Verdict::holds)
                 result.objections.push_back(name_of(report) +
@@ -495,7 +508,7 @@ private:
             ConstraintConflict conflict;
             conflict.id = result.constraints[left_out].id;
             for (std::size_t i = 0; i < all.size(); ++i)
-                if (active[i] && result.constraints[i].verdict == Verdict::fails && outcome.measured[i].verdict == Verdict::holds)
+                if (active[i] && result.constraints[i].verdict != Verdict::holds && outcome.measured[i].verdict == Verdict::holds)
                     conflict.freed.push_back(result.constraints[i].id);
             conflict.deviations = outcome.measured[left_out].deviations;
             if (!conflict.freed.empty()) result.conflicts.push_back(std::move(conflict));

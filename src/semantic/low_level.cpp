@@ -11,43 +11,47 @@ namespace {
 /// How a kind takes the vertices of its annotations.
 enum class Groups { together, pairs, members, edges, faces, hinges, stars };
 
+/// Whether what a kind admits depends on the shape at rest.
+enum class Keeps { nothing, rest, rest_without_absolute };
+
 struct Form {
     const char* kind;
     Groups groups;
+    Keeps keeps = Keeps::nothing;
 };
 
 /// The kinds whose parameters annotations can give. The others need what the types of their own lower to.
 const std::vector<Form>& forms() {
     static const std::vector<Form> list{
-        {"Closeness", Groups::together},
+        {"Closeness", Groups::together, Keeps::rest},
         {"Line", Groups::together},
         {"Plane", Groups::together},
         {"Orientation", Groups::together},
         {"FittedPlaneOrientation", Groups::together},
         {"Circle", Groups::together},
         {"Sphere", Groups::together},
-        {"Similarity", Groups::members},
-        {"Rigid", Groups::members},
-        {"NonUniformScaling", Groups::members},
+        {"Similarity", Groups::members, Keeps::rest},
+        {"Rigid", Groups::members, Keeps::rest},
+        {"NonUniformScaling", Groups::members, Keeps::rest},
         {"Equilateral", Groups::together},
         {"Parallelogram", Groups::together},
         {"Rectangle", Groups::together},
         {"Angle", Groups::together},
         {"Parallel", Groups::pairs},
         {"Perpendicular", Groups::together},
-        {"PolylineLength", Groups::members},
+        {"PolylineLength", Groups::members, Keeps::rest_without_absolute},
         {"EqualLengths", Groups::pairs},
         {"CoAxiality", Groups::members},
-        {"TetrahedronStrain", Groups::together},
-        {"Volume", Groups::together},
-        {"EdgeStrain", Groups::edges},
-        {"TriangleStrain", Groups::faces},
-        {"Area", Groups::faces},
-        {"Bending", Groups::hinges},
+        {"TetrahedronStrain", Groups::together, Keeps::rest},
+        {"Volume", Groups::together, Keeps::rest_without_absolute},
+        {"EdgeStrain", Groups::edges, Keeps::rest_without_absolute},
+        {"TriangleStrain", Groups::faces, Keeps::rest},
+        {"Area", Groups::faces, Keeps::rest_without_absolute},
+        {"Bending", Groups::hinges, Keeps::rest_without_absolute},
         {"Laplacian", Groups::stars},
-        {"LaplacianDisplacement", Groups::stars},
+        {"LaplacianDisplacement", Groups::stars, Keeps::rest},
         {"CotangentLaplacian", Groups::stars},
-        {"CotangentLaplacianDisplacement", Groups::stars},
+        {"CotangentLaplacianDisplacement", Groups::stars, Keeps::rest},
     };
     return list;
 }
@@ -172,6 +176,8 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
         return list;
     };
     Statement statement;
+    if (form.keeps == Keeps::rest || (form.keeps == Keeps::rest_without_absolute && !parameters.absolute))
+        statement.keeps = "what its vertices are to each other";
     statement.lower = [lower](const State&, const State&) { return lower(); };
     const auto list = std::make_shared<const Statement::Constraints>(lower());
     // Against the size of the group at rest: the finer the mesh, the smaller its edges and faces.

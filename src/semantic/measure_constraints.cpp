@@ -2,32 +2,95 @@
 
 #include "statement.h"
 
+#include "ostraka/coords/coordinates.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/words.h"
 #include "ostraka/geom/with_points.h"
 
 namespace ostraka {
+
+namespace {
+
+using semantic::Shape;
+using semantic::State;
+
+/// What holds on a state of a shape. Throws as `understand` does.
+ConstraintReport measured(const Shape& shape, const State& state, const Relationship& relationship,
+                          const RelationOptions& tolerances, const std::string& graph_name) {
+    const semantic::Statement statement = semantic::understand(shape, relationship, tolerances, graph_name);
+    ConstraintReport report = semantic::report_of(relationship, statement);
+    if (!report.used) return report;
+    if (shape.alone && !statement.keeps.empty()) {
+        report.text = "cannot be judged on one object: it keeps " + statement.keeps + " as at rest; give --rest";
+        return report;
+    }
+    const semantic::Measured found = statement.measure(state);
+    report.verdict = found.verdict;
+    report.deviations = found.deviations;
+    report.text = found.text;
+    return report;
+}
+
+}  // namespace
 
 std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                                   const std::vector<Point>& points, const RelationOptions& tolerances,
                                                   const std::string& graph_name) {
     check_options(tolerances, "constraints");
     const Mesh there = with_points(mesh, points);
-    const semantic::State state(there);
+    const State state(there);
     const Points rest = columns_of(mesh);
-    const semantic::Shape shape{mesh, set, rest};
+    std::vector<ConstraintReport> reports;
+    for (const Relationship& relationship : graph.relationships)
+        if (relationship.is_constraint)
+            reports.push_back(measured({mesh, set, rest}, state, relationship, tolerances, graph_name));
+    return reports;
+}
+
+std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                                                const Mesh* rest, const RelationOptions& tolerances,
+                                                const std::string& graph_name) {
+    check_options(tolerances, "constraints");
+    if (rest != nullptr && rest->number_of_vertices() != mesh.number_of_vertices())
+        fail_input("the shape at rest",
+                   "has " + std::to_string(rest->number_of_vertices()) + " vertices, the mesh " +
+                       std::to_string(mesh.number_of_vertices()),
+                   "give the same mesh in the shape that it had");
+    // Of the shape at rest the points: faces are the mesh's.
+    const Mesh then = rest == nullptr ? mesh : with_points(mesh, points_of(*rest));
+    const State state(mesh);
+    const Points points = columns_of(then);
     std::vector<ConstraintReport> reports;
     for (const Relationship& relationship : graph.relationships) {
         if (!relationship.is_constraint) continue;
-        const semantic::Statement statement = semantic::understand(shape, relationship, tolerances, graph_name);
-        ConstraintReport report = semantic::report_of(relationship, statement);
-        if (report.used) {
-            const semantic::Measured measured = statement.measure(state);
-            report.verdict = measured.verdict;
-            report.deviations = measured.deviations;
-            report.text = measured.text;
+        try {
+            reports.push_back(measured({then, set, points, rest == nullptr}, state, relationship, tolerances, graph_name));
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled) throw;
+            ConstraintReport& report = reports.emplace_back(semantic::report_of(relationship, {}));
+            report.text = "cannot be judged: " + error.problem() + (error.remedy().empty() ? "" : " (" + error.remedy() + ")");
         }
-        reports.push_back(std::move(report));
     }
     return reports;
+}
+
+std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
+                                               const Mesh* rest, const RelationOptions& tolerances,
+                                               const std::string& graph_name) {
+    std::vector<RelationCheck> checks = check_relations(mesh, set, graph, tolerances);
+    const std::vector<ConstraintReport> constraints = judge_constraints(mesh, set, graph, rest, tolerances, graph_name);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < checks.size(); ++i) {
+        if (!graph.relationships[i].is_constraint) continue;
+        const ConstraintReport& constraint = constraints.at(next++);
+        checks[i].verdict = constraint.verdict;
+        checks[i].text = constraint.text;
+        if (constraint.verdict == Verdict::fails && constraint.text.empty())
+            checks[i].text =
+                "out of tolerance: " + joined(constraint.deviations, ", ", [](const Deviation& d) { return d.quantity; });
+        if (!constraint.deviations.empty()) checks[i].parameters.deviations = constraint.deviations;
+    }
+    return checks;
 }
 
 }  // namespace ostraka

@@ -202,6 +202,7 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     const bool tapes = part->gauge().is_tape() || other.is_tape();
     read->read_leader();
     Statement statement;
+    if (!read->has_range()) statement.keeps = "the ratio of its measures";
     statement.anchors = part->anchors();
     statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) {
@@ -225,6 +226,7 @@ Statement keep_measure(const ReaderPtr& read, const RelationOptions&) {
     const auto part = std::make_shared<const Stretch>(read, 0, Gauge(*read, "measure", 0));
     const Range range = read->range(part->gauge().at_rest());
     Statement statement;
+    if (!read->has_range()) statement.keeps = "its measure";
     statement.anchors = part->anchors();
     statement.follows = statement.until_it_holds = true;
     statement.lower = [=](const State& edited, const State& now) { return only(part->to(range, edited, now)); };

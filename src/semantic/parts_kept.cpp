@@ -35,7 +35,8 @@ std::vector<Index> common_outline(const Reader& read) {
     return shared;
 }
 
-/// The outline of two parts turns as a whole until its normal and up are at an angle in the range.
+/// The outline of two parts turns as a whole until its normal and up are at an angle in the range: the normal that relations
+/// measure.
 Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& tolerances, double min, double max) {
     read->need(2, 2);
     const std::vector<Index> shared = common_outline(*read);
@@ -44,10 +45,19 @@ Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& toleran
     parameters.min = min;
     parameters.max = max;
     Relationship stated = read->relationship();
+    stated.is_constraint = false;
     stated.parameters.up = {(*parameters.direction)[0], (*parameters.direction)[1], (*parameters.direction)[2]};
-    parameters.rest_direction = normal_of(read->shape().rest, shared);
     Statement statement;
-    statement.lower = [=](const State&, const State&) { return only(read->make("AxisDirection", ids_of(shared), parameters)); };
+    statement.follows = statement.until_it_holds = true;
+    statement.lower = [=](const State& edited, const State& now) {
+        ConstraintParameters given = parameters;
+        given.rest_direction = normal_of(read->shape().rest, shared);
+        if (const auto plane = RelationMeter(now.mesh, read->shape().set, tolerances).measure(stated).parameters.plane)
+            given.rest_direction = motion_back(*read, shared, now).rotation *
+                                   Vector3d(plane->direction[0], plane->direction[1], plane->direction[2]);
+        given.target = columns_at(edited.points, shared);
+        return only(read->make("AxisDirection", ids_of(shared), given));
+    };
     statement.measure = as_related(read, stated, tolerances);
     return statement;
 }
@@ -158,33 +168,39 @@ Statement same_length(const ReaderPtr& read, const RelationOptions& tolerances) 
 
 Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(1, 0);
-    ConstraintParameters parameters;
-    parameters.direction = read->up();
+    const Vector3d up = read->up();
     struct Part {
         std::vector<Index> vertices;
-        Vector3d axis;
+        Axis axis;
         double angle;
     };
+    const auto angle_to = [up](const Axis& axis) {
+        const Vector3d direction = eigen(axis.direction);
+        return std::atan2(direction.cross(up).norm(), std::abs(direction.dot(up)));
+    };
     std::vector<Part> parts;
-    const double given = read->number("angle", -1, 0, 90);
+    const double given = read->has("angle") ? read->number("angle", 0, 0, 90) : -1;
     for (std::size_t i = 0; i < read->members(); ++i) {
         read->need_region(i);
         const Axis axis = axis_of_part(read->shape().mesh, read->member(i));
         if (!axis.found)
             read->fail("annotation " + std::to_string(read->member(i).id) + " has no axis: " + axis.reason,
                        "name a part that has one");
-        const Vector3d direction = eigen(axis.direction).normalized();
-        const double at_rest = std::acos(std::min(1.0, std::abs(direction.dot(*parameters.direction))));
-        parts.push_back({read->vertices(i), direction, given >= 0 ? given * pi / 180 : at_rest});
+        parts.push_back({read->vertices(i), axis, given >= 0 ? given * pi / 180 : angle_to(axis)});
     }
     Statement statement;
-    statement.lower = [=](const State&, const State&) {
+    if (given < 0) statement.keeps = "its direction";
+    for (std::size_t i = 0; i < parts.size(); ++i) statement.directions.push_back({read->member(i).id, up, parts[i].angle});
+    statement.follows = true;
+    statement.lower = [=](const State& edited, const State& now) {
         Statement::Constraints list;
-        for (const Part& part : parts) {
-            ConstraintParameters own = parameters;
-            own.rest_direction = part.axis;
-            own.min = own.max = part.angle;
-            list.push_back(read->make("AxisDirection", ids_of(part.vertices), own));
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            ConstraintParameters own;
+            own.direction = up;
+            own.rest_direction = eigen(axis_carried_back(*read, i, parts[i].axis, now).direction);
+            own.min = own.max = parts[i].angle;
+            own.target = columns_at(edited.points, parts[i].vertices);
+            list.push_back(read->make("AxisDirection", ids_of(parts[i].vertices), own));
         }
         return list;
     };
@@ -194,8 +210,7 @@ Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerance
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const Axis axis = axis_of_part(deformed.mesh, read->member(i));
             if (!axis.found) return {Verdict::unknown, {}, "a part has no axis any more: " + axis.reason};
-            const double now = std::acos(std::min(1.0, std::abs(eigen(axis.direction).normalized().dot(*parameters.direction))));
-            worst.value = std::max(*worst.value, std::abs(now - parts[i].angle) * 180 / pi);
+            worst.value = std::max(*worst.value, std::abs(angle_to(axis) - parts[i].angle) / degree);
         }
         return verdict_of({worst});
     };
@@ -207,6 +222,7 @@ Statement keep_position(const ReaderPtr& read, const RelationOptions& tolerances
     const std::vector<Index> vertices = read->vertices(0);
     const Vector3d place = read->vector("point").value_or(mean_of(vertices, read->shape().rest));
     Statement statement;
+    if (!read->has("point")) statement.keeps = "its place";
     // The part as the edit leaves it, moved as a whole.
     statement.lower = [=](const State& edited, const State&) {
         ConstraintParameters parameters;

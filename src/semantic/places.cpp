@@ -20,7 +20,8 @@ Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions&
     Statement statement;
     statement.lower = [read, kind](const State&, const State&) { return only(read->make(kind, read->all_vertices(), {})); };
     const std::shared_ptr<const Constraint> together = read->make(kind, read->all_vertices(), {});
-    const Deviation distance{"rms distance", 0.0, length_tolerance(*read, tolerances), read->shape().set.unit};
+    const Deviation distance{"rms distance", 0.0, read->tolerance("distance", length_tolerance(*read, tolerances)),
+                             read->shape().set.unit};
     statement.measure = [together, distance](const State& deformed) {
         Deviation rms = distance;
         rms.value = std::sqrt(together->squared_distance(deformed.points) / static_cast<double>(together->ids().size()));
@@ -53,16 +54,17 @@ struct Partners {
     std::vector<Vector3d> gaps;  ///< image less partner, at rest
 };
 
-Partners partners_of(const Reader& read, const Vector3d& point, const Vector3d& normal, double search_radius) {
-    const std::size_t last = read.members() - 1;
-    const Piece piece(read.shape().mesh, read.faces(last));
+/// Of the vertices of member `from` on the surface of member `to`.
+Partners partners_of(const Reader& read, std::size_t from, std::size_t to, const Vector3d& point, const Vector3d& normal,
+                     double search_radius) {
+    const Piece piece(read.shape().mesh, read.faces(to));
     const SurfaceSearch search(piece.mesh);
     Partners partners;
     Eigen::AlignedBox3d near;
     for (const Vertex v : piece.mesh.vertices()) near.extend(eigen(piece.mesh.point(v)));
     near.extend(near.min() - Vector3d::Constant(search_radius));
     near.extend(near.max() + Vector3d::Constant(search_radius));
-    for (const Index v : read.vertices(0)) {
+    for (const Index v : read.vertices(from)) {
         const Vector3d p = read.shape().rest.col(v), image = p - 2 * normal.dot(p - point) * normal;
         if (!near.contains(image)) continue;
         const SurfaceHit hit = search.closest(point_of(image));
@@ -98,6 +100,44 @@ void add_nearest(const Points& points, const std::vector<Index>& from, const std
     }
 }
 
+/// Of a shape alone: the distances of the mirror images of all vertices of either part from the surface of the other.
+Statement mirrored_alone(const ReaderPtr& read, const RelationOptions& tolerances, const std::optional<Vector3d>& point,
+                         const std::optional<Vector3d>& normal) {
+    Statement statement;
+    if (!normal) {
+        statement.measure = as_related(read, read->relationship(), tolerances);
+        return statement;
+    }
+    double sum = 0;
+    std::size_t count = 0;
+    const double everywhere = 1e3 * box_diagonal(read->shape().mesh) + 2 * (*point).norm();
+    for (const std::size_t from : {std::size_t{0}, read->members() - 1}) {
+        const Partners partners = partners_of(*read, from, read->members() - 1 - from, *point, *normal, everywhere);
+        for (const Vector3d& gap : partners.gaps) sum += gap.squaredNorm(), ++count;
+    }
+    const Deviation rms{"distance", std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, count))),
+                        read->tolerance("distance", length_tolerance(*read, tolerances)), read->shape().set.unit};
+    statement.measure = [rms](const State&) { return verdict_of({rms}); };
+    return statement;
+}
+
+/// Of a shape alone: how far apart the parts are.
+Statement adjacent_alone(const ReaderPtr& read, double tolerance) {
+    const auto first = read->vertices(0), second = read->vertices(1);
+    std::vector<Point> places;
+    for (const Index v : second) places.push_back(read->shape().mesh.point(Vertex(v)));
+    const PointTree tree(places);
+    double gap = std::numeric_limits<double>::infinity();
+    for (const Index v : first) {
+        gap = std::min(gap, std::sqrt(tree.nearest(read->shape().mesh.point(Vertex(v))).squared));
+    }
+    Statement statement;
+    statement.measure = [measured = verdict_of({{"gap", gap, tolerance, read->shape().set.unit}})](const State&) {
+        return measured;
+    };
+    return statement;
+}
+
 }  // namespace
 
 Statement co_planarity(const ReaderPtr& read, const RelationOptions& tolerances) { return all_on("Plane", read, tolerances); }
@@ -112,6 +152,7 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
     parameters.point = read->vector("point");
     if (parameters.direction.has_value() != parameters.point.has_value())
         read->fail("has direction or point of the plane alone", "give both, or neither: the plane is then that at rest");
+    if (read->shape().alone) return mirrored_alone(read, tolerances, parameters.point, parameters.direction);
     if (!parameters.direction) {
         Relationship stated = read->relationship();
         stated.is_constraint = false;
@@ -121,8 +162,9 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
         parameters.point = Vector3d(plane.point[0], plane.point[1], plane.point[2]);
         parameters.direction = Vector3d(plane.direction[0], plane.direction[1], plane.direction[2]);
     }
-    const double tolerance = length_tolerance(*read, tolerances), search_radius = 3 * near(*read, tolerances);
-    const Partners partners = partners_of(*read, *parameters.point, *parameters.direction, search_radius);
+    const double tolerance = read->tolerance("distance", length_tolerance(*read, tolerances)),
+                 search_radius = 3 * near(*read, tolerances);
+    const Partners partners = partners_of(*read, 0, read->members() - 1, *parameters.point, *parameters.direction, search_radius);
     if (2 * partners.gaps.size() < read->vertices(0).size())
         read->fail("has a mirror image for less than half of annotation " + std::to_string(read->member(0).id),
                    "give the plane, or a greater --distance");
@@ -158,6 +200,7 @@ Statement mirror_symmetry(const ReaderPtr& read, const RelationOptions& toleranc
 Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 2);
     const double search_radius = near(*read, tolerances);
+    if (read->shape().alone) return adjacent_alone(read, search_radius);
     const auto first = read->vertices(0), second = read->vertices(1);
     std::vector<Index> shared;
     std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));

@@ -3,10 +3,12 @@
 
 #include "statement.h"
 
+#include "ostraka/axis/axis.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/json.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/rigid_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,9 +119,11 @@ public:
                  "mend it");
         return value->GetDouble();
     }
+    /// Whether the range is given, and not what there is at rest.
+    [[nodiscard]] bool has_range() const { return has("minValue") || has("maxValue"); }
     /// minValue and maxValue (Appendix B.2), positive; without both, what there is `at_rest`.
     [[nodiscard]] Range range(double at_rest) const {
-        if (!has("minValue") && !has("maxValue")) return {at_rest, at_rest};
+        if (!has_range()) return {at_rest, at_rest};
         const auto number = [&](const char* name) {
             const JsonValue* value = given(name);
             if (value == nullptr || !value->IsNumber() || !(value->GetDouble() > 0 && value->GetDouble() < 1e60))
@@ -190,6 +194,12 @@ public:
             parameters.target->col(static_cast<Eigen::Index>(k)) = edited.points.col(list[k]);
         return make("Closeness", ids_of(list), parameters);
     }
+    /// The tolerance that the relationship states for a quantity, or the one for all.
+    [[nodiscard]] double tolerance(const std::string& quantity, double for_all) const {
+        for (const Deviation& deviation : relationship_.parameters.deviations)
+            if (deviation.quantity == quantity && deviation.tolerance) return *deviation.tolerance;
+        return for_all;
+    }
 
     const Shape& shape() const { return shape_; }
     const Relationship& relationship() const { return relationship_; }
@@ -256,6 +266,18 @@ Statement keep_position(const ReaderPtr&, const RelationOptions&);
 /// The kind of the solver whose name the type is ("edge strain"); nullptr if there is none.
 const ConstraintKind* low_level_kind(const std::string& type);
 Statement low_level(const ReaderPtr&, const RelationOptions&);
+
+/// The rigid motion that carries vertices from where they are back to their places at rest.
+Motion motion_back(const Reader& read, const std::vector<Index>& vertices, const State& now);
+/// The axis of a member as it is measured on a shape, carried back to the part at rest by the best rigid motion: what a
+/// constraint carries along from there is then what is measured. Where there is none any more, that at rest.
+Axis axis_carried_back(const Reader& read, std::size_t i, const Axis& rest, const State& now);
+/// The points of some vertices.
+inline Points columns_at(const Points& points, const std::vector<Index>& vertices) {
+    Points some(3, static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i) some.col(static_cast<Eigen::Index>(i)) = points.col(vertices[i]);
+    return some;
+}
 
 /// What relations measure for the type of this name.
 std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances);

@@ -124,8 +124,8 @@ public:
           reattached_(points),
           change_(Points::Zero(3, points.cols())) {
         for (const Reattachment& reattachment : reattachments) {
-            groups_.push_back(
-                {features_.size(), features_.size() + reattachment.features.size(), reattachment.up, reattachment.bend});
+            groups_.push_back({features_.size(), features_.size() + reattachment.features.size(), reattachment.up,
+                               reattachment.bend, reattachment.references});
             for (const Annotation* annotation : reattachment.features) {
                 for (const Index v : vertices_of(mesh, *annotation)) owner_[v] = static_cast<int>(features_.size());
                 features_.push_back(feature_of(mesh, rest, *annotation));
@@ -165,6 +165,7 @@ private:
         std::size_t begin, end;
         std::optional<Vector3d> up;
         double bend;
+        std::vector<std::vector<Index>> references;
     };
 
     /// Moves a placed feature so that its outline lies on the base; with a target height its centroid comes there.
@@ -217,18 +218,22 @@ private:
         for (std::size_t i = group.begin; i < group.end; ++i) bend(features_[i], search, maximum);
         if (!group.up) return;
         const Vector3d& up = *group.up;
-        const auto height = [&](const Feature& f) { return up.dot(centroid_of(mesh_, f.annotation->faces, reattached_)); };
+        const auto height = [&](std::size_t i) {
+            if (group.references.empty()) return up.dot(centroid_of(mesh_, features_[i].annotation->faces, reattached_));
+            double sum = 0;
+            for (const Index v : group.references[i - group.begin]) sum += up.dot(reattached_.col(v));
+            return sum / static_cast<double>(group.references[i - group.begin].size());
+        };
         double mean = 0;
-        for (std::size_t i = group.begin; i < group.end; ++i)
-            mean += height(features_[i]) / static_cast<double>(group.end - group.begin);
+        for (std::size_t i = group.begin; i < group.end; ++i) mean += height(i) / static_cast<double>(group.end - group.begin);
         for (std::size_t i = group.begin; i < group.end; ++i) {
             Feature& feature = features_[i];
             for (int round = 0; round < 5; ++round) {
-                const double wanted = mean - height(feature) + up.dot(feature.pose(feature.centroid));
+                const double wanted = mean - height(i) + up.dot(feature.pose(feature.centroid));
                 settle(feature, search, std::pair{up, wanted});
                 bend(feature, search, maximum);
             }
-            const Vector3d rest = (mean - height(feature)) * up;
+            const Vector3d rest = (mean - height(i)) * up;
             for (const Index v : feature.vertices) reattached_.col(v) += rest;
         }
     }

@@ -9,7 +9,9 @@ namespace ostraka::semantic {
 /// Features that are re-attached together.
 struct Reattachment {
     std::vector<const Annotation*> features;  ///< regions
-    std::optional<Eigen::Vector3d> up;        ///< their centroids come to one level along it
+    std::optional<Eigen::Vector3d> up;        ///< they come to one level along it
+    /// Of each feature the vertices of which the mean stands for its height; empty: the centroid of its area.
+    std::vector<std::vector<Index>> references = {};
     double bend = 0;  ///< root mean square by which one may bend to lie on the base, as a share of the diagonal
 };
 

@@ -39,13 +39,6 @@ Statement::Constraints kept(const Reader& read, const char* kind) {
     return list;
 }
 
-/// The mean of each group of vertices.
-std::vector<Vector3d> means_of(const std::vector<std::vector<Index>>& groups, const Points& points) {
-    std::vector<Vector3d> means;
-    for (const auto& vertices : groups) means.push_back(mean_of(vertices, points));
-    return means;
-}
-
 /// The lowest twentieth of a part's height.
 std::vector<Index> base_of(const Points& rest, const std::vector<Index>& vertices, const Vector3d& up) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -54,6 +47,86 @@ std::vector<Index> base_of(const Points& rest, const std::vector<Index>& vertice
     for (const Index v : vertices)
         if (up.dot(rest.col(v)) <= low + 0.05 * (high - low)) base.push_back(v);
     return base;
+}
+
+/// What stands for the height of a part, where it is solved for, seated and measured alike: the centroid of its area (of a line's
+/// length, of points), or the mean of some of its vertices.
+struct LevelReference {
+    const Annotation* part;
+    std::vector<Index> vertices;
+    bool centroid;
+
+    /// Of each vertex in the mean.
+    [[nodiscard]] std::vector<double> weights(const Mesh& mesh) const {
+        std::vector<double> list(vertices.size(), centroid ? 0 : 1);
+        const auto add = [&](Index v, double weight) {
+            list[static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin())] += weight;
+        };
+        if (!centroid) return list;
+        for (const Index f : part->faces)
+            for (const Index v : corners(mesh, Face(f))) add(v, face_area(mesh, Face(f)) / 3);
+        for (const auto& line : part->polylines)
+            for (std::size_t i = 1; i < line.size(); ++i) {
+                const double length = (eigen(mesh.point(Vertex(line[i]))) - eigen(mesh.point(Vertex(line[i - 1])))).norm();
+                add(line[i - 1], length / 2), add(line[i], length / 2);
+            }
+        for (const Index v : part->points) add(v, 1);
+        if (std::all_of(list.begin(), list.end(), [](double weight) { return !(weight > 0); })) list.assign(list.size(), 1);
+        return list;
+    }
+    [[nodiscard]] Vector3d place(const Mesh& mesh, const Points& points) const {
+        const std::vector<double> weight = weights(mesh);
+        Vector3d sum = Vector3d::Zero();
+        double whole = 0;
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            sum += weight[i] * (points.col(vertices[i]) - points.col(vertices.front())), whole += weight[i];
+        return points.col(vertices.front()) + sum / whole;
+    }
+};
+
+std::vector<LevelReference> level_references(const Reader& read, const std::string& reference, const Vector3d& up) {
+    std::vector<LevelReference> list;
+    for (std::size_t i = 0; i < read.members(); ++i) {
+        std::vector<Index> vertices = read.vertices(i);
+        if (reference == "base") vertices = base_of(read.shape().rest, vertices, up);
+        if (reference == "vertex") vertices = {reference_vertex(read.shape().rest, vertices)};
+        list.push_back({&read.member(i), std::move(vertices), reference == "mean"});
+    }
+    return list;
+}
+
+/// How far apart the references are in height, beyond what they are at the places given for rest.
+double apart(const std::vector<LevelReference>& references, const Vector3d& up, const State& state,
+             const std::vector<Vector3d>& rest = {}) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < references.size(); ++i) {
+        const Vector3d place = references[i].place(state.mesh, state.points);
+        const double height = up.dot(rest.empty() ? place : Vector3d(place - rest[i]));
+        low = std::min(low, height), high = std::max(high, height);
+    }
+    return high - low;
+}
+
+/// The constraint on the heights of references; with places at rest, their differences are those.
+std::unique_ptr<Constraint> level_of(const Reader& read, const std::vector<LevelReference>& references, const Vector3d& up,
+                                     const Mesh& weighted_on, const std::vector<Vector3d>& rest) {
+    ConstraintParameters level;
+    level.direction = up;
+    std::vector<int> ids;
+    for (std::size_t i = 0; i < references.size(); ++i) {
+        const std::vector<double> weights = references[i].weights(weighted_on);
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            if (!(weights[k] > 0)) continue;
+            ids.push_back(static_cast<int>(references[i].vertices[k]));
+            level.stations.push_back(static_cast<int>(i));
+            level.coefficients.push_back(weights[k]);
+        }
+    }
+    if (!rest.empty()) {
+        level.target.emplace(3, static_cast<Eigen::Index>(rest.size()));
+        for (std::size_t i = 0; i < rest.size(); ++i) level.target->col(static_cast<Eigen::Index>(i)) = rest[i];
+    }
+    return read.make("MeansOnLevel", ids, level);
 }
 
 Reattachment reattachment_of(const Reader& read, std::optional<Vector3d> up) {
@@ -85,6 +158,7 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     const std::string mode = read->word("mode", "rigid", {"rigid", "similar", "seat"});
     const char* const kind = mode == "similar" ? "Similarity" : "Rigid";
     Statement statement;
+    statement.keeps = "its shape";
     if (mode == "seat") statement.reattachment = reattachment_of(*read, {});
     const auto parts = std::make_shared<const Statement::Constraints>(kept(*read, kind));
     statement.lower = [read, kind, reattached = mode == "seat"](const State&, const State&) {
@@ -107,74 +181,49 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
 
 Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
-    ConstraintParameters level;
-    level.direction = read->up();
+    const Vector3d up = read->up();
     const std::string shapes = read->word("shapes", "keep", {"keep", "free", "seat"});
-    Relationship stated = read->relationship();
-    stated.parameters.up = {(*level.direction)[0], (*level.direction)[1], (*level.direction)[2]};
-    const auto related = as_related(read, stated, tolerances);
-    const Mesh& mesh = read->shape().mesh;
-    // Parts that stand on one level keep what they are off at rest; others are brought to one.
-    const bool is_level = related(State(mesh)).verdict == Verdict::holds;
-    const bool as_at_rest = shapes != "seat" && read->word("heights", is_level ? "rest" : "equal", {"rest", "equal"}) == "rest";
     // The thesis takes a reference vertex of each part, whose place on the part is as fine as the mesh: at rest such vertices are
-    // not on one level themselves. Means of parts are.
+    // not on one level themselves. Centroids of parts are.
     const std::string reference = read->word("reference", "mean", {"mean", "vertex", "base"});
-    const bool means = reference != "vertex";
-    std::vector<std::vector<Index>> groups;
-    for (std::size_t i = 0; i < read->members(); ++i)
-        groups.push_back(reference == "base" ? base_of(read->shape().rest, read->vertices(i), *level.direction)
-                                             : read->vertices(i));
-    std::vector<int> references;
-    for (std::size_t i = 0; i < read->members(); ++i) {
-        const auto& vertices = groups[i];
-        if (means) {
-            for (const Index v : vertices) {
-                references.push_back(static_cast<int>(v));
-                level.stations.push_back(static_cast<int>(i));
-            }
-        } else {
-            references.push_back(static_cast<int>(reference_vertex(read->shape().rest, vertices)));
-        }
-    }
-    const std::vector<Vector3d> places = means_of(groups, read->shape().rest);
-    if (as_at_rest && means) {
-        level.target.emplace(3, static_cast<Eigen::Index>(places.size()));
-        for (std::size_t i = 0; i < places.size(); ++i) level.target->col(static_cast<Eigen::Index>(i)) = places[i];
-    }
+    const auto references = std::make_shared<const std::vector<LevelReference>>(level_references(*read, reference, up));
+    const Mesh& mesh = read->shape().mesh;
+    const double tolerance = read->tolerance("height", length_tolerance(*read, tolerances));
+    // Parts that stand on one level keep what they are off at rest; others are brought to one.
+    const bool keeps = reference != "vertex" && !read->shape().alone && apart(*references, up, State(mesh)) <= tolerance;
+    const bool as_at_rest = shapes != "seat" && read->word("heights", keeps ? "rest" : "equal", {"rest", "equal"}) == "rest";
+    std::vector<Vector3d> places;
+    if (as_at_rest)
+        for (const LevelReference& one : *references) places.push_back(one.place(mesh, read->shape().rest));
     Statement statement;
+    if (as_at_rest) statement.keeps = "the differences of height";
     if (shapes == "seat") {
-        statement.reattachment = reattachment_of(*read, level.direction);
+        statement.reattachment = reattachment_of(*read, up);
+        for (const LevelReference& one : *references)
+            if (!one.centroid) statement.reattachment->references.push_back(one.vertices);
         statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     } else {
         read->read_leader();
-        statement.lower = [=](const State& edited, const State&) {
+        // Rigid parts have the centroid of their vertices as they weigh at rest; of others the weights follow.
+        const bool rigid = shapes == "keep";
+        statement.follows = !rigid && reference == "mean";
+        statement.lower = [=](const State& edited, const State& now) {
             const auto leader = read->leader(edited);
             Statement::Constraints list;
             if (leader) list.push_back(read->as_edited(*leader, edited));
-            if (shapes == "keep")
+            if (rigid)
                 for (std::size_t i = 0; i < read->members(); ++i)
                     if (const auto ids = ids_of(read->vertices(i)); i != leader && ids.size() > 1)
                         list.push_back(read->make("Rigid", ids, {}));
-            list.push_back(read->make(means ? "MeansOnLevel" : "Orientation", references, level));
+            list.push_back(level_of(*read, *references, up, rigid ? read->shape().mesh : now.mesh, places));
             return list;
         };
     }
-    if (!level.target) {
-        statement.measure = related;
-        return statement;
-    }
-    const Deviation change{"change of the heights against each other", 0.0, length_tolerance(*read, tolerances),
+    const Deviation height{as_at_rest ? "change of the heights against each other" : "height", 0.0, tolerance,
                            read->shape().set.unit};
-    statement.measure = [groups, places, change, up = *level.direction](const State& deformed) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        const std::vector<Vector3d> now = means_of(groups, deformed.points);
-        for (std::size_t i = 0; i < now.size(); ++i) {
-            const double risen = up.dot(now[i] - places[i]);
-            low = std::min(low, risen), high = std::max(high, risen);
-        }
-        Deviation worst = change;
-        worst.value = high - low;
+    statement.measure = [=](const State& deformed) {
+        Deviation worst = height;
+        worst.value = apart(*references, up, deformed, places);
         return verdict_of({worst});
     };
     return statement;

@@ -2,6 +2,8 @@
 
 #include "reader.h"
 
+#include "ostraka/core/angles.h"
+#include "ostraka/core/text.h"
 #include "ostraka/relation/geometric.h"
 
 #include <map>
@@ -76,6 +78,26 @@ Statement understand(const Shape& shape, const Relationship& relationship, const
     statement.hard = read->flag("hard");
     read->refuse_others();
     return statement;
+}
+
+std::string contradiction(const Statement& one, const Statement& other) {
+    constexpr double exact = 1e-6;
+    for (const Statement::Direction& a : one.directions)
+        for (const Statement::Direction& b : other.directions) {
+            if (a.annotation != b.annotation) continue;
+            // Axes have no sign: each direction may be turned round.
+            const double between = std::atan2(a.direction.cross(b.direction).norm(), a.direction.dot(b.direction));
+            const auto apart = [&](double angle) {
+                return angle < std::abs(a.angle - b.angle) - exact || angle > a.angle + b.angle + exact;
+            };
+            if (!apart(between) || !apart(pi - between)) continue;
+            const auto text = [](const Statement::Direction& d) {
+                return digits(d.angle / degree, 4) + " degrees to (" + digits(d.direction.x(), 4) + ", " +
+                       digits(d.direction.y(), 4) + ", " + digits(d.direction.z(), 4) + ")";
+            };
+            return "no axis of annotation " + std::to_string(a.annotation) + " is at " + text(a) + " and at " + text(b);
+        }
+    return {};
 }
 
 ConstraintReport report_of(const Relationship& relationship, const Statement& statement) {

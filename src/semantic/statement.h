@@ -16,6 +16,8 @@ struct Shape {
     const Mesh& mesh;
     const AnnotationSet& set;
     const Points& rest;
+    /// There is no other state: the mesh is to be judged as it is, by what a constraint says outright.
+    bool alone = false;
 };
 
 /// The shape with other points.
@@ -51,7 +53,15 @@ struct Statement {
     bool follows = false;                      ///< lower gives others when the shape has moved
     bool until_it_holds = false;               ///< follows only as long as it does not hold
     bool hard = false;
-    std::string unknown;  ///< why it is left out, if it is
+    /// The axis of an annotation at an angle (radians) with a direction.
+    struct Direction {
+        int annotation = 0;
+        Eigen::Vector3d direction;
+        double angle = 0;
+    };
+    std::vector<Direction> directions;  ///< of parts, that it asks for outright
+    std::string unknown;                ///< why it is left out, if it is
+    std::string keeps;  ///< what it keeps of the shape at rest: nothing says that of a shape alone; empty: nothing
 };
 
 /// A list of one constraint.
@@ -67,6 +77,9 @@ std::vector<int> star_of(const Mesh& mesh, Vertex vertex, int first = 0);
 /// Reads a relationship and checks it on the shape at rest. Throws Error (input) naming it where it makes no sense.
 Statement understand(const Shape& shape, const Relationship& relationship, const RelationOptions& tolerances,
                      const std::string& where);
+
+/// Why no shape can meet both, as far as the directions of parts tell; empty: it can.
+std::string contradiction(const Statement& one, const Statement& other);
 
 /// Of a constraint that was understood, before anything is measured: what it is, and whether it is used.
 ConstraintReport report_of(const Relationship& relationship, const Statement& statement);

@@ -15,13 +15,17 @@ using Eigen::Vector3d;
 /// rest: hat functions, so that no wave as long as a group is left where the stations move.
 class StationMeans : public Constraint {
 protected:
-    StationMeans(const Making& m, const std::vector<double>& shares) : Constraint(m.kind, m.ids, m.weight) {
+    StationMeans(const Making& m, const std::vector<double>& shares, const std::vector<double>& weights = {})
+        : Constraint(m.kind, m.ids, m.weight) {
         std::vector<int> stations = m.parameters.stations;
         if (stations.empty())
             for (std::size_t i = 0; i < ids().size(); ++i) stations.push_back(static_cast<int>(i));
         if (stations.size() != ids().size()) m.fail("there must be a station for each point");
         if (!shares.empty() && shares.size() != ids().size())
             m.fail("there are " + std::to_string(shares.size()) + " coefficients for " + std::to_string(ids().size()) +
+                   " points");
+        if (!weights.empty() && weights.size() != ids().size())
+            m.fail("there are " + std::to_string(weights.size()) + " coefficients for " + std::to_string(ids().size()) +
                    " points");
         int count = 0;
         for (const int station : stations) {
@@ -35,7 +39,10 @@ protected:
             const double share = shares.empty() ? 0.0 : shares[i];
             if (!(share >= 0 && share <= 1))
                 m.fail("coefficient " + std::to_string(i) + " is " + std::to_string(share), "shares are from 0 to 1");
-            if (share < 1) members[stations[i]].emplace_back(static_cast<std::int32_t>(i), 1 - share);
+            const double weight = weights.empty() ? 1.0 : weights[i];
+            if (!(weight > 0 && weight < 1e60))
+                m.fail("coefficient " + std::to_string(i) + " is " + std::to_string(weight), "weights are positive");
+            if (share < 1) members[stations[i]].emplace_back(static_cast<std::int32_t>(i), weight * (1 - share));
             if (share > 0) members[stations[i] + 1].emplace_back(static_cast<std::int32_t>(i), share);
         }
         for (int s = 0; s < count; ++s) {
@@ -65,7 +72,7 @@ private:
 /// those of the target's points.
 class MeansOnLevel final : public StationMeans {
 public:
-    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}), up_(up) {
+    MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}, m.parameters.coefficients), up_(up) {
         heights_ = Eigen::VectorXd::Zero(map_.rows);
         if (!m.parameters.target) return;
         const Points& target = *m.parameters.target;

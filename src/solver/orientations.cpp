@@ -150,21 +150,27 @@ public:
         shape_ = m.rest.colwise() - mean_of(m.rest);
         if (!(shape_.cwiseAbs().maxCoeff() > 0)) m.fail("the rest points are all at one place");
         rest_axis_ = rest_axis_of(m, shape_);
+        if (!m.parameters.target) return;
+        const Points size = m.target_or(m.rest);
+        minimum_ = (size.colwise() - mean_of(size)).squaredNorm() / 4;
     }
     [[nodiscard]] const Points& reference() const override { return shape_; }
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Vector3d axis = best_rotation(moments.reference) * rest_axis_;
         const double now = std::atan2(axis.cross(direction_).norm(), std::abs(axis.dot(direction_))), wanted = range_.clamp(now);
-        if (wanted == now) return {Matrix3d::Identity(), Matrix3d::Zero()};
-        if (!(wanted > 0)) return {rotation_to(axis, direction_, moments.rows), Matrix3d::Zero()};
+        // Points at one place would be at any angle: not a way out of a contradiction.
+        const double size = moments.rows.trace(), grown = size > 0 && size < minimum_ ? std::sqrt(minimum_ / size) : 1;
+        if (wanted == now) return {grown * Matrix3d::Identity(), Matrix3d::Zero()};
+        if (!(wanted > 0)) return {grown * rotation_to(axis, direction_, moments.rows), Matrix3d::Zero()};
         const Matrix3d one = rotation_to_angle(axis, direction_, wanted, moments.rows);
         const Matrix3d other = rotation_to_angle(axis, -direction_, wanted, moments.rows);
         const auto value = [&](const Matrix3d& rotation) { return rotation.cwiseProduct(moments.rows).sum(); };
-        return {value(one) >= value(other) ? one : other, Matrix3d::Zero()};
+        return {grown * (value(one) >= value(other) ? one : other), Matrix3d::Zero()};
     }
 
 private:
     Vector3d direction_, rest_axis_;
+    double minimum_ = 0;  ///< of the squared distances from the mean together
     Making::Interval range_;
     Points shape_;
 };

@@ -248,3 +248,53 @@ TEST(RelationCommand, WithoutUpItIsSaidWhatWasNotLookedFor) {
     EXPECT_EQ(up.err, "");
     EXPECT_GT(read_json(scratch / "u.graph.json")["relationships"].Size(), 0U);
 }
+
+TEST(RelationCommand, ChecksConstraintsOnTheObjectAsItIs) {
+    const Scratch scratch;
+    const auto at = [&](const char* name) { return (scratch / name).string(); };
+    const std::string chair = data + "chair.ply " + data + "chair.ant.json ", graph = at("b.graph.json");
+    const std::string add = "relation add " + chair;
+    ASSERT_EQ(run_command(add + at("a.graph.json") +
+                          " --type proportion --annotation 'front left leg' --annotation 'front right leg' --parameters "
+                          "'{\"measure1\": \"height\", \"measure2\": \"height\", \"minValue\": 0.9, \"maxValue\": 1.1}'")
+                  .code,
+              0);
+    ASSERT_EQ(
+        run_command(add + graph + " --graph " + at("a.graph.json") + " --type 'keep shape' --annotation seat --constraint").code,
+        0);
+    const auto check = [&](const std::string& mesh, const std::string& more) {
+        auto result = run_command("relation check --json " + mesh + " " + data + "chair.ant.json " + graph + " " + more);
+        return std::pair{result.code, report_of(result.out)};
+    };
+    const auto verdict = [](const Json& report, rapidjson::SizeType i) {
+        return std::string(report["result"]["relationships"][i]["verdict"].GetString());
+    };
+    const auto [right, report] = check(data + "chair.ply", "");
+    EXPECT_EQ(right, 0);
+    EXPECT_EQ(verdict(report, 0), "holds");
+    EXPECT_EQ(verdict(report, 1), "unknown");
+    EXPECT_NE(std::string(report["result"]["relationships"][1]["text"].GetString()).find("--rest"), std::string::npos);
+    EXPECT_TRUE(report["result"]["conforms"].GetBool());
+
+    // A leg that is half as long again, and its seat bent with it.
+    ASSERT_EQ(run_command("deform " + chair + at("long.ply") + " --stretch 'front left leg=1.5'").code & ~3, 0);
+    const auto [wrong, found] = check(at("long.ply"), "--force-mesh --rest " + data + "chair.ply");
+    EXPECT_EQ(wrong, 3);
+    EXPECT_EQ(verdict(found, 0), "fails");
+    const auto& deviation = found["result"]["relationships"][0]["parameters"]["deviations"][0];
+    EXPECT_GT(deviation["value"].GetDouble(), 10);
+    EXPECT_STREQ(deviation["unit"].GetString(), "%");
+    EXPECT_NE(verdict(found, 1), "unknown");
+    EXPECT_FALSE(found["result"]["conforms"].GetBool());
+    EXPECT_EQ(run_command("relation check " + chair + graph + " --rest " + data + "teapot.ply").code, 1);
+
+    // The rules of a class in the same report.
+    const Path rules = scratch.file("chair.rules.json", R"({"format": "ostraka-rules", "version": 1, "class": "chair", "rules": [
+        {"id": "one seat", "count": {"of": "seat", "min": 1, "max": 1}},
+        {"id": "five legs", "count": {"of": "front left leg", "min": 5}}]})");
+    const auto [broken, ruled] = check(data + "chair.ply", "--rules " + rules.string());
+    EXPECT_EQ(broken, 3);
+    ASSERT_EQ(ruled["result"]["rules"].Size(), 1U);
+    EXPECT_STREQ(ruled["result"]["rules"][0]["rule"].GetString(), "five legs");
+    EXPECT_EQ(run_command("relation check " + chair + graph + " --vocabulary v.ttl").code, 2);
+}

@@ -23,6 +23,37 @@ double min_by_trying(const Points& rows, const Vector3d& axis, const Vector3d& d
     return minimum;
 }
 
+TEST(Constraint, LevelsWeighTheirPoints) {
+    Points points(3, 4);
+    points << 0, 1, 5, 6, 0, 0, 0, 0, 0, 4, 1, 2;
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(0, 0, 1);
+    parameters.stations = {0, 0, 1, 1};
+    parameters.coefficients = {3, 1, 2, 2};  // heights 1 and 1.5
+    const auto level = make_constraint("MeansOnLevel", {0, 1, 2, 3}, 1, parameters, points);
+    EXPECT_NEAR(level->squared_distance(points), 2 * 0.25 * 0.25, 1e-12);
+    parameters.coefficients = {3, 1};
+    EXPECT_THROW(make_constraint("MeansOnLevel", {0, 1, 2, 3}, 1, parameters, points), Error);
+    parameters.coefficients = {3, 1, 0, 2};
+    EXPECT_THROW(make_constraint("MeansOnLevel", {0, 1, 2, 3}, 1, parameters, points), Error);
+}
+
+TEST(Constraint, APointIsNoWayOutForAnAxis) {
+    Points rest = random_points(20, 6);
+    ConstraintParameters parameters;
+    parameters.direction = Vector3d(0, 0, 1);
+    parameters.rest_direction = Vector3d(0, 0, 1);
+    const std::vector<int> ids = first_ids(20);
+    const Points small = 0.1 * rest;
+    EXPECT_NEAR(make_constraint("AxisDirection", ids, 1, parameters, rest)->squared_distance(small), 0, 1e-12);
+    parameters.target = rest;
+    const auto bounded = make_constraint("AxisDirection", ids, 1, parameters, rest);
+    EXPECT_NEAR(bounded->squared_distance(rest), 0, 1e-12);
+    EXPECT_NEAR(bounded->squared_distance(0.6 * rest), 0, 1e-12);
+    const double size = (rest.colwise() - rest.rowwise().mean().eval()).norm();
+    EXPECT_NEAR(std::sqrt(bounded->squared_distance(small)), 0.4 * size, 1e-9);
+}
+
 TEST(Constraint, AxesTurnNoFartherThanTheyMust) {
     // Rods, plates and blocks whose axis is known, turned anyhow and exactly along and across the direction.
     const Vector3d d = Vector3d(1, -2, 3).normalized();
