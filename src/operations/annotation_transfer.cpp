@@ -2,7 +2,13 @@
 #include "operations.h"
 
 #include "ostraka/annotation/colouring.h"
+#include "ostraka/core/angles.h"
+#include "ostraka/fracture/fragment.h"
+#include "ostraka/measure/measure.h"
+#include "ostraka/registration/mesh_registration.h"
+#include "ostraka/registration/pose_json.h"
 #include "ostraka/transfer/misalignment.h"
+#include "ostraka/transfer/moved_annotations.h"
 #include "ostraka/transfer/transfer.h"
 
 #include <cmath>
@@ -40,8 +46,11 @@ struct AnnotationTransfer final : Operation {
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices");
         p.output_option("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON");
         options.describe(p.options);
+        p.options("register", registers,
+                  "bring the source onto the target first: the meshes may differ in unit and place (see mesh register)",
+                  Anything{});
 
-        p.report.values(number("meanDistance", "", "length"));
+        p.report.values(number("meanDistance", "", "length"), any("registration"));
         for (const char* direction : {"annotations", "back"})
             p.report.table(direction, integer("id", "id"), text("tag", "tag"), text("sourceType"), text("targetType", "type"),
                            text("outcome"), text("note"), number("sourceArea", "", "length^2"),
@@ -68,10 +77,12 @@ struct AnnotationTransfer final : Operation {
 
     void run(Context&, Report& report) override {
         const Stopwatch reading;
-        const Mesh& from = source->mesh;
-        const AnnotationSet& set = annotations.on(from);
         const Mesh& onto = target->mesh;
+        const AnnotationSet& given = annotations.on(source->mesh);
         report.run("reading", reading.seconds());
+        const std::optional<RegisteredSource> registered = registers ? registered_source(report) : std::nullopt;
+        const Mesh& from = registered ? registered->mesh : source->mesh;
+        const AnnotationSet& set = registered ? registered->set : given;
         const Stopwatch tree;
         const auto search = in_file(target.file(), [&] { return std::make_unique<SurfaceSearch>(onto); });
         report.run("tree", tree.seconds());
@@ -86,6 +97,7 @@ struct AnnotationTransfer final : Operation {
             TransferOptions how = options;
             how.refine = false;
             again = transfer(on, there.annotations, *home, how);
+            if (registered) take_home(*registered, again->annotations);
         }
 
         // All work is done: what is written now is complete.
@@ -101,10 +113,48 @@ struct AnnotationTransfer final : Operation {
         if (again) {
             report.line("and back");
             report_result(report, "back", again->scores);
-            back.write(std::move(again->annotations), from, source.file());
+            back.write(std::move(again->annotations), source->mesh, source.file());
         }
         output.write(std::move(there.annotations), on, there.refined ? refined.file() : target.file());
         if (refined) refined.write(std::move(there.refined->mesh));
+    }
+
+    /// The source where the target is.
+    struct RegisteredSource {
+        Mesh mesh;
+        AnnotationSet set;
+        Motion motion;
+    };
+    [[nodiscard]] std::optional<RegisteredSource> registered_source(Report& report) const {
+        const Mesh &from = source->mesh, &onto = target->mesh;
+        const AnnotationSet& set = annotations.on(from);
+        const Stopwatch clock;
+        const MeshRegistration found = in_file(target.file(), [&] { return register_mesh(from, onto); });
+        report.run("registration", clock.seconds());
+        const double diagonal = box_diagonal(onto);
+        if (found.verdict != RegistrationVerdict::aligned && !options.force)
+            fail_input(source.file() + " onto " + target.file(), in_words(found, diagonal),
+                       "or --force to go on with the best motion found");
+        report.notes(remarks_on(found));
+        RegisteredSource registered{moved(from, found.motion),
+                                    moved_annotations(from, set, found.motion, unit_scaled(set.unit, found.motion.scale)),
+                                    found.motion};
+        report("registration", json_object(report.allocator(), "verdict", to_string(found.verdict), "matrix",
+                                           pose_to_json(found.motion, report.allocator()), "scale", found.motion.scale, "rms",
+                                           found.agreement.rms, "share", found.agreement.share));
+        report.line("registered: turned by " + number(Eigen::AngleAxisd(found.motion.rotation).angle() / degree, 4) +
+                    " degrees, scaled by " + number(found.motion.scale, 6) + "; " + in_words(found, diagonal));
+        if (registered.set.unit != set.unit)
+            report.note("lengths were in " + printable(set.unit, 20) + " and are " +
+                        (registered.set.unit.empty() ? "in an unknown unit" : "in " + registered.set.unit) + " on the target");
+        return registered;
+    }
+
+    /// Annotations on the moved source as those on the source itself, measures taken there.
+    void take_home(const RegisteredSource& registered, AnnotationSet& set) const {
+        AnnotationSet home = moved_annotations(source->mesh, set, registered.motion.inverse(), annotations.on(source->mesh).unit);
+        refresh_measures(source->mesh, home);
+        set = std::move(home);
     }
 
     static void report_result(Report& report, const std::string& table, const std::vector<TransferScore>& scores) {
@@ -149,6 +199,7 @@ struct AnnotationTransfer final : Operation {
     MeshOutput coloured, refined;
     IndexMapOutput map;
     TransferOptions options;
+    bool registers = false;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace ostraka {
 
 // clang-format off
 std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repair(), make_mesh_simplify(),
-    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_make();
+    make_mesh_refine(), make_mesh_remesh(), make_mesh_break(), make_mesh_extract(), make_mesh_register(), make_mesh_make();
 std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
     make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(), make_annotation_smooth(),
     make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
@@ -33,6 +33,7 @@ constexpr OperationEntry entries[]{
     {"mesh simplify", "fewer vertices, with annotations, labels and colours carried along", make_mesh_simplify},
     {"mesh refine", "more vertices, with annotations, labels and colours carried along", make_mesh_refine},
     {"mesh remesh", "a new mesh of the same surface, independent of the old one", make_mesh_remesh},
+    {"mesh register", "bring a mesh onto another of the same object: rotation, translation and scale; exit code 3, and nothing written, if it is not the same object", make_mesh_register},
     {"mesh extract", "cut annotated parts out of an object, with what is annotated on them", make_mesh_extract},
     {"mesh break", "break a piece off an object: a fragment whose pose on the whole is known", make_mesh_break},
     {"mesh make", "make a closed mesh of an object whose parts are known exactly", make_mesh_make},

@@ -47,6 +47,7 @@ const std::vector<Step>& steps() {
                               "annotations-out": "coarse.ant.json"})"},
         {"mesh refine", R"({"input": "pot.ply", "output": "fine.ply", "vertices": 20000})"},
         {"mesh remesh", R"({"input": "pot.ply", "output": "new.ply", "vertices": 2500})"},
+        {"mesh register", R"({"source": "pot.ply", "target": "other.ply", "output": "registered.ply"})"},
         {"mesh extract", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "spout.ply", "annotation": ["spout"],
                              "closed": true})"},
         {"mesh break", R"({"input": "pot.ply", "output": "piece.ply", "at": "59,0,50", "share": 0.4})"},

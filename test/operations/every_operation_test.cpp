@@ -58,6 +58,7 @@ const std::vector<Step>& steps() {
          R"({"input": "coarse.ply", "output": "cut.ply", "vertices": 2000, "annotations": "coarse.ant.json",
              "annotations-out": "cut.ant.json"})"},
         {"mesh remesh", R"({"input": "coarse.ply", "output": "new.ply", "vertices": 1000})"},
+        {"mesh register", R"({"source": "pot.ply", "target": "fine.ply", "output": "registered.ply", "matrix": "matrix.json"})"},
         {"annotation transfer",
          R"({"source": "pot.ply", "annotations": "pot.ant.json", "target": "fine.ply", "output": "fine.ant.json",
              "back": "back.ant.json", "refine": true, "refined-mesh": "refined.ply", "map": "origin.json"})"},

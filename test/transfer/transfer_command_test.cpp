@@ -3,6 +3,7 @@
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/core/json.h"
 #include "ostraka/io/mesh_file.h"
+#include "ostraka/synthetic/make_mesh.h"
 #include "scratch.h"
 
 using namespace ostraka;
@@ -48,6 +49,58 @@ TEST_F(TransferCommand, ThereAndBack) {
     EXPECT_TRUE(report["result"].HasMember("back"));
     const Mesh source = read_mesh(at("s.ply")).mesh;
     EXPECT_EQ(read_annotations(at("b.ant.json"), source).annotations.size(), 1U);
+}
+
+TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
+    MakeOptions options;
+    options.vertices = 3000;
+    const SyntheticMesh hand = make_mesh(synthetic_object("hand"), options);
+    options.vertices = 6000;
+    options.seed = 2;
+    const SyntheticMesh finer = make_mesh(synthetic_object("hand"), options);
+    Mesh target = finer.mesh;  // in metres, lying on its side far away
+    for (const Vertex v : target.vertices()) {
+        const Point p = target.point(v);
+        target.point(v) = Point(0.001 * p.y() + 3, 0.001 * p.z() - 20, 0.001 * p.x());
+    }
+    AnnotationSet set;
+    set.unit = "mm";
+    set.up = {0, 0, 1};
+    Annotation part;
+    part.tag = "part";
+    for (const Face f : hand.mesh.faces())
+        if (centroid(hand.mesh, f).z() > 100) part.faces.push_back(f);
+    ASSERT_FALSE(part.faces.empty());
+    part.attributes.push_back(
+        {0, "area", AttributeType::descriptor, {}, {}, {{area_of(hand.mesh, part.faces)}, false, {}, "mm^2", false}});
+    set.annotations.push_back(part);
+    write_mesh(scratch / "s.ply", hand.mesh);
+    write_mesh(scratch / "t.ply", target);
+    write_annotations(scratch / "s.ant.json", set, hand.mesh, "s.ply", {});
+    EXPECT_EQ(transfer("").code, 1);  // without a registration they are refused
+    const CommandResult result = transfer("--register --json --back " + at("b.ant.json"));
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Json report = parse_json(result.out, "report");
+    EXPECT_NEAR(report["result"]["registration"]["scale"].GetDouble(), 0.001, 1e-6);
+    EXPECT_GT(report["result"]["annotations"][0]["overlap"].GetDouble(), 0.95);
+    const AnnotationSet there = read_annotations(at("o.ant.json"), target), back = read_annotations(at("b.ant.json"), hand.mesh);
+    EXPECT_EQ(there.unit, "m");
+    ASSERT_TRUE(there.up);
+    EXPECT_NEAR((*there.up)[1], 1, 1e-3);
+    const Descriptor& area = there.annotations[0].attributes[0].descriptor;
+    EXPECT_EQ(area.unit, "m^2");
+    EXPECT_NEAR(area.values[0], area_of(target, there.annotations[0].faces), 1e-12);
+    EXPECT_EQ(back.unit, "mm");
+    EXPECT_NEAR((*back.up)[2], 1, 1e-9);
+    EXPECT_EQ(back.annotations[0].attributes[0].descriptor.unit, "mm^2");
+    EXPECT_NEAR(back.annotations[0].attributes[0].descriptor.values[0], area_of(hand.mesh, part.faces),
+                0.02 * area_of(hand.mesh, part.faces));
+    // Another object is no target.
+    options.vertices = 3000;
+    write_mesh(scratch / "t.ply", make_mesh(synthetic_object("chair"), options).mesh);
+    const CommandResult refused = transfer("--register");
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.err.find("not the same object"), std::string::npos) << refused.err;
 }
 
 TEST_F(TransferCommand, SameBytesForAnyNumberOfThreads) {

@@ -1,0 +1,231 @@
+#include "ostraka/registration/mesh_registration.h"
+
+#include "meshes.h"
+#include "select/real_mesh.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/remesh/remesh.h"
+#include "ostraka/remesh/simplify.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/synthetic/make_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace ostraka {
+namespace {
+
+using Eigen::Vector3d;
+
+Mesh shaped(const Mesh& mesh, const std::function<Vector3d(const Vector3d&)>& map) {
+    Mesh result = mesh;
+    for (const Vertex v : result.vertices()) result.point(v) = point_of(map(eigen(mesh.point(v))));
+    return result;
+}
+
+Mesh made(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1) {
+    MakeOptions options;
+    options.vertices = vertices;
+    options.seed = seed;
+    return make_mesh(synthetic_object(name), options).mesh;
+}
+
+Mesh turned_round(const Mesh& mesh, bool mirror) {
+    TriangleSoup soup = to_soup(mesh);
+    if (mirror)
+        for (auto& p : soup.points) p[0] = -p[0];
+    else
+        for (auto& t : soup.triangles) std::swap(t[1], t[2]);
+    return build_mesh(soup);
+}
+
+/// Mirrored, its faces outward again.
+Mesh mirrored(const Mesh& mesh) { return turned_round(turned_round(mesh, true), false); }
+
+Motion any_similarity(const Mesh& mesh, std::uint64_t seed) {
+    Random random(seed);
+    Motion motion;
+    motion.rotation =
+        Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal()).normalized().toRotationMatrix();
+    motion.scale = std::pow(10, random.uniform(-3, 3));
+    motion.translation = 300 * motion.scale * box_diagonal(mesh) * Vector3d(random.normal(), random.normal(), random.normal());
+    return motion;
+}
+
+/// `source` and `target` are of one surface in one place: the source is moved, found again, and what is left compared.
+void expect_found(const Mesh& source, const Mesh& target, std::uint64_t seed, double degrees, double scale) {
+    const Motion there = any_similarity(source, seed);
+    const MeshRegistration found = register_mesh(shaped(source, there), target);
+    EXPECT_EQ(found.verdict, RegistrationVerdict::aligned) << in_words(found, box_diagonal(target));
+    const Motion left = found.motion.after(there);
+    EXPECT_LT(Eigen::AngleAxisd(left.rotation).angle() * 180 / std::numbers::pi, degrees);
+    EXPECT_NEAR(left.scale, 1, scale);
+    const Vector3d corner = eigen(target.point(Vertex(0)));
+    EXPECT_LT((left(corner) - corner).norm(), 2 * scale * box_diagonal(target));
+}
+
+TEST(MeshRegistration, FindsAnySimilarityOfACopyExactly) {
+    const Mesh pot = made("teapot", 2000);
+    for (const std::uint64_t seed : {1, 2, 3}) expect_found(pot, pot, seed, 1e-4, 1e-6);
+}
+
+TEST(MeshRegistration, FindsMeshesMadeAnewAtOtherResolutions) {
+    for (const char* name : {"hand", "teapot", "chair"}) {
+        SCOPED_TRACE(name);
+        const Mesh coarse = made(name, 5000, 1), fine = made(name, 20000, 2);
+        expect_found(coarse, fine, 4, 0.1, 1e-3);
+        expect_found(fine, coarse, 5, 0.1, 1e-3);
+    }
+}
+
+TEST(MeshRegistration, FindsRemeshedAndDecimatedScans) {
+    OSTRAKA_SCAN(scan, "elephant.off");
+    RemeshOptions remeshing;
+    remeshing.vertices = 5000;
+    expect_found(remesh(scan, remeshing).mesh, scan, 6, 0.1, 1e-3);
+    SimplifyOptions simplifying;
+    simplifying.vertices = 1500;
+    Mesh few = scan;
+    simplify(few, simplifying);
+    few.collect_garbage();
+    expect_found(few, scan, 7, 0.1, 1e-3);
+}
+
+TEST(MeshRegistration, OtherObjectsAreNeverAligned) {
+    const Mesh hand = made("hand", 2000), pot = made("teapot", 2000), chair = made("chair", 2000);
+    EXPECT_EQ(register_mesh(hand, pot).verdict, RegistrationVerdict::different);
+    EXPECT_EQ(register_mesh(pot, chair).verdict, RegistrationVerdict::different);
+    EXPECT_EQ(register_mesh(chair, hand).verdict, RegistrationVerdict::different);
+}
+
+TEST(MeshRegistration, TheSameObjectWithOneOtherProportionIsNotAligned) {
+    const Mesh hand = made("hand", 8000);
+    const auto box = bounding_box(hand);
+    for (const double growth : {1.03, 1.1}) {
+        const Mesh other = shaped(hand, [&](const Vector3d& p) {
+            return Vector3d(p.x(), p.y(),
+                            p.z() > 0.5 * (box.zmin() + box.zmax())
+                                ? 0.5 * (box.zmin() + box.zmax()) + growth * (p.z() - 0.5 * (box.zmin() + box.zmax()))
+                                : p.z());
+        });
+        EXPECT_EQ(register_mesh(other, hand).verdict, RegistrationVerdict::different) << growth;
+    }
+}
+
+TEST(MeshRegistration, RefusesMirrorImagesAndNamesThem) {
+    const Mesh hand = made("hand", 3000), other = made("hand", 5000, 2);
+    const MeshRegistration found = register_mesh(mirrored(hand), other);
+    EXPECT_EQ(found.verdict, RegistrationVerdict::mirrored);
+    EXPECT_LT(found.mirrored.rms, 0.2 * found.agreement.rms);
+    // An axis turned over by an export, the faces as they were: mirrored and inside out.
+    EXPECT_EQ(register_mesh(turned_round(hand, true), other).verdict, RegistrationVerdict::mirrored);
+    // What is its own mirror image is aligned; but for the very triangles, by which it was mirrored.
+    const Mesh pot = made("teapot", 3000);
+    EXPECT_EQ(register_mesh(mirrored(made("teapot", 5000, 2)), pot).verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(register_mesh(mirrored(pot), pot).verdict, RegistrationVerdict::mirrored);
+}
+
+TEST(MeshRegistration, NamesMeshesThatAreInsideOut) {
+    const Mesh hand = made("hand", 3000);
+    EXPECT_EQ(register_mesh(turned_round(hand, false), hand).verdict, RegistrationVerdict::inside_out);
+}
+
+TEST(MeshRegistration, CountsThePosesOfASymmetricObjectAndTakesTheNearest) {
+    const Mesh box =
+        shaped(build_mesh(test::box(12)), [](const Vector3d& p) { return Vector3d(p.x(), 1.5 * p.y(), 2.2 * p.z()); });
+    Motion little;
+    little.rotation = Eigen::AngleAxisd(0.2, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    const MeshRegistration found = register_mesh(shaped(box, little), box);
+    EXPECT_EQ(found.verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(found.others.size(), 3U);
+    EXPECT_LT(Eigen::AngleAxisd(found.motion.after(little).rotation).angle(), 1e-3);
+    ASSERT_FALSE(remarks_on(found).empty());
+    EXPECT_NE(remarks_on(found).front().find("4 poses fit equally"), std::string::npos);
+    EXPECT_TRUE(register_mesh(made("hand", 2000), made("hand", 2000)).others.empty());
+}
+
+TEST(MeshRegistration, NamesMotionsThatTheShapeLeavesOpen) {
+    const Mesh ball = build_mesh(test::octahedron_sphere(4)), ring = build_mesh(test::torus(60, 30));
+    const MeshRegistration of_ball = register_mesh(shaped(ball, any_similarity(ball, 8)), ball);
+    EXPECT_EQ(of_ball.verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(of_ball.slippable.kind, SlippableKind::sphere);
+    EXPECT_TRUE(of_ball.others.empty());
+    const MeshRegistration of_ring = register_mesh(shaped(ring, any_similarity(ring, 9)), ring);
+    EXPECT_EQ(of_ring.verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(of_ring.slippable.kind, SlippableKind::rotation);
+    EXPECT_GT(std::abs(of_ring.slippable.direction.z()), 0.999);
+    EXPECT_LE(of_ring.others.size(), 1U);  // turned over
+}
+
+TEST(MeshRegistration, WithoutScaleSizesMustAgree) {
+    const Mesh pot = made("teapot", 2000);
+    MeshRegistrationOptions options;
+    options.scale = false;
+    const Motion there = any_similarity(pot, 10);
+    EXPECT_EQ(register_mesh(shaped(pot, there), pot, options).verdict, RegistrationVerdict::different);
+    Motion rigid = there;
+    rigid.scale = 1;
+    const MeshRegistration found = register_mesh(shaped(pot, rigid), pot, options);
+    EXPECT_EQ(found.verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(found.motion.scale, 1);
+    EXPECT_LT(Eigen::AngleAxisd(found.motion.after(rigid).rotation).angle(), 1e-4);
+}
+
+TEST(MeshRegistration, AnySizeOfBothMeshes) {
+    const Mesh pot = made("teapot", 1500);
+    for (const double size : {1e-12, 1e12}) {
+        Motion tiny, huge;
+        tiny.scale = size;
+        huge.scale = 1 / size;
+        const MeshRegistration found = register_mesh(shaped(pot, tiny), shaped(pot, huge));
+        EXPECT_EQ(found.verdict, RegistrationVerdict::aligned);
+        EXPECT_NEAR(found.motion.scale * size * size, 1, 1e-6);
+    }
+}
+
+TEST(MeshRegistration, DegenerateMeshesAreRefusedOrHeld) {
+    TriangleSoup triangle;
+    triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.triangles = {{0, 1, 2}};
+    TriangleSoup point = triangle;
+    for (auto& p : point.points) p = {1, 1, 1};
+    const Mesh flat = build_mesh(test::grid(5, 5, false, false, [](double u, double v) {
+        return std::array<double, 3>{u, 2 * v, 0};
+    }));
+    const Mesh pot = made("teapot", 1500);
+    for (const Mesh& bad : {build_mesh(triangle), build_mesh(point), flat, Mesh()}) {
+        EXPECT_THROW(register_mesh(bad, pot), Error);
+        EXPECT_THROW(register_mesh(pot, bad), Error);
+    }
+    // Points in one place beside a sound surface, and faces without area.
+    TriangleSoup soup = to_soup(pot);
+    const Index n = static_cast<Index>(soup.points.size());
+    for (int k = 0; k < 3; ++k) soup.points.push_back(soup.points[0]);
+    soup.triangles.push_back({n, n + 1, n + 2});
+    EXPECT_EQ(register_mesh(build_mesh(soup), pot).verdict, RegistrationVerdict::aligned);
+}
+
+TEST(MeshRegistration, SameForAnyNumberOfThreadsAndCancelled) {
+    const Mesh a = made("hand", 3000, 1), b = made("hand", 5000, 2);
+    const int before = threads();
+    set_threads(1);
+    const MeshRegistration one = register_mesh(a, b);
+    set_threads(3);
+    const MeshRegistration three = register_mesh(a, b);
+    set_threads(before);
+    EXPECT_EQ(one.motion, three.motion);
+    EXPECT_EQ(one.agreement.rms, three.agreement.rms);
+    EXPECT_EQ(one.mirrored.rms, three.mirrored.rms);
+    Watch watch;
+    watch.cancel();
+    const WatchScope scope(&watch);
+    EXPECT_THROW(register_mesh(a, b), Error);
+}
+
+}  // namespace
+}  // namespace ostraka
