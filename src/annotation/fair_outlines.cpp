@@ -2,6 +2,7 @@
 
 #include "annotation_places.h"
 
+#include "ostraka/annotation/curve_strands.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace ostraka {
 
@@ -43,12 +43,6 @@ struct Strand {
     double room = 0.85;  ///< share of the distance that fairing may use: some is left for the shift that keeps areas
 };
 
-/// A curve of an annotation as strands in turn.
-struct Use {
-    std::size_t strand;
-    bool backwards;
-};
-
 class Fairing {
 public:
     Fairing(const Mesh& mesh, const FairOptions& options)
@@ -57,11 +51,7 @@ public:
     std::vector<FairedAnnotation> run(std::vector<Annotation*> annotations) {
         std::vector<std::vector<Places>> curves;
         for (const Annotation* annotation : annotations) curves.push_back(curves_of(*annotation));
-        for (const bool regions : {true, false}) find_junctions(annotations, curves, regions);
-        for (std::size_t i = 0; i < curves.size(); ++i) {
-            auto& uses = uses_.emplace_back();
-            for (const Places& curve : curves[i]) uses.push_back(strands_of(curve, is_region(*annotations[i])));
-        }
+        find_strands(annotations, curves);
         for (Strand& strand : strands_) fair(strand);
         for (Strand& strand : strands_) draw(strand);
         std::vector<FairedAnnotation> result(annotations.size());
@@ -100,7 +90,7 @@ public:
                 if (is_sound(i, faired, area[i])) continue;
                 sound = false;
                 for (const auto& uses : uses_[i])
-                    for (const Use& use : uses) leave(strands_[use.strand]);
+                    for (const StrandUse& use : uses) leave(strands_[use.strand]);
                 result[i].note = "its outline would cross itself: it is left as it was";
             }
             if (sound) break;
@@ -109,7 +99,7 @@ public:
             Annotation& one = *annotations[i];
             FairedAnnotation& what = result[i];
             for (const auto& uses : uses_[i])
-                for (const Use& use : uses) {
+                for (const StrandUse& use : uses) {
                     const Strand& strand = strands_[use.strand];
                     what.moved = std::max(what.moved, hausdorff_distance(segments(drawn(strand)), segments(strand.points)));
                 }
@@ -152,59 +142,23 @@ private:
     }
 
     /// Outlines meet outlines, and lines meet lines: a line that crosses an outline does not hold it.
-    void find_junctions(const std::vector<Annotation*>& annotations, const std::vector<std::vector<Places>>& curves,
-                        bool regions) {
-        std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
-        std::set<SurfacePlace>& junctions = junctions_[regions ? 1 : 0];
-        for (std::size_t a = 0; a < curves.size(); ++a)
-            for (const Places& curve : curves[a]) {
-                if (is_region(*annotations[a]) != regions) continue;
-                for (std::size_t i = 1; i < curve.size(); ++i) {
-                    neighbours[curve[i - 1]].insert(curve[i]);
-                    neighbours[curve[i]].insert(curve[i - 1]);
-                }
-                if (!curve.empty() && curve.front() != curve.back()) junctions.insert({curve.front(), curve.back()});
-            }
-        for (const auto& [place, others] : neighbours) {
-            const bool border = place.kind == SurfaceNode::Kind::vertex && mesh_.is_border(Vertex(place.element[0]));
-            if (others.size() != 2 || border) junctions.insert(place);
+    void find_strands(const std::vector<Annotation*>& annotations, const std::vector<std::vector<Places>>& curves) {
+        std::vector<CurveStrand> found;
+        uses_.resize(curves.size());
+        for (const bool regions : {true, false}) {
+            std::vector<bool> chosen;
+            for (const Annotation* annotation : annotations) chosen.push_back(is_region(*annotation) == regions);
+            auto uses = take_apart(mesh_, curves, chosen, found);
+            for (std::size_t i = 0; i < curves.size(); ++i)
+                if (chosen[i]) uses_[i] = std::move(uses[i]);
         }
-    }
-
-    std::vector<Use> strands_of(const Places& curve, bool region) {
-        const std::set<SurfacePlace>& junctions = junctions_[region ? 1 : 0];
-        std::vector<Use> uses;
-        if (curve.size() < 2) return uses;
-        const bool closed = curve.front() == curve.back();
-        Places turned = curve;
-        if (closed) {
-            turned.pop_back();
-            auto start = std::find_if(turned.begin(), turned.end(), [&](const SurfacePlace& p) { return junctions.contains(p); });
-            // A loop starts at its lowest place, whoever it bounds.
-            if (start == turned.end()) start = std::min_element(turned.begin(), turned.end());
-            std::rotate(turned.begin(), start, turned.end());
-            turned.push_back(turned.front());
+        for (CurveStrand& one : found) {
+            Strand& strand = strands_.emplace_back();
+            for (const SurfacePlace& place : one.places) strand.points.push_back(node_at(mesh_, place).point);
+            strand.after = one.places;
+            strand.before = std::move(one.places);
+            strand.closed = one.closed;
         }
-        Places piece{turned.front()};
-        for (std::size_t i = 1; i < turned.size(); ++i) {
-            piece.push_back(turned[i]);
-            if (i + 1 < turned.size() && !junctions.contains(turned[i])) continue;
-            Places key = piece;
-            const Places back(piece.rbegin(), piece.rend());
-            const bool backwards = back < key;
-            if (backwards) key = back;
-            const auto [entry, fresh] = known_[region ? 1 : 0].try_emplace(key, strands_.size());
-            if (fresh) {
-                Strand& strand = strands_.emplace_back();
-                strand.before = key;
-                strand.closed = key.front() == key.back() && !junctions.contains(key.front());
-                for (const SurfacePlace& place : key) strand.points.push_back(node_at(mesh_, place).point);
-                strand.after = key;
-            }
-            uses.push_back({entry->second, backwards});
-            piece = {turned[i]};
-        }
-        return uses;
     }
 
     /// Points at equal lengths along the middles of the pieces; ends stay.
@@ -235,8 +189,7 @@ private:
         if (strand.points.size() < (strand.closed ? 7U : 4U) || !(strand.length > 0)) return;
         const double own_edge = strand.length / static_cast<double>(strand.points.size() - 1);
         strand.limit = options_.distance > 0 ? options_.distance : std::max(own_edge, mean_edge_);
-        const double step = strand.length / static_cast<double>(strand.points.size() - 1);
-        const auto count = static_cast<std::size_t>(std::clamp(std::ceil(2 * strand.length / step), 8.0, 100000.0));
+        const std::size_t count = std::clamp<std::size_t>(2 * (strand.points.size() - 1), 8, 100000);
         const std::vector<Point> start = resampled(strand, count);
         const std::size_t n = strand.closed ? count : count + 1;
         const Point origin = start.front();
@@ -307,19 +260,18 @@ private:
                 break;
             }
             const SurfaceHit hit = search_.closest(strand.fair[i]);
-            const Vector along = strand.fair[(i + 1) % n] - strand.fair[i == 0 ? (strand.closed ? n - 2 : 0) : i - 1];
-            const Vector left = CGAL::cross_product(search_.normal(hit.face), along);
-            const double size = std::sqrt(left.squared_length());
-            strand.aside.push_back(size > 0 ? left / size : Vector(0, 0, 0));
             if (!strand.closed && (i == 0 || i + 1 == n))
                 nodes.push_back(node_at(mesh_, i == 0 ? strand.before.front() : strand.before.back()));
             else nodes.push_back(surface_node(mesh_, hit.face, hit.barycentric));
+            const Vector along = strand.fair[(i + 1) % n] - strand.fair[i == 0 ? (strand.closed ? n - 2 : 0) : i - 1];
+            const Vector left = CGAL::cross_product(normal_at(nodes.back()), along);
+            const double size = std::sqrt(left.squared_length());
+            strand.aside.push_back(size > 0 ? left / size : Vector(0, 0, 0));
         }
         Places places{place_of(mesh_, nodes.front())};
         for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
             const double apart = gap(nodes[i].point, nodes[i + 1].point);
-            const Vector up =
-                search_.normal(faces_of(mesh_, nodes[i]).front()) + search_.normal(faces_of(mesh_, nodes[i + 1]).front());
+            const Vector up = normal_at(nodes[i]) + normal_at(nodes[i + 1]);
             auto line = trace_line(mesh_, nodes[i], nodes[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
             if (!line) line = geodesic_curve(mesh_, nodes[i], nodes[i + 1]);  // a step over a fold
             if (line && line->length() > 4 * apart + 1e-9 * search_.diagonal()) line.reset();
@@ -331,6 +283,13 @@ private:
         strand.after = std::move(places);
     }
 
+    /// The mean of the normals of its faces: which of two faces holds a place on their edge is for rounding to decide.
+    Vector normal_at(const SurfaceNode& node) const {
+        Vector sum(0, 0, 0);
+        for (const Face face : faces_of(mesh_, node)) sum = sum + search_.normal(face);
+        return sum;
+    }
+
     static void leave(Strand& strand) {
         strand.fair.clear();
         strand.after = strand.before;
@@ -340,7 +299,7 @@ private:
         std::vector<Places> curves;
         for (const auto& uses : uses_[i]) {
             Places& curve = curves.emplace_back();
-            for (const Use& use : uses) {
+            for (const StrandUse& use : uses) {
                 Places part = strands_[use.strand].after;
                 if (use.backwards) std::reverse(part.begin(), part.end());
                 curve.insert(curve.end(), part.begin() + (curve.empty() ? 0 : 1), part.end());
@@ -384,11 +343,15 @@ private:
             const auto& [region, lack] = lacks[static_cast<std::size_t>(r)];
             wanted[r] = lack / responses_[region].gain;
             for (const auto& uses : uses_[region])
-                for (const Use& use : uses)
+                for (const StrandUse& use : uses)
                     if (const auto at = column.find(use.strand); at != column.end())
                         slopes(r, at->second) += (use.backwards ? 1 : -1) * length_now(strands_[use.strand]);
         }
-        Eigen::VectorXd shift = slopes.completeOrthogonalDecomposition().solve(wanted);
+        // Regions that part a closed surface among them leave a rank less than rows: to be seen through rounding.
+        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed;
+        decomposed.setThreshold(1e-9);
+        decomposed.compute(slopes);
+        Eigen::VectorXd shift = decomposed.solve(wanted);
         for (std::size_t c = 0; c < movable.size(); ++c) {
             Strand& strand = strands_[movable[c]];
             double& by = shift[static_cast<Eigen::Index>(c)];
@@ -421,15 +384,13 @@ private:
     SurfaceSearch search_;
     const FairOptions& options_;
     double mean_edge_;
-    std::array<std::set<SurfacePlace>, 2> junctions_;  ///< of lines, of outlines
-    std::array<std::map<Places, std::size_t>, 2> known_;
     std::vector<Strand> strands_;
     /// What a region's area did when its strands were last shifted.
     struct Response {
         double lack = 0, expected = 0, gain = 1;
     };
     std::vector<Response> responses_;
-    std::vector<std::vector<std::vector<Use>>> uses_;  ///< of each annotation, by curve
+    std::vector<std::vector<std::vector<StrandUse>>> uses_;  ///< of each annotation, by curve
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ constexpr OperationEntry entries[]{
     {"annotation creases", "find ridges and hollows of the surface, such as clay leaves at joints; exit code 3 if there is none", make_annotation_creases},
     {"annotation facets", "tell the outer, inner and fracture surface of a fragment apart; exit code 3 if there is no fracture", make_annotation_facets},
     {"annotation segment", "cut a mesh into parts of like thickness, each an annotation", make_annotation_segment},
-    {"annotation smooth", "outlines and lines without the steps of the edges: fair curves through the faces", make_annotation_smooth},
+    {"annotation smooth", "outlines and lines without the steps of the edges: fair curves through the faces", make_annotation_smooth, 2},
     {"annotation transfer", "carry annotations to another resolution of the same object, and say how faithful they are", make_annotation_transfer},
     {"annotation survival", "the smallest resolution at which each annotation survives", make_annotation_survival},
     {"annotation export", "write annotations in the formats of other tools", make_annotation_export},

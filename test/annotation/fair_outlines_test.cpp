@@ -97,3 +97,30 @@ TEST(FairOutlines, WhatIsTooSmallStaysAsItIs) {
     EXPECT_NEAR(faired[0].area_after, faired[0].area_before, 1e-12);
     EXPECT_EQ(set.annotations[0].faces, std::vector<Index>{17});
 }
+
+TEST(FairOutlines, RoundingUnitAndPositionChangeNothing) {
+    const Mesh mesh = build_mesh(octahedron_sphere(4));
+    const auto measured = [&](double scale, const Vector& by, double noise) {
+        Mesh other = mesh;
+        double sense = 1;
+        for (const Vertex v : other.vertices()) {
+            const Point& p = mesh.point(v);
+            const auto off = [&](double x) { return x * scale * (1 + (sense = -sense) * noise); };
+            other.point(v) = Point(off(p.x()), off(p.y()), off(p.z())) + by;
+        }
+        AnnotationSet set = parted(mesh);
+        std::vector<double> values;
+        for (const FairedAnnotation& one : fair_outlines(other, set, {})) {
+            values.push_back(one.length_after / scale);
+            values.push_back(one.area_after / (scale * scale));
+        }
+        return values;
+    };
+    const Vector nowhere(0, 0, 0);
+    const std::vector<double> as_it_is = measured(1, nowhere, 0);
+    for (const auto& other : {measured(1000, nowhere, 0), measured(0.001, nowhere, 0), measured(1, nowhere, 4e-16),
+                              measured(1, nowhere, 1e-16), measured(3, Vector(5, -7, 3), 0)}) {
+        ASSERT_EQ(other.size(), as_it_is.size());
+        for (std::size_t i = 0; i < other.size(); ++i) EXPECT_NEAR(other[i] / as_it_is[i], 1, 1e-6) << i;
+    }
+}
