@@ -39,6 +39,9 @@ public:
         same_mesh_ = made_of != nullptr && file_.triangles() == mesh_.number_of_faces() &&
                      text_in(*made_of, "sha256") == mesh_checksum(mesh_);
         JsonValue list(rapidjson::kArrayType);
+        if (add_originals(ours, list))
+            return placed_annotations(native_, std::move(list), ours, mesh_, where_, true, std::move(notes_),
+                                      std::move(placements_));
         for (const auto& [id, feature] : file_.features) {
             JsonValue entry = annotation(id, feature);
             if (entry.IsObject()) list.PushBack(entry, a());
@@ -49,6 +52,28 @@ public:
 
 private:
     JsonAllocator& a() { return native_.GetAllocator(); }
+
+    /// The annotations as they were on the mesh that was cut for the file, if that is this one and the table is still theirs.
+    bool add_originals(const JsonValue* ours, JsonValue& list) {
+        const JsonValue* original = ours == nullptr ? nullptr : find_member(*ours, "original");
+        const JsonValue* made_of = original == nullptr ? nullptr : find_member(*original, "mesh");
+        if (made_of == nullptr || !file_.ours || text_in(*made_of, "sha256") != mesh_checksum(mesh_)) return false;
+        const auto kept = list_in(*original, "annotations");
+        if (kept.Size() != file_.rows) return false;
+        for (rapidjson::SizeType i = 0; i < kept.Size(); ++i) {
+            const JsonValue* id = find_member(kept[i], "id");
+            if (id == nullptr || !id->IsInt() || id->GetInt() != file_.ids[i] || text_in(kept[i], "tag") != file_.tags[i])
+                return false;
+        }
+        for (const JsonValue& one : kept) {
+            PlacedAnnotation& placement = placements_.emplace_back();
+            placement.id = one["id"].GetInt();
+            placement.tag = text_in(one, "tag");
+            placement.how = "indices";
+            list.PushBack(JsonValue(one, a()), a());
+        }
+        return true;
+    }
 
     Placer& placer() {
         if (!placer_) placer_ = std::make_unique<Placer>(mesh_);

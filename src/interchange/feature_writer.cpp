@@ -44,12 +44,14 @@ struct Corners {
 
 class FeatureWriter {
 public:
+    /// `whole`: the annotations on the mesh that was cut, where the primitives cannot hold all of them; null otherwise.
     FeatureWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
-                  std::vector<std::string>& notes)
+                  const Json& whole, std::vector<std::string>& notes)
         : mesh_(mesh),
           set_(set),
           where_(mesh_file.empty() ? "GLB" : mesh_file),
           native_(annotations_to_json(set, mesh, mesh_file, provenance)),
+          whole_(whole),
           notes_(notes) {}
 
     std::string write() {
@@ -66,6 +68,11 @@ public:
 
         JsonValue extras(rapidjson::kObjectType);
         copy_members(extras, a(), native_, {"mesh", "class", "unit", "up", "provenance"});
+        if (whole_.IsObject()) {
+            JsonValue original(rapidjson::kObjectType);
+            copy_members(original, a(), whole_, {"mesh", "annotations"});
+            add_members(extras, a(), "original", std::move(original));
+        }
         JsonValue mesh =
             json_object(a(), "primitives", std::move(primitives), "extras", json_object(a(), "ostraka", std::move(extras)));
         JsonValue nodes = in_list(json_object(a(), "mesh", 0));
@@ -358,6 +365,7 @@ private:
     const AnnotationSet& set_;
     std::string where_;
     Json native_;
+    const Json& whole_;
     std::vector<std::string>& notes_;
     glb::Builder builder_{8, true};
     JsonValue properties_{rapidjson::kObjectType}, columns_{rapidjson::kObjectType};
@@ -370,8 +378,12 @@ std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::s
                         std::vector<std::string>& notes) {
     const AlongEdges along_edges(mesh, set);
     if (along_edges.cut())
-        notes.emplace_back("the mesh is cut along free outlines: read on the mesh itself, faces are in a region or not");
-    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, notes).write();
+        notes.emplace_back("the mesh is cut along free outlines; their curves stand beside it, for the mesh itself");
+    const bool informed = std::any_of(set.annotations.begin(), set.annotations.end(),
+                                      [](const Annotation& annotation) { return !annotation.information.empty(); });
+    Json whole;
+    if (along_edges.cut() || informed) whole = annotations_to_json(set, mesh, mesh_file, provenance);
+    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, whole, notes).write();
 }
 
 }  // namespace ostraka

@@ -48,7 +48,7 @@ constexpr OperationEntry entries[]{
     {"annotation smooth", "outlines and lines without the steps of the edges: fair curves through the faces", make_annotation_smooth, 2},
     {"annotation transfer", "carry annotations to another resolution of the same object, and say how faithful they are", make_annotation_transfer},
     {"annotation survival", "the smallest resolution at which each annotation survives", make_annotation_survival},
-    {"annotation export", "write annotations in the formats of other tools", make_annotation_export},
+    {"annotation export", "write annotations in the formats of other tools", make_annotation_export, 2},
     {"annotation import", "read annotations from the formats of other tools", make_annotation_import},
     {"annotation edit", "change tags, colours, ids, attributes, the file's class, unit and up; remove, duplicate, merge, split", make_annotation_edit},
     {"annotation diff", "what differs between two sets of annotations; exit code 3 if they do", make_annotation_diff},

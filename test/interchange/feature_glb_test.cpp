@@ -1,6 +1,8 @@
 // GLB with features: there and back, other meshes, the rules of the extensions, the public validator, damage.
 #include "ostraka/interchange/feature_glb.h"
 #include "mutate.h"
+#include "ostraka/annotation/curves.h"
+#include "ostraka/annotation/fair_outlines.h"
 #include "ostraka/core/error.h"
 #include "ostraka/io/glb.h"
 #include "scratch.h"
@@ -296,4 +298,34 @@ TEST(FeatureGlb, PrimitivesThatNameTheSameDataAreReadOnceAndNotWithoutEnd) {
     const std::string refused = message(with_primitives(100000), mesh);
     EXPECT_NE(refused.find("at /meshes/0/primitives/"), std::string::npos) << refused;
     EXPECT_NE(refused.find("name the same data again and again"), std::string::npos) << refused;
+}
+
+TEST(FeatureGlb, FreeOutlinesComeBackToTheBit) {
+    const Mesh mesh = spheres(3);
+    AnnotationSet set;
+    set.annotations.resize(2);
+    for (int i = 0; i < 2; ++i) {
+        set.annotations[static_cast<std::size_t>(i)].id = i;
+        set.annotations[static_cast<std::size_t>(i)].tag = "part " + std::to_string(i);
+        set.annotations[static_cast<std::size_t>(i)].information = {{Information::Kind::text, "cracked", "", ""}};
+    }
+    for (const Face f : mesh.faces())
+        if (const Point p = centroid(mesh, f); std::abs(p.z()) < 0.7) set.annotations[p.z() > 0.1 ? 0 : 1].faces.push_back(f);
+    fair_outlines(mesh, set, {});
+    ASSERT_TRUE(is_free(set.annotations[0]) && is_free(set.annotations[1]));
+    const std::string glb = written(mesh, set);
+    const PlacedAnnotations read = read_feature_glb(glb, mesh, "file");
+    EXPECT_EQ(as_file(read.set, mesh), as_file(set, mesh));
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(read.set.annotations.at(i).curves, set.annotations[i].curves);
+    EXPECT_EQ(written(mesh, read.set), glb);
+    // Another tool that renames a feature is believed: the faces are then those that the file shows.
+    const std::string renamed = with(glb, "\"tag\":\"part 0\"", "\"tag\":\"past 0\"");
+    EXPECT_EQ(read_feature_glb(renamed, mesh, "file").set.annotations.size(), 2U);
+    // Places beyond the mesh are refused by name.
+    const std::size_t at = glb.find("\"face\":");
+    ASSERT_NE(at, std::string::npos);
+    const std::string digits_ = glb.substr(at + 7, glb.find_first_of(",}", at) - at - 7);
+    const std::string beyond =
+        message(with(glb, "\"face\":" + digits_ + ",", "\"face\":" + std::string(digits_.size(), '9') + "999,"), mesh);
+    EXPECT_NE(beyond.find("/annotations/"), std::string::npos) << beyond;
 }
