@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/npy.h"
+#include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
 
 #include <algorithm>
@@ -96,12 +97,16 @@ WeightMatrix read_array(const Path& folder, const CoordinateHeader::Array& array
                        std::to_string(rows) + " and " + std::to_string(columns),
                    anew);
     if (view.type != "<f8") fail_input(where, "is not of little-endian float64", anew);
+    check_cancelled();
     WeightMatrix matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     view.copy_to(matrix.data());
+    check_cancelled();
     for (Eigen::Index i = 0; i < matrix.size(); ++i)
         if (!std::isfinite(matrix.data()[i])) fail_input(where, "weight " + std::to_string(i) + " is not finite", anew);
+    check_cancelled();
     if (sha256(bytes) != array.sha256)
         fail_input(where, "is another file than its header was written for (its checksum differs)", anew);
+    check_cancelled();
     return matrix;
 }
 
