@@ -1,4 +1,5 @@
 // SKOS -> vocabulary.
+#include "owl.h"
 #include "rdf.h"
 #include "rules_json.h"
 #include "skos_terms.h"
@@ -128,7 +129,7 @@ private:
         if (nameless > 0) vocabulary_.notes.push_back(to_string(nameless) + " concepts without a URI not kept");
         if (!elsewhere.empty())
             vocabulary_.notes.push_back(counted(elsewhere.size(), "concept") + " of other schemes not kept (see --scheme)");
-        if (concepts_.empty()) fail("holds no SKOS concept", "give a SKOS vocabulary (skos:Concept)");
+        if (concepts_.empty()) fail("holds no SKOS concept", "give a SKOS vocabulary (skos:Concept), or an ontology (owl:Class)");
         std::map<RdfTerm, std::size_t> positions;
         for (const RdfTerm& term : concepts_)
             if (const auto position = position_of(term)) positions[term] = *position;
@@ -377,9 +378,12 @@ bool is_skos(const Path& file) {
 }
 
 Vocabulary vocabulary_from_skos(const std::string& text, bool rdf_xml, const std::string& where, const std::string& scheme) {
-    return SkosReader(parse_rdf(text, rdf_xml ? RdfSyntax::rdf_xml : RdfSyntax::turtle, skos::default_scheme, where), where,
-                      scheme)
-        .result();
+    std::vector<std::string> notes;
+    std::vector<RdfStatement> statements =
+        skos_of_owl(parse_rdf(text, rdf_xml ? RdfSyntax::rdf_xml : RdfSyntax::turtle, skos::default_scheme, where), notes);
+    Vocabulary vocabulary = SkosReader(std::move(statements), where, scheme).result();
+    vocabulary.notes.insert(vocabulary.notes.begin(), notes.begin(), notes.end());
+    return vocabulary;
 }
 
 Vocabulary read_skos(const Path& file, const std::string& scheme) {
