@@ -11,7 +11,7 @@ std::unique_ptr<Operation> make_mesh_info(), make_mesh_convert(), make_mesh_repa
 std::unique_ptr<Operation> make_annotation_apply(), make_annotation_list(), make_annotation_check(), make_annotation_remap(),
     make_annotation_select(), make_annotation_creases(), make_annotation_facets(), make_annotation_segment(), make_annotation_smooth(),
     make_annotation_transfer(), make_annotation_survival(), make_annotation_export(), make_annotation_import(),
-    make_annotation_edit(), make_annotation_diff(), make_annotation_merge(), make_annotation_infer();
+    make_annotation_edit(), make_annotation_find(), make_annotation_diff(), make_annotation_merge(), make_annotation_infer();
 std::unique_ptr<Operation> make_relation_extract(), make_relation_add(), make_relation_remove(), make_relation_edit(), make_relation_list(),
     make_relation_check(), make_relation_export();
 std::unique_ptr<Operation> make_measure_take(), make_measure_describe(), make_measure_refresh(), make_measure_map(),
@@ -51,6 +51,7 @@ constexpr OperationEntry entries[]{
     {"annotation export", "write annotations in the formats of other tools", make_annotation_export, 2},
     {"annotation import", "read annotations from the formats of other tools", make_annotation_import},
     {"annotation edit", "change tags, colours, ids, attributes, the file's class, unit and up; remove, duplicate, merge, split", make_annotation_edit},
+    {"annotation find", "which objects have such parts, attributes and relationships; exit code 3 if none has", make_annotation_find},
     {"annotation diff", "what differs between two sets of annotations; exit code 3 if they do", make_annotation_diff},
     {"annotation merge", "join two people's changes of one set; exit code 3 and no output with conflicts", make_annotation_merge},
     {"annotation infer", "words from numbers, by the rules of a vocabulary; exit code 3 if they contradict each other", make_annotation_infer},

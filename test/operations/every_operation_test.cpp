@@ -74,6 +74,7 @@ const std::vector<Step>& steps() {
              "back": "free-back.ant.json"})"},
         {"annotation edit",
          R"({"mesh": "pot.ply", "annotations": "picked.ant.json", "output": "edited.ant.json", "annotation": "top", "note": "knob"})"},
+        {"annotation find", R"({"query": "spout and not crown", "objects": ["pot.ply"]})", false},
         {"annotation diff", R"({"mesh": "pot.ply", "before": "picked.ant.json", "after": "edited.ant.json"})"},
         {"annotation merge",
          R"({"mesh": "pot.ply", "base": "picked.ant.json", "ours": "picked.ant.json", "theirs": "edited.ant.json",
