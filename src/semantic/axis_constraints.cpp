@@ -103,6 +103,12 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
     const std::vector<Axis> axes = axes_of_parts(*read);
     const double angle = read->relationship().type == "perpendicular axes" ? pi / 2 : 0;
     Statement statement;
+    const int reference = read->member(axes.size() - 1).id;
+    for (std::size_t i = 0; i + 1 < axes.size(); ++i) {
+        const int own = read->member(i).id;
+        statement.directions.push_back({own, eigen(axes.back().direction), angle, reference});
+        statement.directions.push_back({reference, eigen(axes[i].direction), angle, own});
+    }
     statement.follows = true;
     statement.lower = [read, axes, angle](const State& edited, const State& now) {
         ConstraintParameters parameters;

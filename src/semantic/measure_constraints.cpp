@@ -7,6 +7,9 @@
 #include "ostraka/core/words.h"
 #include "ostraka/geom/with_points.h"
 
+#include <algorithm>
+#include <array>
+
 namespace ostraka {
 
 namespace {
@@ -31,6 +34,29 @@ ConstraintReport measured(const Shape& shape, const State& state, const Relation
     return report;
 }
 
+/// The corners of all faces, in any order of the faces.
+std::vector<std::array<Index, 3>> sorted_faces(const Mesh& mesh) {
+    std::vector<std::array<Index, 3>> faces;
+    for (const Face f : mesh.faces()) {
+        const auto [a, b, c] = corners(mesh, f);
+        std::array<Index, 3> ids{a, b, c};
+        std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
+        faces.push_back(ids);
+    }
+    std::sort(faces.begin(), faces.end());
+    return faces;
+}
+
+void check_rest(const Mesh& mesh, const Mesh& rest) {
+    const std::string remedy = "give the same mesh, its vertices in the same order, in the shape that it had";
+    if (rest.number_of_vertices() != mesh.number_of_vertices())
+        fail_input("the shape at rest",
+                   "has " + std::to_string(rest.number_of_vertices()) + " vertices, the mesh " +
+                       std::to_string(mesh.number_of_vertices()),
+                   remedy);
+    if (sorted_faces(rest) != sorted_faces(mesh)) fail_input("the shape at rest", "has other faces than the mesh", remedy);
+}
+
 }  // namespace
 
 std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
@@ -51,11 +77,7 @@ std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const Annotati
                                                 const Mesh* rest, const RelationOptions& tolerances,
                                                 const std::string& graph_name) {
     check_options(tolerances, "constraints");
-    if (rest != nullptr && rest->number_of_vertices() != mesh.number_of_vertices())
-        fail_input("the shape at rest",
-                   "has " + std::to_string(rest->number_of_vertices()) + " vertices, the mesh " +
-                       std::to_string(mesh.number_of_vertices()),
-                   "give the same mesh in the shape that it had");
+    if (rest != nullptr) check_rest(mesh, *rest);
     // Of the shape at rest the points: faces are the mesh's.
     const Mesh then = rest == nullptr ? mesh : with_points(mesh, points_of(*rest));
     const State state(mesh);

@@ -84,7 +84,7 @@ std::string contradiction(const Statement& one, const Statement& other) {
     constexpr double exact = 1e-6;
     for (const Statement::Direction& a : one.directions)
         for (const Statement::Direction& b : other.directions) {
-            if (a.annotation != b.annotation) continue;
+            if (a.annotation != b.annotation || a.reference != b.reference) continue;
             // Axes have no sign: each direction may be turned round.
             const double between = std::atan2(a.direction.cross(b.direction).norm(), a.direction.dot(b.direction));
             const auto apart = [&](double angle) {
@@ -92,8 +92,10 @@ std::string contradiction(const Statement& one, const Statement& other) {
             };
             if (!apart(between) || !apart(pi - between)) continue;
             const auto text = [](const Statement::Direction& d) {
-                return digits(d.angle / degree, 4) + " degrees to (" + digits(d.direction.x(), 4) + ", " +
-                       digits(d.direction.y(), 4) + ", " + digits(d.direction.z(), 4) + ")";
+                const std::string degrees = digits(d.angle / degree, 4) + " degrees to ";
+                if (d.reference) return degrees + "that of annotation " + std::to_string(*d.reference);
+                return degrees + "(" + digits(d.direction.x(), 4) + ", " + digits(d.direction.y(), 4) + ", " +
+                       digits(d.direction.z(), 4) + ")";
             };
             return "no axis of annotation " + std::to_string(a.annotation) + " is at " + text(a) + " and at " + text(b);
         }

@@ -53,11 +53,12 @@ struct Statement {
     bool follows = false;                      ///< lower gives others when the shape has moved
     bool until_it_holds = false;               ///< follows only as long as it does not hold
     bool hard = false;
-    /// The axis of an annotation at an angle (radians) with a direction.
+    /// The axis of an annotation at an angle (radians) with a direction, or with the axis of another.
     struct Direction {
         int annotation = 0;
         Eigen::Vector3d direction;
         double angle = 0;
+        std::optional<int> reference = {};  ///< then the direction is that at rest
     };
     std::vector<Direction> directions;  ///< of parts, that it asks for outright
     std::string unknown;                ///< why it is left out, if it is

@@ -15,13 +15,18 @@ using namespace ostraka::test;
 
 namespace {
 
+/// Of the heights of the parts' centroids.
 double level_spread(const Caged& object, const std::vector<Point>& points, const std::vector<int>& ids) {
     double low = 1e300, high = -1e300;
     for (const int id : ids) {
-        double mean = 0;
-        const auto vertices = vertices_of(object.made.mesh, *object.set.find(id));
-        for (const Index v : vertices) mean += points[v].z() / static_cast<double>(vertices.size());
-        low = std::min(low, mean), high = std::max(high, mean);
+        double sum = 0, whole = 0;
+        for (const Index f : object.set.find(id)->faces) {
+            const auto [a, b, c] = corners(object.made.mesh, Face(f));
+            const double area = (eigen(points[b]) - eigen(points[a])).cross(eigen(points[c]) - eigen(points[a])).norm();
+            sum += area * (points[a].z() + points[b].z() + points[c].z()) / 3;
+            whole += area;
+        }
+        low = std::min(low, sum / whole), high = std::max(high, sum / whole);
     }
     return high - low;
 }

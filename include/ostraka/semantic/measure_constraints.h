@@ -16,7 +16,7 @@ std::vector<ConstraintReport> measure_constraints(const Mesh& mesh, const Annota
 /// The same for an object as it is. Without the shape at `rest` (the mesh with the vertices elsewhere) a constraint is judged by
 /// what it says outright: ranges, points, directions, angles, one level; parts that mirror each other or touch do so within the
 /// tolerances. One that keeps what the shape at rest had is unknown then, and so is one that makes no sense of the shape (an axis
-/// that a part does not have); `text` says why. Throws Error (input) where `rest` has another number of vertices.
+/// that a part does not have); `text` says why. Throws Error (input) where `rest` has other vertices or faces.
 std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                                 const Mesh* rest = nullptr, const RelationOptions& tolerances = {},
                                                 const std::string& graph_name = "graph");

@@ -114,7 +114,8 @@ struct ConstraintParameters {
     bool absolute = false;
     /// Positions or displacements aimed at, reference shape; without it, the rest points'. Of MirrorSymmetry with coefficients:
     /// for each group the mirrored point less its partner, zero without it. Of MeansOnLevel: a point for each group, whose
-    /// differences of height the means keep; without it, none.
+    /// differences of height the means keep; without it, none. Of AxisDirection: a shape that the points become no smaller than
+    /// half of; without it, nothing keeps them from shrinking where others contradict.
     std::optional<Points> target;
     /// Normal of planes, direction of axes and measures; need not have unit length.
     std::optional<Eigen::Vector3d> direction;
@@ -124,8 +125,8 @@ struct ConstraintParameters {
     /// axis.
     std::optional<Eigen::Vector3d> rest_direction, rest_point;
     /// Weights of the neighbours in cotangent Laplacians; without them, the neighbours must be the closed ring in order. Shares
-    /// of each point that count for the next station (AxisOnLine). Three barycentric coordinates of each partner
-    /// (MirrorSymmetry).
+    /// of each point that count for the next station (AxisOnLine). Weights of the points in the means of their groups
+    /// (MeansOnLevel). Three barycentric coordinates of each partner (MirrorSymmetry).
     std::vector<double> coefficients;
     /// Positions in ids: where the second part begins (EqualLength, Proportion); the ends of the first and of the second measure
     /// (Proportion: the first two lie in the first part; with `absolute` there are no others); points whose mean stays
