@@ -1,10 +1,15 @@
 #include "ostraka/transfer/lay_curves.h"
 
+#include "curve_loops.h"
+#include "curve_partition.h"
+#include "ostraka/annotation/curve_strands.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
+#include "ostraka/core/words.h"
+#include "ostraka/geom/geodesic.h"
 #include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/shortest_path.h"
 #include "region_transfer.h"
@@ -54,30 +59,23 @@ Vector unit(const Vector& v) {
     return length > 0 ? v / length : Vector(0, 0, 0);
 }
 
-/// The weights of a node in one of its faces.
-std::array<double, 3> weights_in(const Mesh& mesh, Index face, const SurfaceNode& node) {
-    const auto corner = corners(mesh, Face(face));
-    if (node.kind == SurfaceNode::Kind::face) return node.barycentric;
-    std::array<double, 3> weights{0, 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (node.kind == SurfaceNode::Kind::vertex) {
-            if (static_cast<Index>(corner[k]) == node.element) weights[k] = 1;
-        } else {
-            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
-            if (corner[k] == mesh.source(h)) weights[k] = 1 - node.parameter;
-            if (corner[k] == mesh.target(h)) weights[k] = node.parameter;
-        }
-    }
-    return weights;
-}
-
 /// A place of the source and where it is on the target.
 struct Mapped {
     SurfaceNode from;
     Vector normal{0, 0, 0};  ///< of the source there
     CorrespondenceKind kind = CorrespondenceKind::none;
     SurfaceNode to;
-    Vector up{0, 0, 0};  ///< of the target there
+    Vector up{0, 0, 0};   ///< of the target there
+    bool mutual = false;  ///< from there the same line meets the place first: there is one way back
+};
+
+/// A strand of the source and what it became. What curves share of it they share on the target.
+struct LaidStrand {
+    CurveStrand from;
+    bool bounds_region = false;
+    bool first_at_border = false, last_at_border = false;  ///< ends of an outline that ends at the border of the mesh
+    Places places;                                         ///< on the target
+    std::size_t count = 0, by_ray = 0, by_closest_point = 0, without_place = 0, detours = 0;
 };
 
 class Laying {
@@ -90,7 +88,9 @@ public:
           edge_(target.typical_edge()),
           far_(options.max_distance * target.diagonal()),
           min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)),
-          by_target_normals_(edge_ > typical_edge(source)) {}
+          by_target_normals_(edge_ > (1 + 1e-9) * typical_edge(source)) {
+        if (by_target_normals_) on_source_.emplace(source_);
+    }
 
     std::vector<Laid> run(const std::vector<const Annotation*>& annotations) {
         std::vector<Laid> laid(annotations.size());
@@ -100,16 +100,25 @@ public:
         for (auto& curves : drawn)
             for (Places& curve : curves) curve = divided(curve);
         map_all(drawn);
+        const auto uses = find_strands(annotations, drawn);
+        for (LaidStrand& strand : strands_) lay(strand);
         for (std::size_t i = 0; i < annotations.size(); ++i) {
             begin(*annotations[i], laid[i]);
-            for (const Places& curve : drawn[i]) {
-                Places on_target = trace(*annotations[i], curve, laid[i]);
-                if (!on_target.empty()) laid[i].annotation.curves.push_back(std::move(on_target));
+            for (std::size_t c = 0; c < drawn[i].size(); ++c) {
+                Places on_target =
+                    drawn[i][c].size() == 1 ? lay_point(drawn[i][c].front(), laid[i]) : put_together(uses[i][c], laid[i]);
+                const bool region = annotations[i]->type == AnnotationType::region;
+                const bool closes = drawn[i][c].front() == drawn[i][c].back();
+                if (region && closes && (on_target.size() < 4 || on_target.front() != on_target.back())) continue;
+                if (on_target.size() >= (annotations[i]->type == AnnotationType::point ? 1U : 2U))
+                    laid[i].annotation.curves.push_back(std::move(on_target));
             }
         }
         simplify(laid);
         parallel_for(
-            laid.size(), [&](std::size_t i) { settle(*annotations[i], laid[i]); }, 1);
+            laid.size(), [&](std::size_t i) { settle(*annotations[i], drawn[i].size(), laid[i]); }, 1);
+        keep_partition(source_, annotations, target_, laid);
+        for (std::size_t i = 0; i < annotations.size(); ++i) note_change(*annotations[i], drawn[i].size(), laid[i]);
         return laid;
     }
 
@@ -192,13 +201,14 @@ private:
         const Point& p = result.from.point;
         const auto take = [&](CorrespondenceKind kind, Index face, const std::array<double, 3>& weights) {
             result.kind = kind;
-            result.to = surface_node(target_, face, weights);
+            result.to = surface_node(target_, face, on_longest_edge(face, weights));
             result.up = unit(normal_at(target_, result.to));
         };
         if (result.normal.squared_length() > 0) {
             if (by_target_normals_) {
                 if (const auto hit = along_target_normal(p, result.normal)) {
                     take(CorrespondenceKind::ray, hit->face, hit->barycentric);
+                    result.mutual = is_mutual(result);
                     return result;
                 }
             } else {
@@ -206,6 +216,7 @@ private:
                     for (const SurfaceHit& hit : search_.line_hits(p, result.normal, length))
                         if (search_.normal(hit.face) * result.normal >= min_cosine_) {
                             take(CorrespondenceKind::ray, hit.face, hit.barycentric);
+                            result.mutual = true;
                             return result;
                         }
             }
@@ -214,6 +225,33 @@ private:
         if (const auto hit = search_.closest_compatible(p, result.normal, oriented ? min_cosine_ : -1, far_))
             take(CorrespondenceKind::closest, hit->face, hit->barycentric);
         return result;
+    }
+
+    /// In a face as good as without height, which cannot be cut inside, the place beside it on its longest edge.
+    std::array<double, 3> on_longest_edge(Index face, std::array<double, 3> weights) const {
+        const auto corner = corners(target_, Face(face));
+        std::size_t apex = 0;
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const double length = distance(target_.point(corner[(k + 1) % 3]), target_.point(corner[(k + 2) % 3]));
+                length > longest)
+                longest = length, apex = k;
+        if (weights[apex] == 1 || 2 * face_area(target_, Face(face)) > 1e-6 * longest * longest) return weights;
+        const double rest = 1 - weights[apex];
+        for (std::size_t k = 0; k < 3; ++k) weights[k] = k == apex ? 0 : weights[k] / rest;
+        return weights;
+    }
+
+    /// Whether the line along the normal of the (coarser) target meets the source at this place first. What lies in a fold of the
+    /// source that this line meets elsewhere before was not laid there from the target, and has no way back.
+    bool is_mutual(const Mapped& one) const {
+        const std::vector<Face> own = faces_of(source_, one.from);
+        const auto faces_up = [&](Index f) { return on_source_->normal(f) * one.up >= min_cosine_; };
+        if (std::none_of(own.begin(), own.end(), faces_up)) return false;
+        const double at = std::abs((one.from.point - one.to.point) * one.up), tolerance = 1e-4 * edge_;
+        for (const SurfaceHit& hit : on_source_->line_hits(one.to.point, one.up, at))
+            if (std::abs(hit.distance) < at - tolerance && faces_up(hit.face)) return false;
+        return true;
     }
 
     /// The place of the target whose interpolated normal runs through p: x(b) + d n(b) = p for the weights b and the distance d,
@@ -243,7 +281,7 @@ private:
                 if (!(std::abs(slopes.determinant()) > 1e-12 * size * size)) return std::nullopt;
                 const Eigen::Vector3d change = slopes.partialPivLu().solve(-off);
                 unknown += change;
-                if (!(unknown.squaredNorm() < 1e12 * (1 + size * size))) return std::nullopt;
+                if (!(std::abs(unknown[0]) + std::abs(unknown[1]) + std::abs(unknown[2]) / size < 1e6)) return std::nullopt;
                 solved = std::abs(change[0]) + std::abs(change[1]) < 1e-14 && std::abs(change[2]) <= 1e-14 * size;
             }
             const std::array<double, 3> weights{1 - unknown[0] - unknown[1], unknown[0], unknown[1]};
@@ -273,82 +311,168 @@ private:
 
     // Traces.
 
-    /// A curve on the target: the places, and those at which the traces between them cross edges.
-    Places trace(const Annotation& from, const Places& curve, Laid& laid) {
-        const bool closed = curve.size() > 3 && curve.front() == curve.back();
-        std::vector<std::size_t> good = trusted(curve, closed, laid);
-        if (good.empty()) return {};
-        const auto end_place = [&](std::size_t i) { return place_of(target_, at(curve[i]).to); };
-        if (from.type == AnnotationType::point || curve.size() == 1) return {end_place(good.front())};
-        Places places{end_place(good.front())};
-        for (std::size_t k = 0; k + 1 < good.size(); ++k) append(curve, good[k], good[k + 1], laid, places);
-        if (from.type == AnnotationType::region && !closed) lead_to_border(places);
-        if (closed) {
-            if (good.front() != 0) append(curve, good.back(), good.front(), laid, places);
-            if (places.size() < 4 || places.front() != places.back()) return {};
-        }
-        return places.size() < 2 ? Places() : places;
+    /// The strands of all curves, and of each annotation those that make up each of its curves.
+    std::vector<std::vector<std::vector<StrandUse>>> find_strands(const std::vector<const Annotation*>& annotations,
+                                                                  const std::vector<std::vector<Places>>& drawn) {
+        std::vector<CurveStrand> found;
+        auto uses = take_apart(source_, drawn, std::vector<bool>(drawn.size(), true), found);
+        for (CurveStrand& strand : found) strands_.emplace_back().from = std::move(strand);
+        for (std::size_t i = 0; i < drawn.size(); ++i)
+            for (std::size_t c = 0; c < drawn[i].size(); ++c) {
+                const Places& curve = drawn[i][c];
+                if (annotations[i]->type != AnnotationType::region || uses[i][c].empty()) continue;
+                for (const StrandUse& use : uses[i][c]) strands_[use.strand].bounds_region = true;
+                if (curve.front() == curve.back()) continue;
+                const StrandUse first = uses[i][c].front(), last = uses[i][c].back();
+                (first.backwards ? strands_[first.strand].last_at_border : strands_[first.strand].first_at_border) = true;
+                (last.backwards ? strands_[last.strand].first_at_border : strands_[last.strand].last_at_border) = true;
+            }
+        return uses;
     }
 
-    /// Which places of a curve to use: from the one nearest to its origin on, those that are not much farther from the last than
-    /// on the source. A closed curve has its first place last again if it can be trusted.
-    std::vector<std::size_t> trusted(const Places& curve, bool closed, Laid& laid) {
-        const std::size_t n = closed ? curve.size() - 1 : curve.size();
-        std::size_t best = n;
-        double nearest = std::numeric_limits<double>::infinity();
-        laid.places += n;
-        for (std::size_t i = 0; i < n; ++i) {
-            const Mapped& one = at(curve[i]);
-            if (one.kind == CorrespondenceKind::ray) ++laid.by_ray;
-            else if (one.kind == CorrespondenceKind::closest) ++laid.by_closest_point;
-            if (one.kind == CorrespondenceKind::none) continue;
-            const double off = distance(one.from.point, one.to.point);
-            if (off < nearest) nearest = off, best = i;
+    /// The places of a strand on the target, and those at which the traces between them cross edges.
+    void lay(LaidStrand& strand) {
+        check_cancelled();
+        const Places& from = strand.from.places;
+        const std::vector<std::size_t> good = trusted(strand);
+        if (good.empty()) return;
+        Places places{place_of(target_, at(from[good.front()]).to)};
+        for (std::size_t k = 0; k + 1 < good.size(); ++k) append(from[good[k]], from[good[k + 1]], strand.detours, places);
+        if (strand.from.closed && good.front() != 0) append(from[good.back()], from[good.front()], strand.detours, places);
+        if (strand.last_at_border) lead_to_border(places);
+        if (strand.first_at_border) {
+            std::reverse(places.begin(), places.end());
+            lead_to_border(places);
+            std::reverse(places.begin(), places.end());
         }
-        std::vector<bool> use(n, false);
-        if (best == n) {
-            laid.without_place += n;
+        strand.places =
+            strand.bounds_region ? without_small_loops(target_, std::move(places), edge_, strand.from.closed) : std::move(places);
+    }
+
+    Places lay_point(const SurfacePlace& place, Laid& laid) {
+        const Mapped& one = at(place);
+        ++laid.places;
+        if (one.kind == CorrespondenceKind::none) {
+            ++laid.without_place;
             return {};
         }
+        ++(one.kind == CorrespondenceKind::ray ? laid.by_ray : laid.by_closest_point);
+        return {place_of(target_, one.to)};
+    }
+
+    /// A curve of its strands. Strands of which nothing is left, or not their ends, are bridged.
+    Places put_together(const std::vector<StrandUse>& uses, Laid& laid) {
+        Places places;
+        for (const StrandUse& use : uses) {
+            const LaidStrand& strand = strands_[use.strand];
+            laid.places += strand.count;
+            laid.by_ray += strand.by_ray;
+            laid.by_closest_point += strand.by_closest_point;
+            laid.without_place += strand.without_place;
+            laid.detours += strand.detours;
+            Places part = strand.places;
+            if (use.backwards) std::reverse(part.begin(), part.end());
+            if (part.empty()) continue;
+            if (!places.empty() && places.back() != part.front()) bridge(part.front(), laid, places);
+            for (const SurfacePlace& place : part)
+                if (places.empty() || places.back() != place) places.push_back(place);
+        }
+        if (uses.empty()) return places;
+        const SurfacePlace &first = strand_end(uses.front(), true), &last = strand_end(uses.back(), false);
+        if (first == last && places.size() > 2 && places.front() != places.back()) bridge(places.front(), laid, places);
+        return places;
+    }
+
+    const SurfacePlace& strand_end(const StrandUse& use, bool first) const {
+        const Places& places = strands_[use.strand].from.places;
+        return first != use.backwards ? places.front() : places.back();
+    }
+
+    void bridge(const SurfacePlace& to, Laid& laid, Places& places) {
+        ++laid.detours;
+        along_edges(node_at(target_, places.back()), node_at(target_, to), places);
+    }
+
+    /// Which places of a strand to use: both ends; from the place nearest to its origin on, those that are not much farther from
+    /// the last than on the source. Between two near places with one way back, those without are left out: they lie in folds. A
+    /// loop has its first place last again if it can be trusted.
+    std::vector<std::size_t> trusted(LaidStrand& strand) {
+        const Places& curve = strand.from.places;
+        const bool closed = strand.from.closed;
+        const std::size_t n = closed ? curve.size() - 1 : curve.size();
+        std::vector<const Mapped*> places;
+        for (std::size_t i = 0; i < n; ++i) places.push_back(&at(curve[i]));
+        strand.count = n;
+        double nearest = std::numeric_limits<double>::infinity();
+        std::size_t best = n;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Mapped& one = *places[i];
+            if (one.kind == CorrespondenceKind::ray) ++strand.by_ray;
+            else if (one.kind == CorrespondenceKind::closest) ++strand.by_closest_point;
+            if (one.kind == CorrespondenceKind::none) continue;
+            const double off = distance(one.from.point, one.to.point) + (one.mutual ? 0 : far_);
+            if (off < nearest - 1e-9 * edge_) nearest = off, best = i;
+        }
+        if (best == n) {
+            strand.without_place = n;
+            return {};
+        }
+        std::vector<bool> use(n, false);
         use[best] = true;
-        const auto spread = [&](int sense, std::size_t steps) {
-            std::size_t last = best, previous = best;
-            double length = 0;
-            for (std::size_t k = 1; k <= steps; ++k) {
-                const std::size_t i = sense > 0 ? (best + k) % n : (best + n - k % n) % n;
-                const Mapped &one = at(curve[i]), &before = at(curve[previous]), &trusted = at(curve[last]);
-                length += distance(one.from.point, before.from.point);
-                previous = i;
-                if (one.kind == CorrespondenceKind::none || distance(one.to.point, trusted.to.point) > 3 * length + 0.5 * edge_)
-                    continue;
-                use[i] = true;
-                last = i;
-                length = 0;
-            }
-        };
         if (closed) {
-            spread(+1, n - 1);
+            spread(places, best, +1, n - 1, use);
         } else {
-            spread(+1, n - 1 - best);
-            spread(-1, best);
+            spread(places, best, +1, n - 1 - best, use);
+            spread(places, best, -1, best, use);
+            for (const std::size_t end : {std::size_t{0}, n - 1})
+                use[end] = use[end] || places[end]->kind != CorrespondenceKind::none;
         }
         std::vector<std::size_t> good;
         for (std::size_t i = 0; i < n; ++i)
             if (use[i]) good.push_back(i);
-        laid.without_place += n - good.size();
+        strand.without_place = n - good.size();
         if (closed && use[0]) good.push_back(n);  // the first again
         return good;
     }
 
-    void append(const Places& curve, std::size_t i, std::size_t j, Laid& laid, Places& places) {
-        const SurfacePlace &a = curve[i], &b = curve[j];
+    /// Marks the places to use among the next `steps` from `start` on, along the strand or against it.
+    void spread(const std::vector<const Mapped*>& places, std::size_t start, int sense, std::size_t steps,
+                std::vector<bool>& use) const {
+        const std::size_t n = places.size();
+        const auto at_step = [&](std::size_t k) { return sense > 0 ? (start + k) % n : (start + n - k % n) % n; };
+        std::vector<double> along(steps + 1, 0);
+        std::vector<std::size_t> next_mutual(steps + 2, steps + 1);  // from each step on
+        for (std::size_t k = 1; k <= steps; ++k)
+            along[k] = along[k - 1] + distance(places[at_step(k)]->from.point, places[at_step(k - 1)]->from.point);
+        for (std::size_t k = steps; k >= 1; --k) next_mutual[k] = places[at_step(k)]->mutual ? k : next_mutual[k + 1];
+        const auto follows = [&](std::size_t k, std::size_t last) {
+            const Mapped &one = *places[at_step(k)], &before = *places[at_step(last)];
+            return one.kind != CorrespondenceKind::none &&
+                   distance(one.to.point, before.to.point) <= 3 * (along[k] - along[last]) + 0.5 * edge_;
+        };
+        std::size_t last = 0;
+        for (std::size_t k = 1; k <= steps; ++k) {
+            if (!places[at_step(k)]->mutual) {
+                const std::size_t m = next_mutual[k];
+                if (m <= steps && follows(m, last) &&
+                    distance(places[at_step(m)]->to.point, places[at_step(last)]->to.point) <= 2 * edge_)
+                    k = m;
+            }
+            if (!follows(k, last)) continue;
+            use[at_step(k)] = true;
+            last = k;
+        }
+    }
+
+    /// Goes on from the place of a, the last there, to that of b.
+    void append(const SurfacePlace& a, const SurfacePlace& b, std::size_t& detours, Places& places) {
         const auto [entry, fresh] = traces_.try_emplace(std::minmax(a, b));
         if (fresh) {
             const SurfacePlace &low = entry->first.first, &high = entry->first.second;
             entry->second.places.push_back(place_of(target_, at(low).to));
             join(low, high, 0, entry->second);
         }
-        laid.detours += entry->second.detours;
+        detours += entry->second.detours;
         const Places& way = entry->second.places;
         const bool forward = a == entry->first.first;
         for (std::size_t k = 1; k < way.size(); ++k) {
@@ -362,15 +486,17 @@ private:
         std::size_t detours = 0;
     };
 
-    /// Adds the way from the place of a to that of b: a straight trace; where none arrives, by halves.
+    /// Adds the way from the place of a to that of b: a straight trace, across the normals that places correspond along; where
+    /// none arrives, by halves; over folds by the shortest curve.
     void join(const SurfacePlace& a, const SurfacePlace& b, int depth, Trace& trace) {
         const Mapped from = at(a), to = at(b);
-        const double apart = distance(from.to.point, to.to.point);
-        const Vector up = unit(from.up + to.up);
-        if (const auto line = trace_line(target_, from.to, to.to, up, 2 * apart + 1e-9 * search_.diagonal())) {
-            for (std::size_t k = 1; k < line->nodes.size(); ++k) trace.places.push_back(place_of(target_, line->nodes[k]));
-            return;
-        }
+        const double apart = distance(from.to.point, to.to.point), least = 1e-9 * search_.diagonal();
+        const Vector across = by_target_normals_ ? from.up + to.up : from.normal + to.normal;
+        const auto add = [&](const SurfaceCurve& line) {
+            for (std::size_t k = 1; k < line.nodes.size(); ++k) trace.places.push_back(place_of(target_, line.nodes[k]));
+        };
+        if (const auto line = trace_line(target_, from.to, to.to, unit(across), 2 * apart + least)) return add(*line);
+        if (const auto line = trace_line(target_, from.to, to.to, unit(from.up + to.up), 2 * apart + least)) return add(*line);
         if (depth < 6 && common_face(source_, from.from, to.from) != no_index) {
             const SurfacePlace middle = between(a, b, 1, 2);
             const Mapped& half = at(middle);
@@ -383,6 +509,7 @@ private:
             }
         }
         ++trace.detours;
+        if (const auto line = geodesic_curve(target_, from.to, to.to)) return add(*line);
         along_edges(from.to, to.to, trace.places);
     }
 
@@ -405,49 +532,41 @@ private:
         if (const SurfacePlace last = place_of(target_, b); places.back() != last) places.push_back(last);
     }
 
-    /// The ends of an outline that came from the border go to the nearest places of the target's.
-    void lead_to_border(Places& places) {
+    /// The end of an outline that came from the border goes to the nearest place of the target's.
+    void lead_to_border(Places& way) {
         if (border_.empty())
             for (const Halfedge h : target_.halfedges())
                 if (target_.is_border(h)) border_.push_back(h);
         if (border_.empty()) return;
-        const auto lead = [&](Places& way) {
-            const SurfaceNode from = node_at(target_, way.back());
-            const auto on_border = [&] {
-                return from.kind == SurfaceNode::Kind::vertex
-                           ? target_.is_border(Vertex(from.element))
-                           : from.kind == SurfaceNode::Kind::edge && target_.is_border(Edge(from.element));
-            };
-            if (on_border()) return;
-            double best = std::numeric_limits<double>::infinity();
-            SurfaceNode goal;
-            for (const Halfedge h : border_) {
-                const Point &a = target_.point(target_.source(h)), &b = target_.point(target_.target(h));
-                const Vector along = b - a;
-                const double t = std::clamp(((from.point - a) * along) / along.squared_length(), 0.0, 1.0);
-                const double off = CGAL::squared_distance(a + t * along, from.point);
-                if (off >= best) continue;
-                best = off;
-                SurfacePlace place;
-                const Index v = target_.source(h), w = target_.target(h);
-                if (t < 1e-6 || t > 1 - 1e-6) {
-                    place.element[0] = t < 0.5 ? v : w;
-                } else {
-                    place.kind = SurfaceNode::Kind::edge;
-                    place.element = {std::min(v, w), std::max(v, w)};
-                    place.weights[0] = v < w ? t : 1 - t;
-                }
-                goal = node_at(target_, place);
+        const SurfaceNode from = node_at(target_, way.back());
+        if (from.kind == SurfaceNode::Kind::vertex
+                ? target_.is_border(Vertex(from.element))
+                : from.kind == SurfaceNode::Kind::edge && target_.is_border(Edge(from.element)))
+            return;
+        double best = std::numeric_limits<double>::infinity();
+        SurfaceNode goal;
+        for (const Halfedge h : border_) {
+            const Point &a = target_.point(target_.source(h)), &b = target_.point(target_.target(h));
+            const Vector along = b - a;
+            const double t = std::clamp(((from.point - a) * along) / along.squared_length(), 0.0, 1.0);
+            const double off = CGAL::squared_distance(a + t * along, from.point);
+            if (off >= best) continue;
+            best = off;
+            SurfacePlace place;
+            const Index v = target_.source(h), w = target_.target(h);
+            if (t < 1e-6 || t > 1 - 1e-6) {
+                place.element[0] = t < 0.5 ? v : w;
+            } else {
+                place.kind = SurfaceNode::Kind::edge;
+                place.element = {std::min(v, w), std::max(v, w)};
+                place.weights[0] = v < w ? t : 1 - t;
             }
-            const Vector up = unit(normal_at(target_, from) + normal_at(target_, goal));
-            if (const auto line = trace_line(target_, from, goal, up, 4 * std::sqrt(best) + 1e-9 * search_.diagonal()))
-                for (std::size_t k = 1; k < line->nodes.size(); ++k) way.push_back(place_of(target_, line->nodes[k]));
-            else along_edges(from, goal, way);
-        };
-        lead(places);
-        std::reverse(places.begin(), places.end());
-        lead(places);
-        std::reverse(places.begin(), places.end());
+            goal = node_at(target_, place);
+        }
+        const Vector up = unit(normal_at(target_, from) + normal_at(target_, goal));
+        if (const auto line = trace_line(target_, from, goal, up, 4 * std::sqrt(best) + 1e-9 * search_.diagonal()))
+            for (std::size_t k = 1; k < line->nodes.size(); ++k) way.push_back(place_of(target_, line->nodes[k]));
+        else along_edges(from, goal, way);
     }
 
     // What is kept.
@@ -520,7 +639,7 @@ private:
         laid.annotation.all = from.all;
     }
 
-    void settle(const Annotation& from, Laid& laid) const {
+    void settle(const Annotation& from, std::size_t outlines, Laid& laid) const {
         Annotation& to = laid.annotation;
         if (from.all) {
             to.faces.resize(target_.number_of_faces());
@@ -534,12 +653,22 @@ private:
             const CurveFilling filling = fill_curves(target_, curves_on(target_, to));
             const double expected = area_of(source_, from);
             if (filling.conflicts > 0 || std::abs(filling.area(target_) - expected) > 0.5 * expected + 0.1 * edge_ * edge_) {
-                untangle(from, expected, laid);
+                untangle(from, expected, outlines, laid);
                 return;
             }
         }
         if (to.curves.empty()) laid.lost = true;
         else settle_elements(target_, to);
+    }
+
+    /// Says where a region or line has other outlines than on the source.
+    static void note_change(const Annotation& from, std::size_t before, Laid& laid) {
+        const std::size_t after = laid.annotation.curves.size();
+        if (from.all || laid.lost || after == before || after == 0 || !laid.note.empty()) return;
+        laid.note = counted(before, from.type == AnnotationType::line    ? "line"
+                                    : from.type == AnnotationType::point ? "point"
+                                                                         : "outline") +
+                    " became " + std::to_string(after);
     }
 
     /// Components of the source that the region covers whole have no outline: a place of each tells the component here.
@@ -572,7 +701,7 @@ private:
     Vector search_normal(Face f) const { return unit(area_vector(source_, f)); }
 
     /// Outlines that cross: the region by winding numbers on the target cut along them, its outline read off anew.
-    void untangle(const Annotation& from, double expected, Laid& laid) const {
+    void untangle(const Annotation& from, double expected, std::size_t outlines, Laid& laid) const {
         Annotation& to = laid.annotation;
         laid.untangled = true;
         const std::vector<Index> components = to.faces;
@@ -587,7 +716,8 @@ private:
         cut.face_origin = std::move(inserted.face_origin);
         cut.nodes = std::move(inserted.new_nodes);
         cut.old_vertices = target_.number_of_vertices();
-        const auto wound = fill_by_winding(cut.mesh, edges, expected);
+        auto wound = fill_by_winding(cut.mesh, edges, expected);
+        if (wound) dissolve_small_parts(cut.mesh, edge_ * edge_, outlines, *wound);
         const auto plausible = [&](const std::vector<Index>& faces) {
             return !faces.empty() && std::abs(area_of(cut.mesh, faces) - expected) <= 0.5 * expected + 0.1 * edge_ * edge_;
         };
@@ -610,6 +740,8 @@ private:
     const CorrespondenceOptions& options_;
     double edge_, far_, min_cosine_;
     bool by_target_normals_;
+    std::optional<SurfaceSearch> on_source_;  ///< where the target is the coarser
+    std::vector<LaidStrand> strands_;
     std::map<SurfacePlace, Mapped> mapped_;
     std::map<std::pair<SurfacePlace, SurfacePlace>, Trace> traces_;
     std::optional<PathSearch> paths_;
@@ -638,6 +770,7 @@ std::vector<std::string> lay_free_annotations(const Mesh& source, const Annotati
             notes.push_back(name_of(laid.annotation) + ": its curves have no place on the new mesh");
             continue;
         }
+        if (!laid.note.empty()) notes.push_back(name_of(laid.annotation) + ": " + laid.note);
         if (now == nullptr) continue;
         now->type = laid.annotation.type;
         now->points = std::move(laid.annotation.points);

@@ -410,6 +410,7 @@ void transfer_free(const Mesh& source, const AnnotationSet& set, const std::vect
         score.without_place = laid[i].without_place;
         score.detours = laid[i].detours;
         score.crossings_resolved = laid[i].untangled;
+        score.note = laid[i].note;
         if (laid[i].lost) score.outcome = TransferOutcome::lost;
         attributes.carry(*given[i], to);
     }

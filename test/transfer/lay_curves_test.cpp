@@ -160,3 +160,161 @@ TEST(LayCurves, SameToTheBitForAnyNumberOfThreads) {
     EXPECT_EQ(curves[0], curves[1]);
     EXPECT_EQ(curves[0], curves[2]);
 }
+
+namespace {
+
+/// A plane of 10 by 10 units, or a surface on it with waves that hang over: what lies below their crests a line along the normal
+/// of the plane meets more than once.
+Mesh waves(Index n, double over, double height) {
+    TriangleSoup soup;
+    for (Index i = 0; i <= n; ++i)
+        for (Index j = 0; j <= n; ++j) {
+            const double u = 10.0 * i / n, v = 10.0 * j / n, turn = 2 * CGAL_PI * u;
+            soup.points.push_back({u + over * std::sin(turn), v, height * std::cos(turn)});
+        }
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j) {
+            const Index a = i * (n + 1) + j, b = a + n + 1;
+            soup.triangles.push_back({a, b, b + 1});
+            soup.triangles.push_back({a, b + 1, a + 1});
+        }
+    return build_mesh(soup);
+}
+
+/// A free region around a circle on the plane.
+Annotation disc_on(const Mesh& mesh, double x, double y, double radius) {
+    const SurfaceSearch search(mesh);
+    const auto node = [&](int k) {
+        const double angle = 2 * CGAL_PI * k / 60;
+        const SurfaceHit hit = search.closest(Point(x + radius * std::cos(angle), y + radius * std::sin(angle), 0));
+        return surface_node(mesh, hit.face, hit.barycentric);
+    };
+    Annotation disc;
+    disc.tag = "disc";
+    auto& places = disc.curves.emplace_back(1, place_of(mesh, node(0)));
+    for (int k = 0; k < 60; ++k) {
+        const auto line = trace_line(mesh, node(k), node((k + 1) % 60), Vector(0, 0, 1), 10);
+        if (line)
+            for (std::size_t i = 1; i < line->nodes.size(); ++i) places.push_back(place_of(mesh, line->nodes[i]));
+    }
+    settle_elements(mesh, disc);
+    return disc;
+}
+
+/// Each face to the nearest of some places, spread over the mesh by a fixed rule: a partition with junctions.
+AnnotationSet cells(const Mesh& mesh, std::size_t count) {
+    AnnotationSet set;
+    set.annotations.resize(count);
+    std::vector<Point> seeds;
+    for (std::size_t k = 0; k < count; ++k) {
+        set.annotations[k].id = static_cast<int>(k);
+        set.annotations[k].tag = "cell " + std::to_string(k);
+        seeds.push_back(mesh.point(Vertex(static_cast<Index>((7919 * (k + 1)) % mesh.number_of_vertices()))));
+    }
+    for (const Face f : mesh.faces()) {
+        const Point at = centroid(mesh, f);
+        std::size_t best = 0;
+        for (std::size_t k = 1; k < count; ++k)
+            if (CGAL::squared_distance(at, seeds[k]) < CGAL::squared_distance(at, seeds[best])) best = k;
+        set.annotations[best].faces.push_back(f);
+    }
+    return set;
+}
+
+Mesh moved_and_scaled(const Mesh& mesh, double scale, const Vector& by, double noise) {
+    Mesh result = mesh;
+    double sense = 1;
+    for (const Vertex v : result.vertices()) {
+        const Point& p = mesh.point(v);
+        const auto off = [&](double x) { return x * scale * (1 + (sense = -sense) * noise); };
+        result.point(v) = Point(off(p.x()), off(p.y()), off(p.z())) + by;
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST(LayCurves, FoldsLeaveNoSpikesOnTheWayBack) {
+    const Mesh coarse = waves(20, 0, 0), fine = waves(200, 0.25, 0.12);
+    AnnotationSet set;
+    set.annotations.push_back(disc_on(coarse, 5.03, 4.91, 2.37));
+    const RegionMeasures before = measure_region(coarse, set.annotations[0]);
+    ASSERT_NEAR(before.area / (CGAL_PI * 2.37 * 2.37), 1, 3e-3);
+    const SurfaceSearch on_fine(fine), on_coarse(coarse);
+    TransferOptions options;
+    options.force = true;
+    const TransferResult there = transfer(coarse, set, on_fine, options);
+    const TransferResult back = transfer(fine, there.annotations, on_coarse, options);
+    ASSERT_EQ(back.annotations.annotations.size(), 1U);
+    const Annotation& again = back.annotations.annotations[0];
+    EXPECT_EQ(again.curves.size(), 1U);
+    const RegionMeasures after = measure_region(coarse, again);
+    EXPECT_NEAR(after.perimeter / before.perimeter, 1, 1e-3);
+    EXPECT_NEAR(after.area / before.area, 1, 2e-4);
+}
+
+TEST(LayCurves, APartitionWithJunctionsStaysOneOnACoarserMesh) {
+    for (const char* object : {"teapot", "statuette"}) {
+        const Mesh fine = made(object, 6000, 1), coarse = made(object, 1500, 7);
+        const AnnotationSet set = cells(fine, 12);
+        TransferOptions options;
+        options.outlines = TransferOptions::Outlines::free;
+        options.overlap = false;
+        const SurfaceSearch on_coarse(coarse);
+        const TransferResult there = transfer(fine, set, on_coarse, options);
+        check_annotations(there.annotations, coarse, "there");
+        EXPECT_NEAR(area_sum(coarse, there.annotations) / surface_area(coarse), 1, 1e-9) << object;
+        const CutMesh cut = cut_along_curves(coarse, there.annotations);
+        std::vector<int> holders(cut.mesh.number_of_faces(), 0);
+        for (const Annotation& one : cut.annotations.annotations)
+            for (const Index f : one.faces) ++holders[f];
+        double wrong = 0;
+        for (const Face f : cut.mesh.faces())
+            if (holders[f] != 1) wrong += face_area(cut.mesh, f);
+        EXPECT_LT(wrong / surface_area(coarse), 1e-9) << object;
+    }
+}
+
+TEST(LayCurves, UnitPositionAndRoundingChangeNothing) {
+    const Mesh coarse = made("statuette", 1500, 1), fine = made("statuette", 6000, 5);
+    const AnnotationSet set = slabs(coarse, Vector(0.3, 0.2, 0.93), 3);
+    const auto measured = [&](double scale, const Vector& by, double noise) {
+        const Mesh from = moved_and_scaled(coarse, scale, by, noise), to = moved_and_scaled(fine, scale, by, noise);
+        const SurfaceSearch on_to(to), on_from(from);
+        const TransferResult there = transfer(from, set, on_to), back = transfer(to, there.annotations, on_from);
+        std::vector<double> values;
+        for (const auto& [mesh, result] : {std::pair(&to, &there), std::pair(&from, &back)})
+            for (const Annotation& one : result->annotations.annotations) {
+                const RegionMeasures measures = measure_region(*mesh, one);
+                values.push_back(measures.perimeter / scale);
+                values.push_back(measures.area / (scale * scale));
+            }
+        return values;
+    };
+    const std::vector<double> as_it_is = measured(1, Vector(0, 0, 0), 0);
+    for (const auto& other : {measured(1000, Vector(0, 0, 0), 0), measured(0.001, Vector(0, 0, 0), 0),
+                              measured(1, Vector(0, 0, 0), 1e-16), measured(1, Vector(50, -70, 30), 0)}) {
+        ASSERT_EQ(other.size(), as_it_is.size());
+        for (std::size_t i = 0; i < other.size(); ++i) EXPECT_NEAR(other[i] / as_it_is[i], 1, 1e-6) << i;
+    }
+}
+
+TEST(LayCurves, AnotherNumberOfOutlinesIsReported) {
+    // Of two discs, one lies on a piece that the target does not have.
+    const Mesh whole = waves(20, 0, 0);
+    TriangleSoup half = to_soup(whole);
+    std::erase_if(half.triangles, [&](const auto& t) { return half.points[t[0]][0] > 5.4; });
+    const Mesh target = build_mesh(half);
+    AnnotationSet set;
+    Annotation both = disc_on(whole, 2.53, 4.91, 1.37);
+    both.curves.push_back(disc_on(whole, 8.03, 4.91, 1.12).curves.front());
+    settle_elements(whole, both);
+    set.annotations.push_back(both);
+    const SurfaceSearch search(target);
+    TransferOptions options;
+    options.force = true;
+    const TransferResult there = transfer(whole, set, search, options);
+    ASSERT_EQ(there.annotations.annotations.size(), 1U);
+    EXPECT_EQ(there.annotations.annotations[0].curves.size(), 1U);
+    EXPECT_EQ(there.scores.at(0).note, "2 outlines became 1");
+}

@@ -1,0 +1,154 @@
+#include "curve_partition.h"
+
+#include "ostraka/annotation/curves.h"
+#include "ostraka/core/error.h"
+#include "ostraka/core/flood.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/core/progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace ostraka {
+
+namespace {
+
+/// What rounding adds up to, of a surface.
+constexpr double rounding_share = 1e-9;
+
+/// The faces of a mesh cut along all outlines, given out so that each has one holder.
+class Parting {
+public:
+    Parting(const Mesh& mesh, const std::vector<Annotation>& regions) : mesh_(mesh), holders_(mesh.number_of_faces()) {
+        for (std::size_t r = 0; r < regions.size(); ++r)
+            for (const Index f : regions[r].faces) holders_[f].push_back(r);
+        owner_.assign(holders_.size(), none);
+        for (std::size_t f = 0; f < holders_.size(); ++f)
+            if (holders_[f].size() == 1) owner_[f] = holders_[f].front();
+    }
+
+    /// The regions whose faces changed.
+    std::vector<bool> settle(std::size_t regions) {
+        std::vector<bool> changed(regions, false);
+        std::vector<std::vector<Face>> pieces = contested();
+        for (bool any = true; any && !pieces.empty();) {
+            any = false;
+            std::vector<std::vector<Face>> left;
+            for (std::vector<Face>& piece : pieces) {
+                const std::size_t best = heir(piece);
+                if (best == none) {
+                    left.push_back(std::move(piece));
+                    continue;
+                }
+                any = true;
+                for (const Face f : piece) owner_[f] = best;
+                changed[best] = true;
+                for (const std::size_t r : holders_[piece.front()]) changed[r] = true;
+            }
+            pieces = std::move(left);
+        }
+        return changed;
+    }
+
+    [[nodiscard]] std::vector<Index> faces_of(std::size_t region) const {
+        std::vector<Index> faces;
+        for (std::size_t f = 0; f < owner_.size(); ++f)
+            if (owner_[f] == region) faces.push_back(static_cast<Index>(f));
+        return faces;
+    }
+
+private:
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+    /// Connected faces with the same holders, of which there is none or more than one.
+    std::vector<std::vector<Face>> contested() const {
+        std::vector<std::vector<Face>> pieces;
+        std::vector<bool> seen(holders_.size(), false);
+        CancelCheck check;
+        for (const Face start : mesh_.faces()) {
+            check();
+            if (seen[start] || holders_[start].size() == 1) continue;
+            pieces.push_back(flood_faces(mesh_, start, seen, [&](Halfedge h) {
+                const Face beyond = mesh_.face(mesh_.opposite(h));
+                return beyond != Mesh::null_face() && holders_[beyond] == holders_[start];
+            }));
+        }
+        return pieces;
+    }
+
+    /// The owner beyond most of a piece's border, one of its holders if it has any; none if there is no such neighbour and no
+    /// holder.
+    [[nodiscard]] std::size_t heir(const std::vector<Face>& piece) const {
+        const std::vector<std::size_t>& holders = holders_[piece.front()];
+        std::map<std::size_t, double> shared;
+        for (const Face f : piece)
+            for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
+                if (mesh_.is_border(mesh_.opposite(h))) continue;
+                const std::size_t beyond = owner_[mesh_.face(mesh_.opposite(h))];
+                if (beyond == none || (!holders.empty() && std::find(holders.begin(), holders.end(), beyond) == holders.end()))
+                    continue;
+                shared[beyond] += std::sqrt(CGAL::squared_distance(mesh_.point(mesh_.source(h)), mesh_.point(mesh_.target(h))));
+            }
+        if (shared.empty()) return holders.empty() ? none : holders.front();
+        return std::max_element(shared.begin(), shared.end(), [](const auto& a, const auto& b) { return a.second < b.second; })
+            ->first;
+    }
+
+    const Mesh& mesh_;
+    std::vector<std::vector<std::size_t>> holders_;
+    std::vector<std::size_t> owner_;
+};
+
+}  // namespace
+
+void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
+                    std::vector<Laid>& laid) {
+    std::vector<std::size_t> regions, which;  // of the source, and of these what is left on the target
+    bool untangled = false;
+    for (std::size_t i = 0; i < annotations.size(); ++i) {
+        if (annotations[i]->type != AnnotationType::region || annotations[i]->all) continue;
+        regions.push_back(i);
+        if (laid[i].lost) continue;
+        which.push_back(i);
+        untangled = untangled || laid[i].untangled;
+    }
+    const auto sum = [](const std::vector<std::size_t>& list, const auto& area) {
+        std::vector<double> areas(list.size());
+        parallel_for(
+            list.size(), [&](std::size_t k) { areas[k] = area(list[k]); }, 1);
+        return std::accumulate(areas.begin(), areas.end(), 0.0);
+    };
+    const double of_source = surface_area(source), of_target = surface_area(target);
+    const double before = sum(regions, [&](std::size_t i) { return area_of(source, *annotations[i]); });
+    if (which.empty() || std::abs(before - of_source) > rounding_share * of_source) return;
+    const double after = sum(which, [&](std::size_t i) { return area_of(target, laid[i].annotation); });
+    if (!untangled && std::abs(after - of_target) <= rounding_share * of_target) return;
+    AnnotationSet set;
+    for (const std::size_t i : which) set.annotations.push_back(laid[i].annotation);
+    try {
+        const CutMesh cut = cut_along_curves(target, set);
+        Parting parting(cut.mesh, cut.annotations.annotations);
+        const std::vector<bool> changed = parting.settle(which.size());
+        for (std::size_t r = 0; r < which.size(); ++r) {
+            if (!changed[r]) continue;
+            Annotation& annotation = set.annotations[r];
+            annotation.faces = parting.faces_of(r);
+            annotation.curves.clear();
+            if (!annotation.faces.empty()) bring_back(target, cut, annotation);
+        }
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::cancelled) throw;
+        for (const std::size_t i : which)
+            if (laid[i].untangled && laid[i].note.empty())
+                laid[i].note = "its neighbours may overlap it, or leave a gap: " + error.where() + ' ' + error.problem();
+        return;
+    }
+    for (std::size_t r = 0; r < which.size(); ++r) {
+        laid[which[r]].lost = set.annotations[r].faces.empty() && set.annotations[r].curves.empty();
+        laid[which[r]].annotation = std::move(set.annotations[r]);
+    }
+}
+
+}  // namespace ostraka
