@@ -92,7 +92,12 @@ public:
 
     const std::vector<VertexMatch>& match(double search_radius, NonRigidFit& fit) {
         const AddedSeconds watch(fit.seconds_matching);
-        matches_ = search_.matches(now_, mesh_, labels_, search_radius, std::cos(options_.angle * pi / 180));
+        const double min_cosine = std::cos(options_.angle * pi / 180);
+        if (slides()) {
+            matches_ = search_.sliding_matches(now_, mesh_, labels_, search_radius, min_cosine, slides_);
+            return matches_;
+        }
+        matches_ = search_.matches(now_, mesh_, labels_, search_radius, min_cosine);
         if (options_.counterparts == NonRigidOptions::Counterparts::surface) return matches_;
         VertexAssignmentOptions options = options_.vertices;
         options.counterpart = options_.counterparts == NonRigidOptions::Counterparts::best
@@ -223,7 +228,35 @@ private:
         return static_cast<double>(changed) <= 0.02 * static_cast<double>(matches_.size());
     }
 
+    [[nodiscard]] bool slides() const { return options_.counterparts == NonRigidOptions::Counterparts::sliding; }
+
+    /// Where the match of a vertex draws it: to the place itself, or to the nearest one to which it may slide from there.
+    [[nodiscard]] Vector3d goal_of(std::size_t i) const {
+        constexpr double free = 0.95;  // the rest of the way draws it back: what nothing else holds does not drift
+        const VertexMatch& match = matches_[i];
+        if (!slides()) return match.place;
+        return match.place + free * (slides_[i].free * (now_.col(static_cast<Eigen::Index>(i)) - match.place));
+    }
+
+    /// In units of mean areas: of its area, and where it is held by a curve of a part of a strip beside it, as outlines are.
+    [[nodiscard]] double weight_of_match(std::size_t i, double smoothing) const {
+        constexpr double curve = 0.5;
+        double area = rings_.area[i];
+        if (slides() && slides_[i].on_curve) area += curve * smoothing * std::sqrt(area);
+        return area / system_.mean_area;
+    }
+
+    /// Vertices that slide take some solutions to come to rest: each solution draws them to the tangent planes from where they
+    /// are (a majorisation of the distance from the plane). In the space of a cage one is as dear as a match, and point-to-plane
+    /// steps follow at the end.
     void solve(double smoothing, double transition, bool new_level) {
+        constexpr int slides_at_once = 5;
+        solve_once(smoothing, transition, new_level);
+        if (!slides() || weights_ != nullptr) return;
+        for (int k = 1; k < slides_at_once; ++k) solve_once(smoothing, transition, false);
+    }
+
+    void solve_once(double smoothing, double transition, bool new_level) {
         // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
         const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
         rotate_displacements();
@@ -242,13 +275,13 @@ private:
             if (renew) {
                 const double share = rings_.area[i] / mean_area;
                 weighted_[i] = matched;
-                match_weight_[i] = matched ? share : 0;
+                match_weight_[i] = matched ? weight_of_match(i, smoothing) : 0;
                 solver_->set_weight(system_.match(i), match_weight_[i] + correspondence_weight(i, smoothing));
                 solver_->set_weight(system_.stay(i), stay * std::max(share, 1e-6));
                 if (new_level || weights_ != nullptr)
                     solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
             }
-            const Vector3d goal = matched ? matches_[i].place : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
+            const Vector3d goal = matched ? goal_of(i) : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
             if (!correspondences_[i].empty()) solver_->set_target(system_.match(i), Points(drawn_together(i, smoothing, goal)));
             else if (weighted_[i]) solver_->set_target(system_.match(i), Points(goal));
             if (system_.laplacian(i) == LevelSystem::no_constraint) continue;
@@ -291,16 +324,17 @@ private:
         return weight > 0 ? Vector3d(sum / weight) : match;
     }
 
-    /// Rest displacements rotated with the surroundings of each vertex.
+    /// Rest displacements rotated, and where vertices slide scaled, with the surroundings of each vertex.
     void rotate_displacements() {
         const std::vector<Matrix3d> rotation = rotations();
+        const std::vector<double> scale = slides() ? local_scales(rings_, rest_, now_) : std::vector<double>(rotation.size(), 1);
         displacement_.setZero(3, rest_.cols());
         parallel_for(rotation.size(), [&](std::size_t i) {
             Vector3d rest = Vector3d::Zero();
             for (std::size_t k = rings_.begin[i]; k < rings_.begin[i + 1]; ++k)
                 rest +=
                     rings_.weight[k] / rings_.sum[i] * (rest_.col(rings_.neighbour[k]) - rest_.col(static_cast<Eigen::Index>(i)));
-            displacement_.col(static_cast<Eigen::Index>(i)) = rotation[i] * rest;
+            displacement_.col(static_cast<Eigen::Index>(i)) = scale[i] * (rotation[i] * rest);
         });
     }
 
@@ -319,6 +353,7 @@ private:
     Points cage_rest_, cage_;
     std::unique_ptr<CageSpaceSolver> through_cage_;
     std::vector<VertexMatch> matches_;
+    std::vector<Slide> slides_;         ///< of each match
     std::vector<bool> weighted_;        ///< vertices whose match weighs in the factorisation
     std::vector<double> match_weight_;  ///< and how much
 };
@@ -340,6 +375,13 @@ Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
     for (Index f = 0; f < done.face_map.size(); ++f)
         if (done.face_map[f] != no_index) coarse.face_origin[done.face_map[f]] = f;
     return coarse;
+}
+
+/// Where vertices slide along the curves between parts, outlines need no positions along them.
+MatchSearch::Guides guides_of(const NonRigidOptions& options) {
+    if (!options.outlines) return MatchSearch::Guides::landmarks;
+    return options.counterparts == NonRigidOptions::Counterparts::sliding ? MatchSearch::Guides::lines
+                                                                          : MatchSearch::Guides::outlines;
 }
 
 constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
@@ -401,7 +443,9 @@ struct TemplateFitter::State {
         std::erase_if(correspondences, [&](const CorrespondenceConstraint& correspondence) {
             return correspondence.vertex >= coarse->mesh.number_of_vertices();
         });
-        return {*smooth, search, search.labels(coarse->mesh, coarse->face_origin), std::move(correspondences), diagonal, options};
+        return {
+            *smooth,  search, search.labels(coarse->mesh, coarse->face_origin, coarse->vertex_map), std::move(correspondences),
+            diagonal, options};
     }
 
     /// Levels through the cage; gives the first one that is left for the template's vertices.
@@ -461,12 +505,15 @@ TemplateFitter::TemplateFitter(TemplateFitter&&) noexcept = default;
 
 NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>& fragments, const NonRigidOptions& options) {
     check_options(options, "fit");
-    if (options.counterparts != NonRigidOptions::Counterparts::surface &&
+    if ((options.counterparts == NonRigidOptions::Counterparts::best ||
+         options.counterparts == NonRigidOptions::Counterparts::one_to_one) &&
         !(options.vertices.boundary + options.vertices.distance + options.vertices.outline > 0))
         fail_usage("all three weights of equation 5.1 are zero", "give --distance-weight or another one");
     State& s = *state_;
     NonRigidFit fit;
-    const MatchSearch search(s.mesh, s.set, fragments, scale, options.outlines);
+    const bool slides = options.counterparts == NonRigidOptions::Counterparts::sliding;
+    MatchSearch search(s.mesh, s.set, fragments, scale, guides_of(options));
+    if (slides) search.recognise_shared_faces();
     {
         const AddedSeconds watch(fit.seconds_coarsening);
         s.prepare();
@@ -513,15 +560,18 @@ void NonRigidOptions::describe(OptionList& visit) {
     visit("last-reach", last_search_radius, "farthest match in the last level", Range{0, 10});
     visit("match-angle", angle, "normals of matches differ by at most this", Range{0, 180}, "degrees");
     visit("counterparts", counterparts,
-          "of vertices in matched annotations: closest places of the surface (surface), or vertices by distance, outline and "
-          "position along it (equation 5.1): the best of each (best), or each given once (one-to-one)",
-          Choices{"surface", "best", "one-to-one"});
+          "of vertices: places of the surface from which they may slide along it, and along the curves between parts (sliding); "
+          "the closest places (surface); or in matched annotations vertices by distance, outline and position along it (equation "
+          "5.1): the best of each (best), or each given once (one-to-one)",
+          Choices{"sliding", "surface", "best", "one-to-one"});
     visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside", Range{0, 1e6});
     visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
     visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
     visit("guides", correspondences, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
-    visit("outlines", outlines, "matched outlines and lines guide the fit by the position along them, from landmark to landmark",
-          Anything{});
+    visit(
+        "outlines", outlines,
+        "matched lines, and outlines unless vertices slide, guide the fit by the position along them, from landmark to landmark",
+        Anything{});
 }
 
 }  // namespace ostraka

@@ -1,8 +1,10 @@
 #include "level_system.h"
 
+#include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ostraka {
 
@@ -44,6 +46,33 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
 }
 
 }  // namespace
+
+std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now) {
+    constexpr int wider = 2;  // rings around the first
+    const auto n = static_cast<std::size_t>(rest.cols());
+    // Sums of squares at rest and now.
+    std::vector<Eigen::Vector2d> sums(n), sums_before;
+    parallel_for(n, [&](std::size_t i) {
+        const auto v = static_cast<Eigen::Index>(i);
+        sums[i].setZero();
+        for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k) {
+            const int j = rings.neighbour[k];
+            sums[i] += rings.weight[k] *
+                       Eigen::Vector2d((rest.col(j) - rest.col(v)).squaredNorm(), (now.col(j) - now.col(v)).squaredNorm());
+        }
+    });
+    for (int ring = 0; ring < wider; ++ring) {
+        sums_before = sums;
+        parallel_for(n, [&](std::size_t i) {
+            for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k)
+                sums[i] += sums_before[static_cast<std::size_t>(rings.neighbour[k])];
+        });
+    }
+    std::vector<double> scales(n, 1);
+    for (std::size_t i = 0; i < n; ++i)
+        if (sums[i][0] > 0) scales[i] = std::clamp(std::sqrt(sums[i][1] / sums[i][0]), 0.5, 2.0);
+    return scales;
+}
 
 LevelSystem::LevelSystem(const Mesh& of) : mesh(of) {
     rest = columns_of(mesh);

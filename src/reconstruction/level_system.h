@@ -17,6 +17,10 @@ struct Rings {
     std::vector<double> area, sum;  ///< area around each vertex; sum of its weights
 };
 
+/// How many times as large the surroundings of each vertex are now as at rest: root mean square of the edges within three rings,
+/// from 0.5 to 2.
+std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now);
+
 /// What the three costs of equation 5.2 are made of, over the vertices of a mesh. Nothing here depends on fragments.
 class LevelSystem {
 public:

@@ -1,6 +1,7 @@
 #include "match_search.h"
 
 #include "outline_correspondences.h"
+#include "shared_faces.h"
 
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
@@ -35,8 +36,8 @@ std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const
 MatchSearch::~MatchSearch() = default;
 
 MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale,
-                         bool outlines)
-    : scale_(scale), fragments_(fragments) {
+                         Guides guides)
+    : scale_(scale), template_(mesh), fragments_(fragments) {
     Motion unit;
     unit.scale = 1 / scale;
     // Regions that any fragment has.
@@ -52,7 +53,8 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
                 if (std::none_of(ours.begin(), ours.end(), [&](const auto& one) { return one.first == a; }))
                     ours.emplace_back(a, a->id);
             } else if (a->type == AnnotationType::point && a->points.size() == 1 && b->points.size() == 1) {
-                correspondences_.push_back({a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))) / scale, 0});
+                correspondences_.push_back(
+                    {a->points.front(), eigen(fragment.mesh.point(Vertex(b->points.front()))) / scale, 0, static_cast<int>(k)});
                 landmarks_.emplace_back(a->points.front(), b->points.front());
                 landmark_fragment_.push_back(static_cast<int>(k));
             }
@@ -71,13 +73,14 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
         trees_.push_back(own ? fragment.trees : std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets));
         to_template_.push_back(own ? unit.after(fragment.pose) : unit);
         to_fragment_.push_back(to_template_.back().inverse());
+        joints_.add(static_cast<int>(k), fragment.mesh, labels, fragment.facets, trees_.back()->breaks(), scale);
         for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
     face_labels_ = face_labels(mesh, ours);
-    if (outlines) add_outline_correspondences(mesh, set);
+    if (guides != Guides::landmarks) add_path_correspondences(set, guides);
 }
 
-void MatchSearch::add_outline_correspondences(const Mesh& mesh, const AnnotationSet& set) {
+void MatchSearch::add_path_correspondences(const AnnotationSet& set, Guides guides) {
     for (std::size_t k = 0; k < fragments_.size(); ++k) {
         const PlacedFragment& fragment = fragments_[k];
         std::vector<bool> broken = not_broken(fragment.facets);
@@ -90,23 +93,60 @@ void MatchSearch::add_outline_correspondences(const Mesh& mesh, const Annotation
             const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
             if (a == nullptr || b == nullptr || a->type != b->type || a->type == AnnotationType::point || a->all || b->all)
                 continue;
+            if (a->type == AnnotationType::region && guides == Guides::lines) continue;
             Annotation outer = *b;
             if (!broken.empty()) std::erase_if(outer.faces, [&](Index f) { return broken[f]; });
             for (const OutlineCorrespondence& correspondence :
-                 outline_correspondences(mesh, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
+                 outline_correspondences(template_, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
                 // Of parts in parts the inner one decides.
-                const auto ring = mesh.faces_around_target(mesh.halfedge(Vertex(correspondence.vertex)));
+                const auto ring = template_.faces_around_target(template_.halfedge(Vertex(correspondence.vertex)));
                 const bool ours = a->type == AnnotationType::line || std::any_of(ring.begin(), ring.end(), [&](Face face) {
                                       return face != Mesh::null_face() && face_labels_[face] == a->id;
                                   });
                 if (ours)
-                    correspondences_.push_back({correspondence.vertex, correspondence.place / scale_, correspondence.length});
+                    correspondences_.push_back(
+                        {correspondence.vertex, correspondence.place / scale_, correspondence.length, static_cast<int>(k)});
             }
         }
     }
 }
 
-MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin) const {
+void MatchSearch::recognise_shared_faces() {
+    for (const PlacedFragment& fragment : fragments_) {
+        std::vector<bool> broken = not_broken(fragment.facets);
+        broken.flip();
+        std::vector<Index> vertices = shared_vertices(template_, fragment.mesh, scale_, broken);
+        bool all = !vertices.empty();
+        for (const Face face : fragment.mesh.faces())
+            for (const Vertex v : corners(fragment.mesh, face))
+                all = all && (vertices[v] != no_index || (!broken.empty() && broken[face]));
+        shared_.push_back(all ? std::move(vertices) : std::vector<Index>());
+    }
+    std::erase_if(correspondences_,
+                  [&](const CorrespondenceConstraint& one) { return !shared_[static_cast<std::size_t>(one.fragment)].empty(); });
+}
+
+std::vector<VertexMatch> MatchSearch::shared_of(const Mesh& mesh, const std::vector<Index>& vertex_map) const {
+    std::vector<VertexMatch> shared;
+    for (std::size_t k = 0; k < shared_.size(); ++k) {
+        if (shared_[k].empty()) continue;
+        shared.resize(mesh.number_of_vertices());
+        const Mesh& fragment = fragments_[k].mesh;
+        for (const Vertex v : fragment.vertices()) {
+            const Index ours = shared_[k][v];
+            if (ours == no_index) continue;
+            const Index here = vertex_map.empty() ? ours : vertex_map[ours];
+            if (here == no_index || shared[here].fragment >= 0) continue;
+            const Vector3d moved = eigen(mesh.point(Vertex(here))) - eigen(template_.point(Vertex(ours)));
+            shared[here] = {static_cast<int>(k), fragment.face(fragment.halfedge(v)), eigen(fragment.point(v)) / scale_ + moved,
+                            0};
+        }
+    }
+    return shared;
+}
+
+MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Index>& face_origin,
+                                        const std::vector<Index>& vertex_map) const {
     Labels labels;
     for (Index f = 0; f < mesh.number_of_faces(); ++f)
         labels.of_face.push_back(face_labels_[face_origin.empty() ? f : face_origin[f]]);
@@ -121,6 +161,7 @@ MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Inde
         }
         std::sort(list.begin(), list.end());
     }
+    labels.shared = shared_of(mesh, vertex_map);
     return labels;
 }
 
@@ -170,6 +211,37 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
                                   : VertexMatch{one.fragment, part.faces[hit->face], to_template_[k](eigen(hit->point)), nearest};
             }
         }
+    });
+    return found;
+}
+
+std::vector<VertexMatch> MatchSearch::sliding_matches(const Points& now, const Mesh& connectivity, const Labels& labels,
+                                                      double search_radius, double min_cosine, std::vector<Slide>& slides) const {
+    std::vector<VertexMatch> found = matches(now, connectivity, labels, search_radius, min_cosine);
+    slides.assign(found.size(), {});
+    parallel_for(found.size(), [&](std::size_t i) {
+        const Vector3d place = now.col(static_cast<Eigen::Index>(i));
+        if (!labels.shared.empty()) {
+            // Who is on such a fragment is known, and who is not.
+            const bool elsewhere = found[i].fragment >= 0 && !shared_[static_cast<std::size_t>(found[i].fragment)].empty();
+            if (const VertexMatch& shared = labels.shared[i]; shared.fragment >= 0) {
+                found[i] = shared;
+                found[i].distance = (shared.place - place).norm();
+                return;
+            }
+            if (elsewhere) found[i] = {};
+        }
+        if (const auto joint = joints_.nearest(place, labels.of_vertex[i], search_radius)) {
+            const int fragment = joint->match.fragment;
+            if (fragment < 0 || shared_.empty() || shared_[static_cast<std::size_t>(fragment)].empty()) {
+                found[i] = joint->match;
+                slides[i] = {joint->along * joint->along.transpose(), true};
+                return;
+            }
+        }
+        if (found[i].fragment < 0) return;
+        const Vector3d n = normal(found[i]);
+        slides[i].free = Eigen::Matrix3d::Identity() - n * n.transpose();
     });
     return found;
 }

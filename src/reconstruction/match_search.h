@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fragment_trees.h"
+#include "joint_curves.h"
 
 #include "ostraka/reconstruction/fit.h"
 #include "ostraka/reconstruction/vertex_assignment.h"
@@ -18,6 +19,7 @@ struct CorrespondenceConstraint {
     Index vertex = no_index;
     Eigen::Vector3d place;
     double length = 0;  ///< of the outline that it stands for; 0 for a landmark
+    int fragment = 0;
 };
 
 /// A place of a fragment's outer surface, each for the same area.
@@ -26,14 +28,21 @@ struct FragmentSample {
     int label = -1;  ///< of the template's faces among which its counterpart is
 };
 
+/// How a vertex may go on from its match: x may be anywhere with x - place in the image of `free`.
+struct Slide {
+    Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
+    bool on_curve = false;
+};
+
 /// Like is looked for among like: vertices in a matched annotation on the faces of its counterpart, all others on faces in none.
 class MatchSearch {
 public:
     /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and answered is in the
     /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
-    /// `outlines`: correspondences are not only landmarks, but also the places along matched outlines and lines.
+    /// What correspondences there are besides landmarks: places along matched lines, and along matched outlines.
+    enum class Guides { landmarks, lines, outlines };
     MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,
-                bool outlines = false);
+                Guides guides = Guides::landmarks);
     ~MatchSearch();
     MatchSearch(const MatchSearch&) = delete;
     MatchSearch& operator=(const MatchSearch&) = delete;
@@ -42,13 +51,26 @@ public:
     struct Labels {
         std::vector<int> of_face;
         std::vector<std::vector<int>> of_vertex;
+        /// Where a vertex is on a fragment whose faces are the template's; fragment -1: on none.
+        std::vector<VertexMatch> shared;
     };
-    /// Of a mesh of the template whose faces come from `face_origin` of the template's (empty: they are the template's).
-    [[nodiscard]] Labels labels(const Mesh& mesh, const std::vector<Index>& face_origin) const;
+    /// Of a mesh of the template whose faces come from `face_origin` of the template's, and into whose vertices those of the
+    /// template went by `vertex_map` (both empty: it is the template).
+    [[nodiscard]] Labels labels(const Mesh& mesh, const std::vector<Index>& face_origin,
+                                const std::vector<Index>& vertex_map = {}) const;
+    /// Fragments whose faces are the template's are recognised from here on: their vertices are its vertices, and their
+    /// landmarks, which would count twice, are no correspondences.
+    void recognise_shared_faces();
     /// The nearest of all fragments for each vertex at `now`; fragment -1 where there is none within `search_radius` whose normal
     /// agrees and that is not at a border.
     [[nodiscard]] std::vector<VertexMatch> matches(const Points& now, const Mesh& connectivity, const Labels& labels,
                                                    double search_radius, double min_cosine) const;
+    /// As `matches`, and for each vertex a projection onto the directions in which it may slide from there: those of the surface;
+    /// those of the curve where two labels meet, for vertices where they meet on the template; none at the vertices of a fragment
+    /// whose faces are the template's.
+    [[nodiscard]] std::vector<VertexMatch> sliding_matches(const Points& now, const Mesh& connectivity, const Labels& labels,
+                                                           double search_radius, double min_cosine,
+                                                           std::vector<Slide>& slides) const;
     /// Puts the counterparts of equation 5.1 in the place of those matches whose vertices are in a matched annotation, as the
     /// options say; none where the counterpart is where the fragment ends.
     void assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
@@ -75,9 +97,13 @@ private:
         int fragment = 0, label = 0;
         Annotation region;  ///< its faces that carry the label
     };
-    void add_outline_correspondences(const Mesh& mesh, const AnnotationSet& set);
+    void add_path_correspondences(const AnnotationSet& set, Guides guides);
+    [[nodiscard]] std::vector<VertexMatch> shared_of(const Mesh& mesh, const std::vector<Index>& vertex_map) const;
 
+    const Mesh& template_;
     const std::vector<PlacedFragment>& fragments_;
+    std::vector<std::vector<Index>> shared_;  ///< of each fragment: of its vertices that of the template, where all its faces are
+    JointCurves joints_;
     std::vector<Counterpart> counterparts_;
     std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as correspondences_
     std::vector<int> landmark_fragment_;

@@ -13,14 +13,15 @@
 
 namespace ostraka::test {
 
-/// A body with a head: a sphere with waves, so that no turn leaves it as it is.
+/// Where a place of the unit sphere is on a body with a head: waves, so that no turn leaves it as it is.
+inline Eigen::Vector3d body_place(const Eigen::Vector3d& p) {
+    return (1 + 0.15 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * p.z() * p.x()) *
+           Eigen::Vector3d(p.x(), 1.2 * p.y(), 1.8 * p.z());
+}
+
 inline Mesh body(int levels = 4) {
     Mesh mesh = build_mesh(octahedron_sphere(levels));
-    for (const Vertex v : mesh.vertices()) {
-        const Eigen::Vector3d p = eigen(mesh.point(v));
-        mesh.point(v) = point_of((1 + 0.15 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * p.z() * p.x()) *
-                                 Eigen::Vector3d(p.x(), 1.2 * p.y(), 1.8 * p.z()));
-    }
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(body_place(eigen(mesh.point(v))));
     return mesh;
 }
 

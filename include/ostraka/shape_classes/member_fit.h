@@ -21,6 +21,7 @@ struct MemberFitOptions {
     double observed = 0.02;
     double max_off = 0.125;
     MemberFitOptions() {
+        fit.counterparts = NonRigidOptions::Counterparts::surface;  // what thresholds of classes were measured with
         alignment.shrinkage = 0.3;
         fit.search_radius = 0.2;
         fit.last_search_radius = 0.05;

@@ -1,0 +1,224 @@
+#include "shared_faces.h"
+
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace ostraka {
+
+namespace {
+
+constexpr std::size_t neighbourhood = 30;   // vertices by whose degrees an edge is recognised
+constexpr std::size_t most_seeds = 64;      // edges that are looked for: one bit of a mask each
+constexpr std::size_t least_faces = 50;     // of a piece
+constexpr std::size_t most_places = 64;     // in which an edge may be: symmetries
+constexpr std::size_t most_tries = 8;       // seeds that are followed
+using Degrees = std::vector<std::uint8_t>;  // 0: at a border or a break
+
+Degrees degrees_of(const Mesh& mesh, const std::vector<bool>& broken) {
+    Degrees degrees(mesh.number_of_vertices(), 0);
+    parallel_for(degrees.size(), [&](std::size_t i) {
+        const Vertex v(static_cast<Index>(i));
+        if (mesh.is_isolated(v)) return;
+        std::size_t count = 0;
+        for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
+            if (mesh.is_border(h) || (!broken.empty() && broken[mesh.face(h)])) return;
+            ++count;
+        }
+        degrees[i] = static_cast<std::uint8_t>(std::min<std::size_t>(count, 255));
+    });
+    return degrees;
+}
+
+/// The vertices around a halfedge, each once, in an order that depends on the faces alone; `visit` says whether to go on.
+template <class Visit>
+void walk(const Mesh& mesh, Halfedge start, Visit&& visit) {
+    std::vector<Halfedge> entries{mesh.opposite(start), start};  // each into a vertex that was visited
+    std::vector<Vertex> visited{mesh.source(start), mesh.target(start)};
+    if (!visit(visited[0]) || !visit(visited[1])) return;
+    for (std::size_t next = 0; next < entries.size(); ++next) {
+        const Halfedge entry = entries[next];
+        Halfedge h = entry;
+        do {
+            const Vertex other = mesh.source(h);
+            if (std::find(visited.begin(), visited.end(), other) == visited.end()) {
+                if (!visit(other)) return;
+                visited.push_back(other);
+                entries.push_back(mesh.opposite(h));
+            }
+            h = mesh.opposite(mesh.next(h));
+        } while (h != entry);
+    }
+}
+
+/// An edge of the fragment, and the degrees around it.
+struct Seed {
+    Halfedge edge;
+    Degrees degrees;
+    std::vector<Halfedge> there;  ///< where it may be; one more than `most_places`: too many
+};
+
+std::optional<Seed> seed_at(const Mesh& mesh, const Degrees& degrees, Halfedge edge) {
+    Seed seed;
+    seed.edge = edge;
+    bool inside = true;
+    walk(mesh, edge, [&](Vertex v) {
+        inside = degrees[v] > 0;
+        if (inside) seed.degrees.push_back(degrees[v]);
+        return inside && seed.degrees.size() < neighbourhood;
+    });
+    if (!inside || seed.degrees.size() < neighbourhood) return std::nullopt;
+    return seed;
+}
+
+/// Seeds spread over the faces of one piece, the most irregular ones first.
+std::vector<Seed> seeds_of(const Mesh& mesh, const Degrees& degrees, const std::vector<Index>& faces) {
+    constexpr std::size_t tried = 512;
+    constexpr std::uint8_t regular = 6;
+    std::vector<std::pair<std::ptrdiff_t, Seed>> found;
+    const std::size_t stride = std::max<std::size_t>(1, faces.size() / tried);
+    for (std::size_t k = 0; k < faces.size(); k += stride)
+        if (auto seed = seed_at(mesh, degrees, mesh.halfedge(Face(faces[k]))))
+            found.emplace_back(std::count(seed->degrees.begin(), seed->degrees.end(), regular), std::move(*seed));
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (found.size() > most_seeds) found.resize(most_seeds);
+    std::vector<Seed> seeds;
+    for (auto& [count, seed] : found) seeds.push_back(std::move(seed));
+    return seeds;
+}
+
+/// Where on `mesh` each seed may be; then those that are in few places, the fewest first.
+void find_seeds(const Mesh& mesh, const Degrees& degrees, std::vector<Seed>& seeds) {
+    std::vector<std::uint64_t> found(mesh.number_of_halfedges(), 0);
+    const std::uint64_t all = seeds.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << seeds.size()) - 1;
+    parallel_for(
+        found.size(),
+        [&](std::size_t i) {
+            const Halfedge h(static_cast<Index>(i));
+            if (mesh.is_border(h) || mesh.is_border(mesh.opposite(h))) return;
+            std::uint64_t left = all;
+            std::size_t position = 0;
+            walk(mesh, h, [&](Vertex v) {
+                for (std::size_t s = 0; s < seeds.size(); ++s)
+                    if ((left >> s & 1U) != 0 && seeds[s].degrees[position] != degrees[v]) left &= ~(std::uint64_t{1} << s);
+                if (degrees[v] == 0) left = 0;
+                return left != 0 && ++position < neighbourhood;
+            });
+            if (position == neighbourhood) found[i] = left;
+        },
+        256);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        for (std::size_t s = 0; found[i] != 0 && s < seeds.size(); ++s) {
+            if ((found[i] >> s & 1U) != 0 && seeds[s].there.size() <= most_places)
+                seeds[s].there.emplace_back(static_cast<Index>(i));
+        }
+    std::erase_if(seeds, [](const Seed& seed) { return seed.there.empty() || seed.there.size() > most_places; });
+    std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.there.size() < b.there.size(); });
+    if (seeds.size() > most_tries) seeds.resize(most_tries);
+}
+
+using Pairs = std::vector<std::pair<Index, Index>>;  // vertices of the fragment and of the mesh
+
+/// One piece of the fragment, with room for what walks over it.
+struct Piece {
+    const Mesh& fragment;
+    const std::vector<Index>& piece_of;  ///< of each face
+    std::size_t faces = 0;
+    std::vector<Index> vertices;  ///< of the fragment: that of the mesh; left as it was found
+    std::vector<bool> done;       ///< of its faces; left as it was found
+
+    Piece(const Mesh& of, const std::vector<Index>& pieces)
+        : fragment(of), piece_of(pieces), vertices(of.number_of_vertices(), no_index), done(of.number_of_faces(), false) {}
+
+    /// The vertices by walking over both meshes from an edge; none where faces differ.
+    Pairs follow(const Mesh& mesh, Halfedge edge, Halfedge edge_there) {
+        Pairs pairs;
+        std::vector<Face> walked;
+        const bool same = walk_both(mesh, edge, edge_there, pairs, walked) && walked.size() == faces && each_once(pairs);
+        for (const auto& [v, there] : pairs) vertices[v] = no_index;
+        for (const Face face : walked) done[face] = false;
+        return same ? pairs : Pairs();
+    }
+
+private:
+    bool walk_both(const Mesh& mesh, Halfedge edge, Halfedge edge_there, Pairs& pairs, std::vector<Face>& walked) {
+        const Index piece = piece_of[fragment.face(edge)];
+        std::vector<std::pair<Halfedge, Halfedge>> stack{{edge, edge_there}};
+        const auto reach = [&](Halfedge h) {
+            done[fragment.face(h)] = true;
+            walked.push_back(fragment.face(h));
+        };
+        reach(edge);
+        while (!stack.empty()) {
+            auto [h, g] = stack.back();
+            stack.pop_back();
+            for (int side = 0; side < 3; ++side, h = fragment.next(h), g = mesh.next(g)) {
+                Index& known = vertices[fragment.target(h)];
+                const auto there = static_cast<Index>(mesh.target(g));
+                if (known == no_index) pairs.emplace_back(static_cast<Index>(fragment.target(h)), known = there);
+                if (known != there) return false;
+                const Halfedge over = fragment.opposite(h), over_there = mesh.opposite(g);
+                if (fragment.is_border(over) || piece_of[fragment.face(over)] != piece || done[fragment.face(over)]) continue;
+                if (mesh.is_border(over_there)) return false;
+                reach(over);
+                stack.emplace_back(over, over_there);
+            }
+        }
+        return true;
+    }
+    /// Two vertices of the fragment may not be one of the mesh's.
+    static bool each_once(const Pairs& pairs) {
+        std::vector<Index> used;
+        for (const auto& [v, there] : pairs) used.push_back(there);
+        std::sort(used.begin(), used.end());
+        return std::adjacent_find(used.begin(), used.end()) == used.end();
+    }
+};
+
+/// Of the places where the seeds may be the one at which the piece lies nearest.
+Pairs nearest_place(Piece& piece, const Mesh& mesh, double scale, const std::vector<Seed>& seeds) {
+    Pairs best;
+    double least = 0;
+    for (const Seed& seed : seeds) {
+        for (const Halfedge there : seed.there) {
+            Pairs pairs = piece.follow(mesh, seed.edge, there);
+            if (pairs.empty()) continue;
+            double sum = 0;
+            for (const auto& [v, ours] : pairs)
+                sum += (scale * eigen(mesh.point(Vertex(ours))) - eigen(piece.fragment.point(Vertex(v)))).squaredNorm();
+            if (!best.empty() && !(sum < least)) continue;
+            least = sum;
+            best = std::move(pairs);
+        }
+        if (!best.empty()) break;
+    }
+    return best;
+}
+
+}  // namespace
+
+std::vector<Index> shared_vertices(const Mesh& mesh, const Mesh& fragment, double scale, const std::vector<bool>& broken) {
+    std::vector<Index> vertices(fragment.number_of_vertices(), no_index);
+    const FacePieces pieces = face_pieces(
+        fragment, [&](Face f) { return broken.empty() || !broken[f]; }, [](Halfedge) { return true; });
+    std::vector<std::vector<Index>> faces(pieces.count);
+    for (Index f = 0; f < pieces.of_face.size(); ++f)
+        if (pieces.of_face[f] != no_index) faces[pieces.of_face[f]].push_back(f);
+    const Degrees ours = degrees_of(mesh, {}), theirs = degrees_of(fragment, broken);
+    Piece piece(fragment, pieces.of_face);
+    for (const std::vector<Index>& list : faces) {
+        if (list.size() < least_faces || list.size() > mesh.number_of_faces()) continue;
+        std::vector<Seed> seeds = seeds_of(fragment, theirs, list);
+        if (seeds.empty()) continue;
+        find_seeds(mesh, ours, seeds);
+        piece.faces = list.size();
+        for (const auto& [v, there] : nearest_place(piece, mesh, scale, seeds)) vertices[v] = there;
+    }
+    return vertices;
+}
+
+}  // namespace ostraka
