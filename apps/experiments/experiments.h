@@ -147,7 +147,7 @@ struct MouldExperimentOptions {
     std::string output = "experiments-output/moulds";
     std::vector<std::string> parts;  ///< of choices, wear, runs, scans; empty: all
     std::vector<std::string> faces;  ///< meshes of faces in correspondence
-    int objects = 40, seeds = 3;
+    int objects = 40, casts = 43, seeds = 3;
     std::uint64_t vertices = 10000;
 };
 void moulds(const MouldExperimentOptions& options);

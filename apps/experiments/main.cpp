@@ -196,6 +196,7 @@ void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
         ->check(CLI::IsMember({"choices", "wear", "runs", "scans"}));
     command.add_option("--face", options.faces, "mesh files of faces with the same vertices, for scans");
     ranged(command, "--objects", options.objects, "casts of four moulds", 8, 10000);
+    ranged(command, "--casts", options.casts, "in the thesis's runs: casts; heads formed by hand are 24 to 43 of them", 8, 10000);
     ranged(command, "--seeds", options.seeds, "populations", 1, 1000);
     ranged(command, "--vertices", options.vertices, "of a whole head", 1500, 1000000);
 }

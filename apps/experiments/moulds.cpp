@@ -262,11 +262,11 @@ void draw_groups(const Path& file, const std::string& title, const MouldGroups& 
     write_plot(file, plot);
 }
 
-/// The thesis's runs: 43 moulded heads, some bearded, and heads formed by hand.
+/// The thesis's runs: moulded heads, some bearded, and heads formed by hand.
 void run_experiment(const MouldExperimentOptions& options) {
     MouldPopulationOptions population;
-    population.objects = 43;
-    population.hand_made = 24;
+    population.objects = options.casts;
+    population.hand_made = (options.casts * 24 + 21) / 43;
     population.seed = 5;
     CastOptions cast = cast_of(options, 0.01);
     cast.beard = 0.4;
@@ -308,10 +308,10 @@ void run_experiment(const MouldExperimentOptions& options) {
                         compared.moulds);
         std::cerr << run.name << " done\n";
     }
-    std::cout
-        << "The thesis's runs: 43 casts of 4 moulds (wear 0.01, pressure 0.01, noise 0.001, beards on 40 %), 24 heads formed by "
-           "hand\n\n"
-        << table.markdown() << "\n";
+    std::cout << "The thesis's runs: " << population.objects
+              << " casts of 4 moulds (wear 0.01, pressure 0.01, noise 0.001, beards on 40 %), " << population.hand_made
+              << " heads formed by hand\n\n"
+              << table.markdown() << "\n";
     table.write(options.output, "runs");
 }
 
