@@ -21,6 +21,7 @@ public:
         projected -= u;
     }
     void set_target(const Points& target) override { inner_->set_target(target); }
+    [[nodiscard]] std::optional<Components> given_components() const override { return inner_->given_components(); }
     [[nodiscard]] const Constraint& inner() const { return *inner_; }
 
     /// Greatest distance of a row from what is admissible; the multipliers grow by how far the shifted rows are off.
@@ -44,6 +45,17 @@ struct HardSolver::State {
     std::vector<Shifted*> hard;  ///< of each constraint; null for the others
     std::unique_ptr<MeshSpaceSolver> solver;
     double diagonal = 0;
+
+    /// Which of the hard constraints are eliminated; the others take turns.
+    std::vector<bool> eliminated() const {
+        std::vector<bool> flags(hard.size(), false);
+        std::vector<std::size_t> list;
+        for (std::size_t i = 0; i < hard.size(); ++i)
+            if (hard[i] != nullptr && hard[i]->given_components()) list.push_back(i);
+        if (!list.empty() && solver->enforce(list))
+            for (const std::size_t i : list) flags[i] = true;
+        return flags;
+    }
 };
 
 HardSolver::HardSolver(std::vector<std::unique_ptr<Constraint>> constraints, const std::vector<bool>& hard, const Points& rest)
@@ -82,6 +94,11 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
             state_->hard[i]->u.setZero();
             state_->solver->set_weight(i, options.start * constraint(i).weight());
         }
+    const std::vector<bool> eliminated = state_->eliminated();
+    bool turns = false;
+    for (std::size_t i = 0; i < state_->hard.size(); ++i) turns = turns || (state_->hard[i] != nullptr && !eliminated[i]);
+    SolveOptions inner = options.inner;
+    if (!turns) inner.iterations *= 4;  // one round is all that is needed
     summary.scale = options.start;
     summary.of_constraint.assign(state_->hard.size(), 0.0);
     std::vector<double> before(state_->hard.size(), std::numeric_limits<double>::infinity());
@@ -92,14 +109,16 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     int since = 0;
     std::vector<double> of_best;
     while (summary.rounds < options.rounds && !summary.met && since < patience) {
-        summary.last = state_->solver->solve(points, options.inner);
+        summary.last = state_->solver->solve(points, inner);
         ++summary.rounds;
         double worst = 0;
         for (std::size_t i = 0; i < state_->hard.size(); ++i) {
             Shifted* const hard = state_->hard[i];
             if (hard == nullptr) continue;
-            const double now = summary.of_constraint[i] = hard->update(points);
+            const double now = summary.of_constraint[i] =
+                eliminated[i] ? hard->inner().greatest_distance(points) : hard->update(points);
             worst = std::max(worst, now);
+            if (eliminated[i]) continue;
             // Where multipliers alone are too slow, the weight grows; the multipliers themselves, weight times u, stay.
             constexpr double fast_enough = 0.5;
             const double weight = hard->weight();

@@ -63,6 +63,14 @@ public:
     void project(const RowsIn& rows, RowsOut projected) const override {
         for (Index i = 0; i < rows.cols(); ++i) projected.col(i) = point_ + direction_ * direction_.dot(rows.col(i) - point_);
     }
+    [[nodiscard]] std::optional<Components> given_components() const override {
+        const Vector3d u = any_perpendicular(direction_), w = direction_.cross(u).normalized();
+        Components given;
+        given.directions.resize(2, 3);
+        given.directions << u.transpose(), w.transpose();
+        given.values = (given.directions * point_).replicate(1, map_.rows);
+        return given;
+    }
 
 private:
     Vector3d direction_, point_;

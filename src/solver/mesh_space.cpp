@@ -2,6 +2,7 @@
 #include "ostraka/solver/solve.h"
 
 #include "constraint_rows.h"
+#include "elimination.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/stopwatch.h"
 
@@ -50,6 +51,14 @@ struct MeshSpaceSolver::State {
     Eigen::MatrixXd update_columns;  ///< A^-1 U
     Eigen::PartialPivLU<Eigen::MatrixXd> capacity;
 
+    std::vector<char> exact;  ///< constraints that are eliminated; empty: none
+    solver::Elimination elimination;
+
+    [[nodiscard]] double weight_of(const Constraint& constraint, std::size_t c) const {
+        return !exact.empty() && exact[c] ? 0 : constraint.weight();
+    }
+    void eliminate(std::span<const std::unique_ptr<Constraint>> constraints);
+    [[nodiscard]] bool holds_points_of(std::size_t constraint) const;
     bool update(std::span<const std::unique_ptr<Constraint>> constraints);
     void solve(Eigen::MatrixXd& x);
     void prepare(std::span<const std::unique_ptr<Constraint>> constraints);
@@ -85,7 +94,7 @@ void MeshSpaceSolver::State::prepare(std::span<const std::unique_ptr<Constraint>
 void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Constraint>> constraints) {
     row_weight.assign(unknowns.rows.rows(), 0.0);
     for (std::size_t c = 0; c < constraints.size(); ++c)
-        std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), constraints[c]->weight());
+        std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), weight_of(*constraints[c], c));
     floating = solver::floating_parts(unknowns, row_weight);
     idle.assign(static_cast<std::size_t>(unknowns.count), 0);
     for (const int i : floating.idle) idle[i] = 1;
@@ -244,6 +253,7 @@ void MeshSpaceSolver::initialize() {
     if (!s.has_constants) {
         s.renew_constants(constraints_);
         s.has_constants = true;
+        if (!s.exact.empty()) s.eliminate(constraints_);  // constants are renewed whenever the matrix is
     }
     total_weight_ = 0;
     for (const double w : s.row_weight) total_weight_ += w;
@@ -266,9 +276,9 @@ double MeshSpaceSolver::project(const Points& points) {
                 const Eigen::Index count = constraint.map().rows;
                 constraint.rows_of(points, rows);
                 if (!constraint.constant()) constraint.project(rows, s.projected.middleCols(first, count));
-                if (constraint.weight() > 0)
+                if (const double weight = s.weight_of(constraint, c); weight > 0)
                     parts[b] +=
-                        constraint.weight() *
+                        weight *
                         (rows - s.projected.middleCols(first, count)).leftCols(count - constraint.map().observed).squaredNorm();
             }
         },
@@ -283,6 +293,7 @@ void MeshSpaceSolver::global_step(Points& points) {
     s.right = s.constant_right;
     s.add_right(s.moving_columns, s.right);
     s.solve(s.right);
+    if (!s.exact.empty()) s.right -= s.elimination.correction(s.right);
     for (const auto& part : s.floating.parts) {
         Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();
         for (const int i : part) shift += s.rest.col(s.unknowns.point[i]).transpose() - s.right.row(i);
@@ -295,6 +306,58 @@ void MeshSpaceSolver::global_step(Points& points) {
             if (!s.idle[i]) points.col(s.unknowns.point[i]) = s.right.row(static_cast<Eigen::Index>(i)).transpose();
         },
         4096);
+}
+
+/// Whether constraints of positive weight hold all points of this one.
+bool MeshSpaceSolver::State::holds_points_of(std::size_t constraint) const {
+    for (std::size_t r = unknowns.first_row[constraint]; r < unknowns.first_row[constraint + 1]; ++r)
+        for (std::size_t e = unknowns.rows.begin[r]; e < unknowns.rows.begin[r + 1]; ++e)
+            if (idle[static_cast<std::size_t>(unknowns.rows.unknown[e])]) return false;
+    return true;
+}
+
+void MeshSpaceSolver::State::eliminate(std::span<const std::unique_ptr<Constraint>> constraints) {
+    elimination = solver::Elimination(unknowns.count);
+    for (std::size_t c = 0; c < constraints.size(); ++c) {
+        if (!exact[c]) continue;
+        const auto first = unknowns.first_row[c];
+        elimination.add(unknowns.rows, first, *constraints[c]->given_components());
+    }
+    elimination.finish([&](Eigen::MatrixXd& x) { solve(x); });
+}
+
+bool MeshSpaceSolver::enforce(const std::vector<std::size_t>& constraints) {
+    State& s = *state_;
+    constexpr Eigen::Index most_rows = 256;
+    Eigen::Index rows = 0;
+    for (const std::size_t c : constraints) {
+        if (!constraint(c).given_components()) return false;
+        rows += constraint(c).map().rows;
+    }
+    if (rows > most_rows) return false;
+    s.exact.assign(constraints_.size(), 0);
+    for (const std::size_t c : constraints) s.exact[c] = 1;
+    s.renew_weights(constraints_);
+    const bool held = std::all_of(constraints.begin(), constraints.end(), [&](std::size_t c) { return s.holds_points_of(c); });
+    s.has_factor = false;
+    if (held && s.floating.parts.empty()) {
+        initialize();
+        if (s.regularisation == 0) return true;
+    }
+    s.exact.clear();
+    s.has_factor = false;
+    return false;
+}
+
+void MeshSpaceSolver::start(Points& points) {
+    State& s = *state_;
+    if (s.exact.empty()) return;
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(s.unknowns.count, 3);  // means are in no row that is eliminated
+    for (std::size_t i = 0; i < s.unknowns.point.size(); ++i)
+        x.row(static_cast<Eigen::Index>(i)) = points.col(s.unknowns.point[i]).transpose();
+    const Eigen::MatrixXd by = s.elimination.correction(x);
+    for (std::size_t i = 0; i < s.unknowns.point.size(); ++i)
+        points.col(s.unknowns.point[i]) -= by.row(static_cast<Eigen::Index>(i)).transpose();
 }
 
 void MeshSpaceSolver::weight_changed(std::size_t constraint, double before) {

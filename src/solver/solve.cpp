@@ -75,6 +75,7 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
     constexpr double rounding = 1e-15;
     solver::Anderson anderson(options.window);
     Points& x = variables;
+    this->start(x);
     Points plain = x, candidate;
     double phi = project_at(x);
     record(phi);

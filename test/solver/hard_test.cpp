@@ -61,6 +61,74 @@ TEST(Hard, PositionsGiveTheConstrainedMinimum) {
     EXPECT_EQ(solver.constraint(solver.size() - 1).weight(), 0.1);
 }
 
+TEST(Hard, StationsOnALineGiveTheConstrainedMinimumAtOnce) {
+    // Means of threes on two lines; nothing is lost along these. The same by Lagrange multipliers of all three coordinates.
+    Chain chain;
+    chain.pin(false, 0, {0, 0, 0});
+    const int n = Chain::n;
+    const Eigen::Vector3d directions[2] = {Eigen::Vector3d(1, 2, 3).normalized(), Eigen::Vector3d(-2, 0.5, 1).normalized()};
+    const Eigen::Vector3d points[2] = {{0.3, 0, 0.4}, {0, -0.5, 0}};
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(18, 3 * n);
+    Eigen::VectorXd values(18);
+    for (int line = 0; line < 2; ++line) {
+        ConstraintParameters p;
+        p.direction = directions[line];
+        p.point = points[line];
+        std::vector<int> ids;
+        for (int k = 0; k < 9; ++k) ids.push_back(3 + 12 * line + k), p.stations.push_back(k / 3);
+        chain.add(true, make_constraint("AxisOnLine", ids, 3, p, chain.rest));
+        const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - directions[line] * directions[line].transpose();
+        for (int k = 0; k < 9; ++k) rows.block<3, 3>(9 * line + 3 * (k / 3), 3 * ids[static_cast<std::size_t>(k)]) = across / 3;
+        for (int s = 0; s < 3; ++s) values.segment<3>(9 * line + 3 * s) = across * points[line];
+    }
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * n);
+    for (int i = 0; i < n; ++i)
+        for (int c = 0; c < 3; ++c) {
+            Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(3 * n);
+            row[3 * i + c] = -1;
+            row[3 * ((i + 1) % n) + c] = row[3 * ((i + n - 1) % n) + c] = 0.5;
+            hessian += row.transpose() * row;
+            right += row.transpose() * row.dot(Eigen::Map<const Eigen::VectorXd>(chain.rest.data(), 3 * n));
+        }
+    for (int c = 0; c < 3; ++c) hessian(c, c) += 0.1, right[c] += 0.1 * chain.rest(c, 0);
+    Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(3 * n + 18, 3 * n + 18);
+    kkt.topLeftCorner(3 * n, 3 * n) = hessian;
+    kkt.bottomLeftCorner(18, 3 * n) = rows;
+    kkt.topRightCorner(3 * n, 18) = rows.transpose();
+    Eigen::VectorXd all(3 * n + 18);
+    all << right, values;
+    const Eigen::VectorXd wanted = kkt.completeOrthogonalDecomposition().solve(all).head(3 * n);
+
+    HardSolver solver(std::move(chain.list), chain.hard, chain.rest);
+    Points x = chain.rest;
+    HardOptions options;
+    options.tolerance = 1e-9;
+    const HardSummary summary = solver.solve(x, options);
+    EXPECT_TRUE(summary.met);
+    EXPECT_EQ(summary.rounds, 1);
+    EXPECT_TRUE(summary.last.usable);
+    EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(x.data(), 3 * n) - wanted).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(Hard, LinesThatContradictEachOtherAreSaid) {
+    Chain chain;
+    chain.pin(false, 0, {0, 0, 0});
+    for (const double height : {-1.0, 1.0}) {
+        ConstraintParameters p;
+        p.direction = Eigen::Vector3d::UnitX();
+        p.point = Eigen::Vector3d(0, 0, height);
+        chain.add(true, make_constraint("AxisOnLine", {4, 5}, 1, p, chain.rest));
+    }
+    HardSolver solver(std::move(chain.list), chain.hard, chain.rest);
+    Points x = chain.rest;
+    const HardSummary summary = solver.solve(x);
+    EXPECT_FALSE(summary.met);
+    EXPECT_TRUE(x.allFinite());
+    EXPECT_NEAR(x(2, 4), 0, 1e-6) << "half-way";
+    EXPECT_NEAR(summary.of_constraint[summary.of_constraint.size() - 1], 1, 1e-6);
+}
+
 TEST(Hard, ShapesHold) {
     Chain chain;
     chain.pin(false, 3, {0, 0, 0});

@@ -71,6 +71,15 @@ public:
     /// overlap.
     virtual void project(const RowsIn& rows, RowsOut projected) const = 0;
 
+    /// Components of rows that are given, whatever their others: those along `directions`, orthonormal rows, are `values`, a
+    /// column for each row of B. The projection sets them and leaves the others.
+    struct Components {
+        Eigen::Matrix<double, Eigen::Dynamic, 3> directions;
+        Eigen::MatrixXd values;
+    };
+    /// None where the projection is not of this kind.
+    [[nodiscard]] virtual std::optional<Components> given_components() const { return {}; }
+
     /// Whether the projection is the same whatever the rows are.
     [[nodiscard]] virtual bool constant() const { return false; }
     /// New target positions (Closeness), displacements (LaplacianDisplacement, one column) or reference shape (Rigid ...).

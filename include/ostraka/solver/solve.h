@@ -74,6 +74,8 @@ public:
 protected:
     Solver(std::vector<std::unique_ptr<Constraint>> constraints, Eigen::Index variables, double diagonal);
 
+    /// Brings `variables` to where all iterations stay.
+    virtual void start(Points&) {}
     /// Projects at `variables`, returns phi.
     virtual double project(const Points& variables) = 0;
     /// Solves the normal equations for the last projections.
@@ -100,7 +102,14 @@ public:
     ~MeshSpaceSolver() override;
     void initialize() override;
 
+    /// Makes constraints with given components (Constraint::given_components) hold exactly, by elimination: what they give is
+    /// the solution's, and their weights do not count any more. False, and nothing changes, where that cannot be: other
+    /// constraints do not hold all of their points in place, one has no such components, or they have more than 256 rows. Where
+    /// they contradict each other they are met as nearly as may be. Throws Error (usage) for one that does not exist.
+    bool enforce(const std::vector<std::size_t>& constraints);
+
 protected:
+    void start(Points& points) override;
     double project(const Points& points) override;
     void global_step(Points& points) override;
     void weight_changed(std::size_t constraint, double before) override;
