@@ -42,7 +42,7 @@ struct Deform final : Operation {
         tolerances.describe(p.options);
         p.report.values(boolean("acceptable"), texts("objections"), number("followed.share"), integer("followed.vertices"),
                         number("followed.mean"), number("followed.largest"), integer("selfIntersections"),
-                        integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"),
+                        integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"), integer("kinks"),
                         integer("iterations"), integer("rounds"), text("stopped"), integer("passes"));
         p.report.table("constraints", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"),
                        number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
@@ -51,7 +51,10 @@ struct Deform final : Operation {
                        integer("residual.constraints"), number("cost.before"), number("cost.after", "cost"));
         p.report.table("conflicts", integer("id"), numbers("freed"), any("deviations"));
         p.report.table("moved", integer("id", "id"), text("tag", "moved, though the edit did not ask it to"),
-                       number("share", "mean, % of the diagonal"));
+                       number("share", "mean, % of the diagonal"), number("largest", "at most, % of the diagonal"));
+        p.report.table("distorted", integer("id", "id"), text("tag", "distorted, though it was not to change"),
+                       number("distance", "root mean square"), number("largest", "at most"),
+                       number("thin", "of it half as thick, %"));
     }
 
     void check() const override {
@@ -252,10 +255,14 @@ struct Deform final : Operation {
             "followed.largest", followed.largest);
         const SurfaceChange& surface = result.surface;
         report("selfIntersections", surface.crossings)("selfIntersectionsBefore", surface.crossings_before)(
-            "selfIntersectionsNew", surface.crossings_new)("folds", surface.folds);
+            "selfIntersectionsNew", surface.crossings_new)("folds", surface.folds)("kinks", surface.kinks);
         report.empty_table("moved", false);
         for (const EditFollowed::Moved& part : followed.others)
-            report.row("moved")("id", part.annotation)("tag", part.tag)("share", 100 * part.share);
+            report.row("moved")("id", part.annotation)("tag", part.tag)("share", 100 * part.share)("largest", 100 * part.largest);
+        report.empty_table("distorted", false);
+        for (const DistortedPart& part : result.distorted)
+            report.row("distorted")("id", part.annotation)("tag", part.tag)("distance", part.distance)("largest", part.largest)(
+                "thin", 100 * part.thin);
         if (followed.vertices > 0)
             report.line("the edit is followed by " + number(100 * followed.share, 3) + " %: the " +
                         std::to_string(followed.vertices) + " vertices that it moves are " + number(followed.mean, 3) + unit +

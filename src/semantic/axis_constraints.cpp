@@ -145,7 +145,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
     if (!segment->reason.empty())
         read->fail("annotation " + std::to_string(read->member(0).id) + " " + segment->reason,
                    "raise angle, refine the mesh, or state co-axiality");
-    statement.follows = true;
+    statement.follows = statement.left_alone = true;
     statement.lower = [read, rest, segment](const State&, const State& now) {
         const Axis reference = reference_now(*read, rest, now, steadiest);
         ConstraintParameters parameters;

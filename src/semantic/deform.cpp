@@ -23,7 +23,7 @@ std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& stat
     semantic::add_closeness(moved, 1e5 * laplacian, targets, 0, rest, list);
     semantic::add_closeness(others, semantic::closeness(options, space.mesh, mean_edge_length(space.mesh)), targets, 0, rest,
                             list);
-    semantic::add_displacements(space.mesh, laplacian, rest, {}, list);
+    semantic::add_displacements(space.mesh, laplacian, rest, {}, nullptr, list);
     MeshSpaceSolver solver(std::move(list), rest);
     solver.solve(points, {2, 0, 0, 0});
     std::vector<Point> shape = list_of(points);
@@ -80,6 +80,11 @@ void DeformOptions::describe(OptionList& visit) {
           "constraint moves as well give way",
           Range{0, 1e9});
     visit("followed", followed, "share of the edit that an acceptable result follows", Range{0, 1});
+    visit(
+        "distortion", distortion,
+        "root mean square distance by which an acceptable result may distort a part that neither the edit nor a constraint that "
+        "did not hold asked to change",
+        Range{0, 1}, "share of the diagonal");
     solve.describe(visit);
     visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
     visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});

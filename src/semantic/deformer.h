@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include "distortion.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
@@ -13,6 +14,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/with_points.h"
 #include "ostraka/semantic/deform.h"
+#include "sizes.h"
 #include "statement.h"
 #include "verdict.h"
 
@@ -37,13 +39,21 @@ inline void add_closeness(const std::vector<int>& ids, double weight, const Poin
     list.push_back(make_constraint("Closeness", ids, weight, parameters, rest));
 }
 
-/// On every vertex, those that `shape` has.
+/// On every vertex, those that `shape` has; within parts that are made larger or smaller, as these.
 inline void add_displacements(const Mesh& mesh, double weight, const Points& shape, const std::set<Index>& others,
-                              std::vector<std::unique_ptr<Constraint>>& list) {
+                              const Sizes* sizes, std::vector<std::unique_ptr<Constraint>>& list) {
     if (weight == 0) return;
-    for (const Vertex v : mesh.vertices())
-        if (!mesh.is_isolated(v) && others.count(v.idx()) == 0)
-            list.push_back(make_constraint("LaplacianDisplacement", semantic::star_of(mesh, v), weight, {}, shape));
+    for (const Vertex v : mesh.vertices()) {
+        if (mesh.is_isolated(v) || others.count(v.idx()) > 0) continue;
+        std::vector<int> star = semantic::star_of(mesh, v);
+        ConstraintParameters parameters;
+        if (sizes != nullptr) {
+            Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+            for (std::size_t i = 1; i < star.size(); ++i) mean += shape.col(star[i]) - shape.col(star[0]);
+            parameters.target = sizes->around(v.idx()) * mean / static_cast<double>(star.size() - 1);
+        }
+        list.push_back(make_constraint("LaplacianDisplacement", std::move(star), weight, parameters, shape));
+    }
 }
 
 /// What solving for some of the constraints gives.
@@ -91,15 +101,7 @@ public:
         if (result.followed.share < options_.followed)
             result.objections.push_back("the edit is followed by " + percent(result.followed.share) + ", " +
                                         percent(options_.followed) + " are asked");
-        result.surface = semantic::surface_change(space_.mesh, with_points(space_.mesh, result.points));
-        const auto& [crossings, before, added, folds] = result.surface;
-        if (added > 0)
-            result.objections.push_back(counted(added, "pair") + " of faces cross that did not at rest (" +
-                                        std::to_string(crossings) + " in all, " + std::to_string(before) + " at rest)");
-        if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
-        if (space_.cage != nullptr)
-            for (const std::string& reason : unfit_for_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
-                result.objections.push_back("the cage is not fit for deformation: " + reason);
+        add_surface(result);
         result.acceptable = result.objections.empty();
         return result;
     }
@@ -131,6 +133,7 @@ public:
         asked_ = semantic::asked_vertices(space_, dragged, columns_of(shape_of_edit(space_, dragged, options_)) - rest_);
         DeformResult result;
         understand(result);
+        begin_sizes(used(result));
         Outcome outcome;
         outcome.points = edited_;
         outcome.texts.resize(statements_.size());
@@ -149,6 +152,49 @@ private:
             selected.push_back(last_.selected.size());
         }
         return selected;
+    }
+
+    void add_surface(DeformResult& result) const {
+        const Mesh now = with_points(space_.mesh, result.points);
+        result.surface = semantic::surface_change(space_.mesh, edited_mesh_, now);
+        const auto& [crossings, before, added, folds, kinks] = result.surface;
+        if (added > 0)
+            result.objections.push_back(counted(added, "pair") + " of faces cross that did not at rest (" +
+                                        std::to_string(crossings) + " in all, " + std::to_string(before) + " at rest)");
+        if (folds > 0) result.objections.push_back(counted(folds, "edge") + (folds == 1 ? " is" : " are") + " folded over");
+        if (kinks > 0) result.objections.push_back("the constraints kink the surface at " + counted(kinks, "edge"));
+        if (space_.cage != nullptr)
+            for (const std::string& reason : unfit_for_deformation(check_cage(*space_.cage, space_.mesh), *space_.coordinates))
+                result.objections.push_back("the cage is not fit for deformation: " + reason);
+        if (!result.solved) return;
+        result.distorted = semantic::distorted_parts(space_.mesh, space_.set, expected(result), edited_mesh_, now, options_);
+        const double diagonal = box_diagonal(space_.mesh);
+        for (const DistortedPart& part : result.distorted) {
+            const std::string who = "'" + part.tag + "', which was not to change, ";
+            if (part.distorted)
+                result.objections.push_back(who + "is distorted by " + percent(part.distance / diagonal) +
+                                            " of the diagonal in the root mean square, " + percent(part.largest / diagonal) +
+                                            " at most");
+            if (part.thinned)
+                result.objections.push_back("'" + part.tag + "' is less than half as thick on " + percent(part.thin) +
+                                            " of its surface");
+        }
+    }
+
+    /// What the edit and the constraints that did not hold give leave to change.
+    [[nodiscard]] semantic::Expected expected(const DeformResult& result) const {
+        semantic::Expected flags{asked_, std::vector<bool>(space_.mesh.number_of_vertices(), false)};
+        if (flags.change.empty()) flags.change.assign(flags.size.size(), false);
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            const ConstraintReport& report = result.constraints[i];
+            if (!report.used || report.before == Verdict::holds) continue;
+            for (const int id : report.annotations)
+                for (const Index v : vertices_of(space_.mesh, *space_.set.find(id))) {
+                    flags.change[v] = true;
+                    if (statements_[i].resizes) flags.size[v] = true;
+                }
+        }
+        return flags;
     }
 
     static std::string percent(double share) { return digits(100 * share, 3) + " %"; }
@@ -210,29 +256,36 @@ private:
         return flags;
     }
 
-    /// For the active constraints; all others are only measured.
+    /// For the active constraints; all others are only measured. What holds where the edit leaves it is left alone, until others
+    /// take it away.
     Outcome solve(const std::vector<bool>& active) {
+        const semantic::State edited(edited_mesh_);
+        std::vector<bool> solved = active;
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            solved[i] = active[i] && !(statements_[i].left_alone && statements_[i].measure(edited).verdict == Verdict::holds);
+        for (;;) {
+            Outcome outcome = solve_for(solved);
+            bool lost = false;
+            for (std::size_t i = 0; i < statements_.size(); ++i) {
+                if (!active[i] || solved[i]) continue;
+                outcome.texts[i] = "left alone, since it holds where the edit leaves it";
+                solved[i] = outcome.measured[i].verdict != Verdict::holds;
+                lost = lost || solved[i];
+            }
+            if (!lost) return outcome;
+        }
+    }
+
+    Outcome solve_for(const std::vector<bool>& active) {
         Outcome outcome;
         hard_scale_ = 1;
         outcome.points = edited_;
         if (space_.cage != nullptr) outcome.cage = columns_of(last_.handles);
         outcome.texts.resize(statements_.size());
-        bool follows = false, gauges = false;
-        for (std::size_t i = 0; i < statements_.size(); ++i) {
-            follows = follows || (active[i] && statements_[i].follows);
-            gauges = gauges || (active[i] && statements_[i].until_it_holds);
-        }
-        // Measures are held to a thousandth of a part.
-        const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
+        begin_sizes(active);
         Points before;
-        while (outcome.passes < (follows ? options_.passes : 1)) {
-            if (outcome.passes > 0 && !another_pass(active, outcome)) break;
-            before = outcome.points;
-            if (!solve_once(active, outcome)) break;
-            outcome.solved = true;
-            ++outcome.passes;
-            if (outcome.passes > 1 && (outcome.points - before).colwise().norm().maxCoeff() <= still) break;
-        }
+        if (sizes_->empty()) before = make_passes(active, outcome);
+        else before = search_sizes(active, outcome);
         std::vector<semantic::Reattachment> reattachments;
         for (std::size_t i = 0; i < statements_.size(); ++i)
             if (active[i] && statements_[i].reattachment) reattachments.push_back(*statements_[i].reattachment);
@@ -249,6 +302,75 @@ private:
         for (const semantic::Statement& statement : statements_)
             outcome.measured.push_back(statement.unknown.empty() ? statement.measure(state) : semantic::Measured());
         return outcome;
+    }
+
+    /// Solves until what constraints follow stands still. The points before the last pass.
+    Points make_passes(const std::vector<bool>& active, Outcome& outcome) {
+        bool follows = false, gauges = false;
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            follows = follows || (active[i] && statements_[i].follows);
+            gauges = gauges || (active[i] && statements_[i].until_it_holds);
+        }
+        // Measures are held to a thousandth of a part.
+        const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
+        Points before = outcome.points;
+        while (outcome.passes < (follows ? options_.passes : 1)) {
+            if (outcome.passes > 0 && !another_pass(active, outcome)) break;
+            before = outcome.points;
+            if (!solve_once(active, outcome)) break;
+            outcome.solved = true;
+            ++outcome.passes;
+            if (outcome.passes > 1 && (outcome.points - before).colwise().norm().maxCoeff() <= still) break;
+        }
+        return before;
+    }
+
+    /// Passes with other factors for the parts that must have certain sizes, until these have them; else the best of them.
+    Points search_sizes(const std::vector<bool>& active, Outcome& outcome) {
+        constexpr double near = 1e-4;  // a tenth of what a measure may be off
+        constexpr int patience = 5, most = 40;
+        double least = std::numeric_limits<double>::infinity();
+        int since = 0;
+        Points before = outcome.points, best = outcome.points;
+        while (outcome.passes < most && since < patience) {
+            const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
+            sizes_->follow(semantic::State(mesh));
+            before = outcome.points;
+            if (!solve_once(active, outcome)) break;
+            outcome.solved = true;
+            ++outcome.passes;
+            const Mesh after = with_points(space_.mesh, list_of(outcome.points));
+            const double off = sizes_->off(semantic::State(after));
+            since = off < 0.9 * least ? 0 : since + 1;
+            if (off < least) least = off, best = outcome.points;
+            if (off <= near && !others_go_on(active, outcome, before)) break;
+        }
+        outcome.points = best;
+        return before;
+    }
+
+    /// Whether a constraint that is no measure still follows what has moved.
+    [[nodiscard]] bool others_go_on(const std::vector<bool>& active, const Outcome& outcome, const Points& before) const {
+        std::vector<bool> others = active;
+        for (std::size_t i = 0; i < others.size(); ++i)
+            if (is_sized(i)) others[i] = false;
+        return outcome.passes < options_.passes && another_pass(others, outcome) &&
+               (outcome.points - before).colwise().norm().maxCoeff() > 1e-4 * box_diagonal(space_.mesh);
+    }
+
+    /// Whether the constraint is enforced by the values of its measures.
+    [[nodiscard]] bool is_sized(std::size_t i) const {
+        return statements_[i].hard && !statements_[i].sized.empty() && options_.space == DeformOptions::Space::mesh;
+    }
+
+    void begin_sizes(const std::vector<bool>& active) {
+        std::vector<const semantic::Sized*> parts;
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            if (active[i] && is_sized(i))
+                for (const semantic::Sized& part : statements_[i].sized) parts.push_back(&part);
+        semantic::State edited(edited_mesh_);
+        edited.asked = asked_;
+        sizes_.emplace(std::move(parts), semantic::Shape{space_.mesh, space_.set, rest_}, edited);
     }
 
     /// Whether what a constraint follows may have moved.
@@ -277,7 +399,7 @@ private:
         edited.asked = asked_;
         edited.is_under_way = is_under_way_;
         for (std::size_t i = 0; i < statements_.size(); ++i) {
-            if (!active[i] || contradicted(i, active)) continue;
+            if (!active[i] || is_sized(i) || contradicted(i, active)) continue;
             anchors_.insert(statements_[i].anchors.begin(), statements_[i].anchors.end());
             rotating_.insert(statements_[i].rotating.begin(), statements_[i].rotating.end());
             referred_.insert(statements_[i].referred.begin(), statements_[i].referred.end());
@@ -290,13 +412,27 @@ private:
             if (statements_[i].support && options_.space == DeformOptions::Space::mesh)  // a cage is stiff by itself
                 for (auto& constraint : statements_[i].support(edited, now)) support_.push_back(std::move(constraint));
         }
-        if (lowered_.empty()) return false;
+        add_sizes();
+        if (lowered_.empty() && support_.empty()) return false;
         if (space_.coordinates != nullptr && space_.coordinates->has_normals())
             throw Error(ErrorKind::usage, "coordinates",
                         "are Green coordinates, which serve unconstrained deformation only: constraints are solved without their "
                         "normal term",
                         "use mean value coordinates, or a graph without constraints");
         return true;
+    }
+
+    /// Copies of the parts that must have certain sizes. Those that hold others give way to them over a third of the spread.
+    void add_sizes() {
+        const std::vector<Index> anchors = sizes_->anchors();
+        anchors_.insert(anchors.begin(), anchors.end());
+        const double stiff = options_.handles, loose = 81 * closeness(options_, space_.mesh, mean_edge_length(space_.mesh));
+        for (const semantic::Sizes::Copy& copy : sizes_->copies()) {
+            ConstraintParameters parameters;
+            parameters.target = copy.shape;
+            support_.push_back(
+                make_constraint("Rigid", copy.ids, copy.holds_others ? std::min(stiff, loose) : stiff, parameters, rest_));
+        }
     }
 
     /// Starts from the outcome. False if there is nothing to solve.
@@ -323,6 +459,8 @@ private:
         std::vector<bool> constrained(space_.mesh.number_of_vertices(), false);
         for (const auto& constraint : lowered_)
             for (const int v : constraint->ids()) constrained[static_cast<std::size_t>(v)] = true;
+        for (const semantic::Sizes::Copy& copy : sizes_->copies())
+            for (const int v : copy.ids) constrained[static_cast<std::size_t>(v)] = true;
         std::vector<int> free, held, yielding;
         for (const Vertex v : space_.mesh.vertices()) {
             if (space_.mesh.is_isolated(v)) continue;
@@ -335,7 +473,7 @@ private:
         add_closeness(yielding, std::min(options_.handles, 81 * closeness(options_, space_.mesh, edge)), edited_, 0, rest_, list);
         add_closeness(held, options_.handles, edited_, 0, rest_, list);
         add_displacements(space_.mesh, options_.laplacian, options_.details == DeformOptions::Details::rest ? rest_ : edited_,
-                          rotating_, list);
+                          rotating_, sizes_->empty() ? nullptr : &*sizes_, list);
         const bool any_hard = std::any_of(owner_.begin(), owner_.end(), [&](std::size_t i) { return statements_[i].hard; });
         auto all = take(std::move(list));
         if (any_hard) {
@@ -471,6 +609,8 @@ private:
                 report.text += (report.text.empty() ? "" : "; ") + std::string("not solved for: it contradicts ") +
                                name_of(result.constraints[by->first]) + ", " + by->second;
             if (!outcome.texts[i].empty()) report.text += (report.text.empty() ? "" : "; ") + outcome.texts[i];
+            if (now.verdict == Verdict::fails)
+                if (const std::string why = contradiction(result, i); !why.empty()) report.text += "; " + why;
             if (now.verdict != Verdict::holds)
                 result.objections.push_back(name_of(report) +
                                             (now.verdict == Verdict::fails ? " does not hold" : " is not known to hold"));
@@ -489,6 +629,23 @@ private:
             report.median = (list[(list.size() - 1) / 2] + list[list.size() / 2]) / 2;
             for (const double value : list) report.mean += value / static_cast<double>(list.size());
         }
+    }
+
+    /// Why the measure of this constraint cannot be, if that of another shows it.
+    [[nodiscard]] std::string contradiction(const DeformResult& result, std::size_t i) const {
+        const semantic::State state(edited_mesh_);
+        for (std::size_t j = 0; j < statements_.size(); ++j) {
+            if (j == i || !result.constraints[j].used) continue;
+            for (const semantic::Sized& a : statements_[i].sized)
+                for (const semantic::Sized& b : statements_[j].sized) {
+                    const bool inner = contradict(a, b, state);
+                    if (!inner && !contradict(b, a, state)) continue;
+                    const auto& [part, whole] = inner ? std::pair(&a, &b) : std::pair(&b, &a);
+                    return digits(part->range(state).first, 6) + " of a part and " + digits(whole->range(state).second, 6) +
+                           " of what holds it, in one direction, cannot both be: see " + name_of(result.constraints[j]);
+                }
+        }
+        return {};
     }
 
     /// Leaves out one constraint after another. Those that fail are tried first.
@@ -532,6 +689,7 @@ private:
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report
     std::size_t first_ = 0;           ///< its place in the solver's list
     std::set<Index> anchors_, rotating_, referred_;
+    std::optional<semantic::Sizes> sizes_;
     double hard_scale_ = 1;  ///< from which hard constraints are enforced, as passes so far tell
 };
 

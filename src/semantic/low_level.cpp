@@ -176,6 +176,7 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
         return list;
     };
     Statement statement;
+    statement.resizes = true;
     if (form.keeps == Keeps::rest || (form.keeps == Keeps::rest_without_absolute && !parameters.absolute))
         statement.keeps = "what its vertices are to each other";
     statement.lower = [lower](const State&, const State&) { return lower(); };

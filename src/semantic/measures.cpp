@@ -39,6 +39,7 @@ public:
 
     [[nodiscard]] double at_rest() const { return at_rest_; }
     /// A ruler over several pins is a line of its own, as a tape is.
+    [[nodiscard]] bool is_extent_of_part() const { return extent_; }
     [[nodiscard]] bool is_tape() const { return measure_.tool == "tape" || (!direction_ && measure_.points.size() > 2); }
     [[nodiscard]] const std::optional<Vector3d>& direction() const { return direction_; }
     [[nodiscard]] double value(const State& state) const {
@@ -109,11 +110,32 @@ public:
                 low = std::min(low, axis.dot(rest.col(v))), high = std::max(high, axis.dot(rest.col(v)));
             return high - low;
         };
+        axis_ = axis;
         constexpr double one_end = 0.4;
         if (!joined.empty() && extent(joined) <= one_end * extent(own)) anchors_ = joined;
     }
     [[nodiscard]] const std::vector<Index>& anchors() const { return anchors_; }
     [[nodiscard]] const Gauge& gauge() const { return gauge_; }
+
+    /// Not of a tape: no stretch of the part is known to change its line in proportion.
+    [[nodiscard]] Sized sized() const {
+        Sized part;
+        part.vertices = {ids_.begin(), ids_.end()};
+        std::sort(part.vertices.begin(), part.vertices.end());
+        part.anchors = anchors_;
+        part.axis = axis_;
+        part.along = uniform_ ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : Eigen::Matrix3d(axis_ * axis_.transpose());
+        return part;
+    }
+
+    /// Between which vertices the measure is, and how far they are from being `factor` times as far apart.
+    [[nodiscard]] std::string where(const State& now, double factor) const {
+        const std::vector<int> way = gauge_.way(now);
+        const double length = gauge_.value(now), off = length * (factor - 1);
+        const std::string& unit = read_->shape().set.unit;
+        return "vertices " + std::to_string(way.front()) + " and " + std::to_string(way.back()) + " are " + digits(length, 6) +
+               " apart, " + digits(std::abs(off), 3) + (unit.empty() ? "" : " ") + unit + (off > 0 ? " too near" : " too far");
+    }
 
     /// The measure within a range, in the mesh's unit. A tape's line changes and the surface follows.
     [[nodiscard]] std::unique_ptr<Constraint> to(const Range& range, const State& edited, const State& now) const {
@@ -178,16 +200,20 @@ private:
     ReaderPtr read_;
     Gauge gauge_;
     bool uniform_;
+    Vector3d axis_;  ///< of the measure at rest
     std::vector<Index> anchors_;
     std::vector<int> ids_;
     std::unordered_map<int, int> places_;
 };
 
-std::function<Measured(const State&)> within(const Range& range, std::function<double(const State&)> value) {
+std::function<Measured(const State&)> within(const Range& range, std::function<double(const State&)> value,
+                                             std::shared_ptr<const Stretch> part) {
     return [=](const State& deformed) {
-        const double now = value(deformed);
-        Measured result = verdict_of({{"out of range", std::isfinite(now) ? percent_out(now, range) : 1e9, 0.1, "%"}});
+        const double now = value(deformed), out = percent_out(now, range);
+        Measured result = verdict_of({{"out of range", std::isfinite(now) ? out : 1e9, 0.1, "%"}});
         result.text = std::to_string(now) + " in " + std::to_string(range.min) + " to " + std::to_string(range.max);
+        if (result.verdict == Verdict::fails && now > 0)
+            result.text += ": " + part->where(deformed, std::clamp(now, range.min, range.max) / now);
         return result;
     };
 }
@@ -204,7 +230,7 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     Statement statement;
     if (!read->has_range()) statement.keeps = "the ratio of its measures";
     statement.anchors = part->anchors();
-    statement.follows = statement.until_it_holds = true;
+    statement.follows = statement.until_it_holds = statement.resizes = true;
     statement.lower = [=](const State& edited, const State& now) {
         if (const auto leader = read->leader(edited)) {
             Statement::Constraints list = only(read->as_edited(*leader, edited));
@@ -217,7 +243,12 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
         return only(tapes ? part->to({range.min * size, range.max * size}, edited, now)
                           : part->against(other, range, edited, now));
     };
-    statement.measure = within(range, [=](const State& s) { return part->gauge().value(s) / other.value(s); });
+    const auto ratio = [=](const State& s) { return part->gauge().value(s) / other.value(s); };
+    statement.measure = within(range, ratio, part);
+    if (tapes || read->follows()) return statement;
+    statement.sized.push_back(part->sized());
+    statement.sized.back().value = ratio;
+    statement.sized.back().range = [=](const State&) { return std::pair(range.min, range.max); };
     return statement;
 }
 
@@ -228,9 +259,15 @@ Statement keep_measure(const ReaderPtr& read, const RelationOptions&) {
     Statement statement;
     if (!read->has_range()) statement.keeps = "its measure";
     statement.anchors = part->anchors();
-    statement.follows = statement.until_it_holds = true;
+    statement.follows = statement.until_it_holds = statement.resizes = true;
     statement.lower = [=](const State& edited, const State& now) { return only(part->to(range, edited, now)); };
-    statement.measure = within(range, [=](const State& s) { return part->gauge().value(s); });
+    const auto value = [=](const State& s) { return part->gauge().value(s); };
+    statement.measure = within(range, value, part);
+    if (part->gauge().is_tape()) return statement;
+    statement.sized.push_back(part->sized());
+    statement.sized.back().extent = part->gauge().is_extent_of_part();
+    statement.sized.back().value = value;
+    statement.sized.back().range = [=](const State&) { return std::pair(range.min, range.max); };
     return statement;
 }
 
@@ -238,7 +275,7 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
     read->need(2, 0);
     std::vector<std::shared_ptr<const Stretch>> parts;
     Statement statement;
-    statement.follows = statement.until_it_holds = true;
+    statement.follows = statement.until_it_holds = statement.resizes = true;
     for (std::size_t i = 0; i < read->members(); ++i) {
         parts.push_back(std::make_shared<const Stretch>(read, i, Gauge(*read, "measure", i)));
         statement.anchors.insert(statement.anchors.end(), parts.back()->anchors().begin(), parts.back()->anchors().end());
@@ -265,6 +302,13 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
             worst.value = std::max(*worst.value, size > 0 ? 100 * std::abs(part->gauge().value(deformed) / size - 1) : 1e9);
         return verdict_of({worst});
     };
+    const bool tapes = std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part->gauge().is_tape(); });
+    if (tapes || read->follows()) return statement;
+    for (const auto& part : parts) {
+        statement.sized.push_back(part->sized());
+        statement.sized.back().value = [part](const State& s) { return part->gauge().value(s); };
+        statement.sized.back().range = [mean](const State& s) { return std::pair(mean(s), mean(s)); };
+    }
     return statement;
 }
 

@@ -105,6 +105,7 @@ Statement part_similarity(const ReaderPtr& read, const RelationOptions& toleranc
         if (!(area > 0)) read->fail("has a part without area", "use other parts");
     read->read_leader();
     Statement statement;
+    statement.resizes = true;
     statement.follows = true;
     // Each keeps its shape at rest, and all are as many times as large: as the one that leads, else the mean of what they are
     // now.

@@ -183,6 +183,11 @@ public:
         }
         return best;
     }
+    /// Whether parts follow one, if the edit moves one of them.
+    [[nodiscard]] bool follows() const {
+        const JsonValue* value = given("follow");
+        return value != nullptr && !(value->IsBool() && !value->GetBool());
+    }
     /// Checks "follow" before there is an edit.
     void read_leader() const { static_cast<void>(leader(State(shape_.mesh))); }
     /// What keeps a member as the edit leaves it.

@@ -35,6 +35,17 @@ struct Measured {
     std::string text;
 };
 
+/// A part, a measure of it, and the range that this is to be in.
+struct Sized {
+    std::vector<Index> vertices;  ///< of the part, sorted
+    std::vector<Index> anchors;   ///< of them, those that stay where they are
+    Eigen::Vector3d axis;         ///< of the measure, a unit vector
+    Eigen::Matrix3d along;        ///< projects on what is stretched: the axis, or all where the part is scaled
+    bool extent = false;          ///< the measure is how far the vertices reach along the axis, and its range does not change
+    std::function<double(const State& deformed)> value;
+    std::function<std::pair<double, double>(const State& deformed)> range;
+};
+
 struct Statement {
     using Constraints = std::vector<std::unique_ptr<Constraint>>;
     /// Low-level constraints; shapes are those of the edited state, parts that others refer to are as they are `now`. Empty where
@@ -49,9 +60,12 @@ struct Statement {
     std::vector<Index> anchors;   ///< vertices that are to stay where the edit leaves them
     /// Vertices of the part that is referred to: they stay where the edit leaves them unless another constraint moves them.
     std::vector<Index> referred;
+    std::vector<Sized> sized;  ///< what it says as measures of parts; hard ones are enforced by their values (see Sizes)
     std::optional<Reattachment> reattachment;  ///< features that are put back on the deformed base
     bool follows = false;                      ///< lower gives others when the shape has moved
     bool until_it_holds = false;               ///< follows only as long as it does not hold
+    bool left_alone = false;                   ///< not solved for as long as it holds where edit and other constraints leave it
+    bool resizes = false;                      ///< it is about how large its members are
     bool hard = false;
     /// The axis of an annotation at an angle (radians) with a direction, or with the axis of another.
     struct Direction {

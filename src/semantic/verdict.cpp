@@ -36,25 +36,27 @@ EditFollowed followed_edit(const HandleSpace& space, const EditState& last, cons
     if (square_wanted > 0) result.share = std::max(0.0, 1 - std::sqrt(square_off / square_wanted));
     const double diagonal = box_diagonal(space.mesh);
     for (const Annotation& annotation : space.set.annotations) {
-        double sum = 0;
+        double sum = 0, largest = 0;
         std::size_t all = 0, others = 0;
         for (const Index v : vertices_of(space.mesh, annotation)) {
             ++all;
             if (asked[v]) continue;
             ++others;
             // Handles of a cage say not which parts they are to move.
-            sum += last.by_handles ? off[v] : (now.col(v) - rest.col(v)).norm();
+            const double way = last.by_handles ? off[v] : (now.col(v) - rest.col(v)).norm();
+            sum += way;
+            largest = std::max(largest, way / diagonal);
         }
         // Nor what holds all that was asked, such as the whole object.
-        if (2 * others <= all || all - others == result.vertices) continue;
+        if (2 * others <= all || (result.vertices > 0 && all - others == result.vertices)) continue;
         const double share = sum / (static_cast<double>(others) * diagonal);
-        if (share > 1e-3) result.others.push_back({annotation.id, annotation.tag, share});
+        if (share > 1e-3 || largest > 5e-3) result.others.push_back({annotation.id, annotation.tag, share, largest});
     }
     std::stable_sort(result.others.begin(), result.others.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
     return result;
 }
 
-SurfaceChange surface_change(const Mesh& rest, const Mesh& now) {
+SurfaceChange surface_change(const Mesh& rest, const Mesh& edited, const Mesh& now) {
     SurfaceChange change;
     const auto crossings = [](const Mesh& mesh) { return self_intersections(to_soup(mesh)).pairs; };
     const auto pairs_now = crossings(now), pairs_before = crossings(rest);  // sorted
@@ -71,7 +73,9 @@ SurfaceChange surface_change(const Mesh& rest, const Mesh& now) {
     for (const Edge e : now.edges()) {
         if (now.is_border(e)) continue;
         const Halfedge h = now.halfedge(e);
-        if (const double after = bend(now, h); after > 150 && after > bend(rest, h) + 30) ++change.folds;
+        const double after = bend(now, h);
+        if (after > 150 && after > bend(rest, h) + 30) ++change.folds;
+        else if (after > 90 && after > std::max(bend(rest, h), bend(edited, h)) + 60) ++change.kinks;
     }
     return change;
 }

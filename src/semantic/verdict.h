@@ -12,7 +12,7 @@ std::vector<bool> asked_vertices(const HandleSpace& space, const EditState& last
 EditFollowed followed_edit(const HandleSpace& space, const EditState& last, const std::vector<bool>& asked, const Points& rest,
                            const Points& edited, const Points& now);
 
-/// Of two shapes of one mesh.
-SurfaceChange surface_change(const Mesh& rest, const Mesh& now);
+/// Of shapes of one mesh.
+SurfaceChange surface_change(const Mesh& rest, const Mesh& edited, const Mesh& now);
 
 }  // namespace ostraka::semantic

@@ -128,6 +128,7 @@ TEST(Deform, APartThatContinuesAnotherAlreadyKeepsItsThickness) {
     const DeformResult result =
         deform({made.mesh, set}, graph, edit(R"({"select": {"vertices": [0]}, "translate": [0, 0, 0]})"), "e.edit.json");
     EXPECT_LT(result.constraints.at(0).before_values.at(1), 0.002 * box_diagonal(made.mesh));
+    EXPECT_EQ(result.points, result.edited) << "what holds is left alone";
     Mesh after = made.mesh;
     for (const Vertex v : after.vertices()) after.point(v) = result.points[v];
     double area = 0, rest = 0;

@@ -121,6 +121,7 @@ def deform(
     laplacian: float | None = 2.0,
     handles: float | None = 100.0,
     followed: float | None = 0.9,
+    distortion: float | None = 0.005,
     iterations: int | None = 100,
     tolerance: float | None = 1e-06,
     residual: float | None = 0.0,

@@ -19,6 +19,8 @@ struct DeformOptions {
     /// well are held as by a third of the spread.
     double handles = 100;
     double followed = 0.9;  ///< share of the edit that an acceptable result follows
+    /// Share of the diagonal by which an acceptable result may distort parts that were not to change.
+    double distortion = 0.005;
     SolveOptions solve;
     int rounds = 100;   ///< of the loop that enforces hard constraints
     int passes = 5;     ///< in which constraints on the axes and measures of other parts follow those
@@ -66,8 +68,21 @@ struct EditFollowed {
         int annotation = 0;
         std::string tag;
         double share = 0;
+        double largest = 0;  ///< of one vertex
     };
-    std::vector<Moved> others;  ///< by more than 0.1 % of the diagonal, the largest first
+    /// By more than 0.1 % of the diagonal, or by more than 0.5 % in one vertex; the largest first.
+    std::vector<Moved> others;
+};
+
+/// A part that has become another shape, though neither the edit nor a constraint that did not hold before asked it to.
+struct DistortedPart {
+    int annotation = 0;
+    std::string tag;
+    /// From the best rigid motion of the part as the edit leaves it: root mean square, and of one vertex, in the mesh's unit.
+    double distance = 0, largest = 0;
+    bool distorted = false;  ///< by more than it may
+    bool thinned = false;    ///< on more of its area than it may
+    double thin = 0;         ///< share of its area where it is less than half as thick as at rest and as the edit leaves it
 };
 
 /// What became of the surface as such.
@@ -75,6 +90,7 @@ struct SurfaceChange {
     std::size_t crossings = 0, crossings_before = 0;  ///< pairs of faces that cross each other, after and at rest
     std::size_t crossings_new = 0;                    ///< of those after: pairs that did not cross at rest
     std::size_t folds = 0;  ///< edges whose faces turn away from each other by more than 150 degrees, 30 more than at rest
+    std::size_t kinks = 0;  ///< edges at which solving turned the faces by more than 60 degrees away from each other, to over 90
 };
 
 struct DeformResult {
@@ -82,7 +98,8 @@ struct DeformResult {
     std::vector<Point> edited;  ///< as the edit alone leaves them
     EditFollowed followed;
     SurfaceChange surface;
-    std::vector<Point> cage;  ///< handles after solving, if there is a cage
+    std::vector<DistortedPart> distorted;  ///< the worst first
+    std::vector<Point> cage;               ///< handles after solving, if there is a cage
     std::vector<ConstraintReport> constraints;
     SolveSummary summary;  ///< with hard constraints in mesh space: of the last round
     int rounds = 0;        ///< in which hard constraints were enforced
