@@ -1,11 +1,10 @@
 // annotation transfer
-#include "operations.h"
+#include "registered.h"
 
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/registration/mesh_registration.h"
 #include "ostraka/registration/pose_json.h"
 #include "ostraka/transfer/misalignment.h"
 #include "ostraka/transfer/moved_annotations.h"
@@ -129,7 +128,7 @@ struct AnnotationTransfer final : Operation {
         const Mesh &from = source->mesh, &onto = target->mesh;
         const AnnotationSet& set = annotations.on(from);
         const Stopwatch clock;
-        const MeshRegistration found = in_file(target.file(), [&] { return register_mesh(from, onto); });
+        const MeshRegistration found = ostraka::registered(source, target);
         report.run("registration", clock.seconds());
         const double diagonal = box_diagonal(onto);
         if (found.verdict != RegistrationVerdict::aligned && !options.force)

@@ -1,9 +1,8 @@
 // mesh register
-#include "operations.h"
+#include "registered.h"
 
 #include "ostraka/core/angles.h"
 #include "ostraka/fracture/fragment.h"
-#include "ostraka/registration/mesh_registration.h"
 #include "ostraka/registration/pose_json.h"
 
 namespace ostraka {
@@ -28,14 +27,7 @@ struct MeshRegister final : Operation {
 
     void run(Context&, Report& report) override {
         const Mesh &from = source->mesh, &onto = target->mesh;
-        const MeshRegistration found = in_file(target.file(), [&] {
-            try {
-                return register_mesh(from, onto, options);
-            } catch (const Error& error) {
-                if (error.kind() != ErrorKind::input || error.where() != "source") throw;
-                throw Error(error.kind(), source.file(), error.problem(), error.remedy());
-            }
-        });
+        const MeshRegistration found = registered(source, target, options);
         const double diagonal = box_diagonal(onto);
         const Eigen::AngleAxisd turn(found.motion.rotation);
         const auto list = [](const Eigen::Vector3d& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };

@@ -1,0 +1,21 @@
+// Two meshes that were given to an operation, registered.
+#pragma once
+
+#include "operations.h"
+
+#include "ostraka/registration/mesh_registration.h"
+
+namespace ostraka {
+
+/// What is wrong with a mesh is said with the name of its file.
+inline MeshRegistration registered(const MeshInput& source, const MeshInput& target,
+                                   const MeshRegistrationOptions& options = {}) {
+    try {
+        return register_mesh(source->mesh, target->mesh, options);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input) throw;
+        throw Error(error.kind(), error.where() == "source" ? source.file() : target.file(), error.problem(), error.remedy());
+    }
+}
+
+}  // namespace ostraka
