@@ -227,6 +227,7 @@ def transfer(
     refine: bool | None = False,
     overlap: bool | None = True,
     force: bool | None = False,
+    register: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TransferResult:
     """Carry annotations to another resolution of the same object, and say how faithful they are."""
@@ -304,6 +305,15 @@ def edit(
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _EditResult:
     """Change tags, colours, ids, attributes, the file's class, unit and up; remove, duplicate, merge, split."""
+
+def find(
+    query: Text,
+    objects: Input | Sequence[Input],
+    *,
+    vocabulary: Input | None = None,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> Result:
+    """Which objects have such parts, attributes and relationships; exit code 3 if none has."""
 
 def diff(
     mesh: MeshLike,

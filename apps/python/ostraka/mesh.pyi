@@ -119,6 +119,23 @@ def remesh(
 ) -> _RemeshResult:
     """A new mesh of the same surface, independent of the old one."""
 
+class _RegisterResult(Result):
+    output: Mesh | Sequence[Mesh] | Path | None
+    matrix: Document | Bytes | Path | None
+def register(
+    source: MeshLike,
+    target: MeshLike,
+    output: FileName | bool | None = None,
+    *,
+    matrix: FileName | bool | None = None,
+    ascii: bool | None = False,
+    scale: bool | None = True,
+    tolerance: float | None = 0.0,
+    samples: int | None = 4000,
+    progress: Callable[[str, float], object] | bool | None = None,
+) -> _RegisterResult:
+    """Bring a mesh onto another of the same object: rotation, translation and scale; exit code 3, and nothing written, if it is not the same object."""
+
 class _ExtractResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
     annotations_out: Annotations | Path | None
