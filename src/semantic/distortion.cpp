@@ -18,12 +18,6 @@ Eigen::VectorXd off_rigid(const Points& were, const Points& are) {
     return (are - ((motion.topLeftCorner<3, 3>() * were).colwise() + motion.topRightCorner<3, 1>())).colwise().norm();
 }
 
-Points columns_at(const Points& points, const std::vector<Index>& at) {
-    Points chosen(3, static_cast<Eigen::Index>(at.size()));
-    for (std::size_t i = 0; i < at.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = points.col(at[i]);
-    return chosen;
-}
-
 /// Whether a face is less than half as thick as it is at rest and as the edit leaves it. Empty where nothing has moved.
 std::vector<bool> thin_faces(const Mesh& rest, const Mesh& edited, const Mesh& now) {
     const ThicknessOptions few{.rays = 5, .cone = 30};
