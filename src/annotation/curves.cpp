@@ -348,7 +348,12 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
     annotation.curves.clear();
     bool free = false;
     const auto place = [&](Index v) {
-        if (v >= cut.old_vertices) return place_of(mesh, cut.nodes[v - cut.old_vertices]);
+        if (v >= cut.old_vertices) {
+            const SurfaceNode& node = cut.nodes[v - cut.old_vertices];
+            if (node.kind != SurfaceNode::Kind::face) return place_of(mesh, node);
+            // Where curves cross at the rim of a face, on the rim: nearer to it a face cannot be cut again.
+            return place_of(mesh, surface_node(mesh, node.element, node.barycentric));
+        }
         SurfacePlace vertex;
         vertex.element[0] = v;
         return vertex;

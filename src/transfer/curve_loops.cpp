@@ -77,7 +77,7 @@ private:
             }
             if (i + 2 < kept_.size() && face != no_index && faces_[i + 1] == face)
                 if (const auto at = crossing(mesh_, face, kept_[i], kept_[i + 1], kept_.back(), node)) {
-                    const SurfaceNode met = surface_node(mesh_, face, *at, 1e-9);
+                    const SurfaceNode met = surface_node(mesh_, face, *at);
                     if (!is_small(i, met, length)) return false;
                     cut_back(i);
                     if (const SurfacePlace there = place_of(mesh_, met); there != places_.back()) {

@@ -127,9 +127,17 @@ void keep_partition(const Mesh& source, const std::vector<const Annotation*>& an
     if (!untangled && std::abs(after - of_target) <= rounding_share * of_target) return;
     AnnotationSet set;
     for (const std::size_t i : which) set.annotations.push_back(laid[i].annotation);
-    CutMesh cut;
     try {
-        cut = cut_along_curves(target, set);
+        const CutMesh cut = cut_along_curves(target, set);
+        Parting parting(cut.mesh, cut.annotations.annotations);
+        const std::vector<bool> changed = parting.settle(which.size());
+        for (std::size_t r = 0; r < which.size(); ++r) {
+            if (!changed[r]) continue;
+            Annotation& annotation = set.annotations[r];
+            annotation.faces = parting.faces_of(r);
+            annotation.curves.clear();
+            if (!annotation.faces.empty()) bring_back(target, cut, annotation);
+        }
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled) throw;
         for (const std::size_t i : which)
@@ -137,14 +145,9 @@ void keep_partition(const Mesh& source, const std::vector<const Annotation*>& an
                 laid[i].note = "its neighbours may overlap it, or leave a gap: " + error.where() + ' ' + error.problem();
         return;
     }
-    Parting parting(cut.mesh, cut.annotations.annotations);
-    const std::vector<bool> changed = parting.settle(which.size());
     for (std::size_t r = 0; r < which.size(); ++r) {
-        if (!changed[r]) continue;
-        Annotation& annotation = laid[which[r]].annotation;
-        annotation.faces = parting.faces_of(r);
-        if (annotation.faces.empty()) laid[which[r]].lost = true;
-        else bring_back(target, cut, annotation);
+        laid[which[r]].lost = set.annotations[r].faces.empty() && set.annotations[r].curves.empty();
+        laid[which[r]].annotation = std::move(set.annotations[r]);
     }
 }
 
