@@ -152,6 +152,18 @@ struct MouldExperimentOptions {
 };
 void moulds(const MouldExperimentOptions& options);
 
+/// Templates fitted to other members whose correspondence is known, by each rule for the counterparts of vertices.
+struct CounterpartExperiment {
+    std::string output = "experiments-output/counterparts";
+    std::vector<std::string> objects{"statuette", "hand", "teapot", "vase", "chair"};
+    std::vector<std::string> pairs;  ///< TEMPLATE=MEMBER: mesh files in correspondence
+    std::vector<std::string> cases;  ///< by name or number; empty: all
+    std::vector<std::string> ways{"nearest", "surface", "one-to-one", "sliding"};
+    std::uint64_t vertices = 3000, seed = 1;
+    double strength = 0.2;  ///< standard deviation of the logarithm of the size of parts
+};
+void counterparts(const CounterpartExperiment& options);
+
 /// Pieces broken off objects, and where a search lays them.
 struct PoseSearchExperiment {
     std::vector<std::string> wholes;     ///< mesh files, or made:NAME; pieces of the object itself

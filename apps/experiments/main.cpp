@@ -72,6 +72,17 @@ void declare_control_points(CLI::App& command, ControlPointOptions& options) {
     command.add_option("--output", options.output, "folder to write to")->capture_default_str();
 }
 
+void declare_counterparts(CLI::App& command, CounterpartExperiment& options) {
+    command.add_option("--objects", options.objects, "made objects")->delimiter(',');
+    command.add_option("--pairs", options.pairs, "TEMPLATE=MEMBER: mesh files in correspondence")->delimiter(',');
+    command.add_option("--cases", options.cases, "by name or number, from 1; all without")->delimiter(',');
+    command.add_option("--ways", options.ways, "nearest, or words of 'ostraka fit --counterparts'")->delimiter(',');
+    command.add_option("--vertices", options.vertices, "of the template, if it can be held by so few")->capture_default_str();
+    command.add_option("--seed", options.seed, "of the other member and its fragments")->capture_default_str();
+    command.add_option("--strength", options.strength, "deviation of the logarithm of the size of parts")->capture_default_str();
+    command.add_option("--output", options.output, "folder to write to")->capture_default_str();
+}
+
 void declare_moved(CLI::App& command, MovedOptions& options) {
     command.add_option("mesh", options.mesh, "the shape at rest")->required();
     command.add_option("annotations", options.annotations, "its annotations")->required();
@@ -292,6 +303,8 @@ constexpr Experiment list[] = {
      declared<declare_figure_4_6, figure_4_6>},
     {"control-points", "control points of annotations, level by level (figure 5.11)",
      declared<declare_control_points, control_points>},
+    {"counterparts", "templates fitted to other members: how far vertices end from their true places",
+     declared<declare_counterparts, counterparts>},
     {"moved", "how far each annotation moves from one shape of a mesh to others", declared<declare_moved, moved>},
     {"cage-reach", "how near cages come to what constraints ask for (figures 6.1, 6.2)",
      declared<declare_cage_reach, cage_reach>},

@@ -192,7 +192,7 @@ def fit(
     reach: float | None = 0.1,
     last_reach: float | None = 0.02,
     match_angle: float | None = 60.0,
-    counterparts: Literal["surface", "best", "one-to-one"] | None = 'surface',
+    counterparts: Literal["sliding", "surface", "best", "one-to-one"] | None = 'sliding',
     boundary_weight: float | None = 1.0,
     distance_weight: float | None = 1.0,
     outline_weight: float | None = 1.0,

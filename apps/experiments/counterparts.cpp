@@ -1,0 +1,432 @@
+// Templates fitted to other members of their class whose correspondence is known: how far each rule for the counterparts of
+// vertices leaves them from their true places.
+#include "experiments.h"
+
+#include "report.h"
+
+#include "ostraka/core/error.h"
+#include "ostraka/core/file.h"
+#include "ostraka/core/parallel.h"
+#include "ostraka/geom/eigen.h"
+#include "ostraka/geom/point_tree.h"
+#include "ostraka/geom/submesh.h"
+#include "ostraka/geom/surface_search.h"
+#include "ostraka/io/diagnose.h"
+#include "ostraka/io/mesh_file.h"
+#include "ostraka/reconstruction/reconstruct.h"
+#include "ostraka/remesh/simplify.h"
+#include "ostraka/stats/random.h"
+#include "ostraka/synthetic/fragments.h"
+#include "ostraka/synthetic/make_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <map>
+
+namespace ostraka::experiments {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Two members of a class: the template with the true place of each vertex on the other, and a mesh of the other.
+struct Members {
+    std::string name;
+    Mesh shape;
+    std::vector<int> labels;  ///< of its faces
+    std::vector<Point> truth;
+    Mesh other;
+    std::vector<int> other_labels;
+};
+
+Mesh moved_by(Mesh mesh, const std::function<Point(const Point&)>& warp) {
+    for (const Vertex v : mesh.vertices()) mesh.point(v) = warp(mesh.point(v));
+    return mesh;
+}
+
+/// Edges whose faces turn by more than 120 degrees.
+std::size_t count_folds(const Mesh& mesh) {
+    std::size_t folds = 0;
+    for (const Edge e : mesh.edges()) {
+        const Halfedge h = mesh.halfedge(e), g = mesh.opposite(h);
+        if (mesh.is_border(h) || mesh.is_border(g)) continue;
+        const Vector a = area_vector(mesh, mesh.face(h)), b = area_vector(mesh, mesh.face(g));
+        if (a * b < -0.5 * std::sqrt(a.squared_length() * b.squared_length())) ++folds;
+    }
+    return folds;
+}
+
+bool sound(const Mesh& mesh, const Mesh& before) {
+    return count_folds(mesh) <= count_folds(before) && self_intersections(to_soup(mesh)).pairs.empty();
+}
+
+/// Sides, taper and bend of the whole, and size and place of each part, drawn anew; it fades out around each part.
+class MemberWarp {
+public:
+    MemberWarp(const SyntheticMesh& made, std::size_t parts, double strength, Random& random)
+        : diagonal_(box_diagonal(made.mesh)) {
+        for (const Point& p : made.mesh.points()) box_.extend(eigen(p));
+        for (int axis = 0; axis < 3; ++axis) sides_[axis] = std::exp(0.5 * strength * random.normal());
+        taper_ = 0.5 * strength * random.normal();
+        bend_ = 0.25 * strength * Eigen::Vector2d(random.normal(), random.normal());
+        for (std::size_t k = 0; k < parts; ++k) {
+            std::vector<Point> places;
+            Part part;
+            for (const Vertex v : made.mesh.vertices()) {
+                if (made.vertex_labels[v] != static_cast<int>(k)) continue;
+                places.push_back(made.mesh.point(v));
+                part.centre += eigen(places.back());
+            }
+            part.centre /= std::max<double>(1, static_cast<double>(places.size()));
+            part.tree = PointTree(places);
+            part.scale = std::exp(strength * random.normal());
+            part.shift = 0.1 * strength * diagonal_ * Vector3d(random.normal(), random.normal(), random.normal());
+            if (!places.empty()) parts_.push_back(std::move(part));
+        }
+    }
+
+    Point operator()(const Point& place) const {
+        const Vector3d p = eigen(place);
+        Vector3d sum = Vector3d::Zero();
+        double weights = 0;
+        for (const Part& part : parts_) {
+            const double off = std::sqrt(part.tree.nearest(place).squared) / (fade * diagonal_), weight = std::exp(-off * off);
+            sum += weight * ((part.scale - 1) * (p - part.centre) + part.shift);
+            weights += weight;
+        }
+        Vector3d q = p + sum / std::max(1.0, weights) - box_.center();
+        const double height = box_.sizes().z(), up = 2 * q.z() / height;
+        q.head<2>() *= std::exp(taper_ * up);
+        q.head<2>() += 0.5 * height * up * up * bend_;
+        return point_of(Vector3d(sides_.cwiseProduct(q)));
+    }
+
+private:
+    static constexpr double fade = 0.1;  // of the diagonal
+    struct Part {
+        Vector3d centre = Vector3d::Zero(), shift;
+        PointTree tree;
+        double scale = 1;
+    };
+    double diagonal_;
+    Eigen::AlignedBox3d box_;
+    Vector3d sides_;
+    double taper_;
+    Eigen::Vector2d bend_;
+    std::vector<Part> parts_;
+};
+
+Members make_members(const std::string& name, const CounterpartExperiment& options, bool same_mesh) {
+    const SyntheticObject& object = synthetic_object(name);
+    MakeOptions how;
+    how.vertices = std::max<std::uint64_t>(options.vertices, object.minimum_vertices);
+    how.seed = 1;
+    const SyntheticMesh made = make_mesh(object, how);
+    how.seed = 2;
+    how.vertices = how.vertices * 5 / 4;
+    const SyntheticMesh again = same_mesh ? made : make_mesh(object, how);
+    for (std::uint64_t attempt = 0; attempt < 100; ++attempt) {
+        Random random(options.seed, attempt);
+        const MemberWarp warp(made, object.parts.size(), options.strength, random);
+        Members members{name,
+                        made.mesh,
+                        {made.face_labels.begin(), made.face_labels.end()},
+                        {},
+                        moved_by(again.mesh, std::cref(warp)),
+                        {again.face_labels.begin(), again.face_labels.end()}};
+        const Mesh truth = moved_by(made.mesh, std::cref(warp));
+        if (!sound(truth, made.mesh) || !sound(members.other, again.mesh)) continue;
+        members.truth = ostraka::points_of(truth);
+        return members;
+    }
+    throw Error(ErrorKind::failure, name, "no sound member was drawn", "take a smaller --strength");
+}
+
+/// Regions around places far from each other.
+std::vector<int> cells(const Mesh& mesh, const std::vector<Point>& centres) {
+    const PointTree tree(centres);
+    std::vector<int> labels;
+    for (const Face face : mesh.faces()) labels.push_back(static_cast<int>(tree.nearest(centroid(mesh, face)).index));
+    return labels;
+}
+
+/// Vertices far from each other, the first one farthest from the middle.
+std::vector<Index> spread_out(const Mesh& mesh, const std::vector<Index>& among, std::size_t count) {
+    std::vector<double> off(among.size(), std::numeric_limits<double>::infinity());
+    Vector3d middle = Vector3d::Zero();
+    for (const Point& p : mesh.points()) middle += eigen(p) / static_cast<double>(mesh.number_of_vertices());
+    std::vector<Index> chosen;
+    Vector3d last = middle;
+    while (chosen.size() < std::min(count, among.size())) {
+        std::size_t farthest = 0;
+        for (std::size_t i = 0; i < among.size(); ++i) {
+            const double d = (eigen(mesh.point(Vertex(among[i]))) - last).norm();
+            off[i] = chosen.empty() ? d : std::min(off[i], d);
+            if (off[i] > off[farthest]) farthest = i;
+        }
+        if (chosen.empty()) std::fill(off.begin(), off.end(), std::numeric_limits<double>::infinity());
+        chosen.push_back(among[farthest]);
+        last = eigen(mesh.point(Vertex(among[farthest])));
+    }
+    return chosen;
+}
+
+/// Of meshes in correspondence: the template is the first, simplified, the other the second.
+Members read_members(const std::string& pair, const CounterpartExperiment& options) {
+    const auto split = pair.find('=');
+    if (split == std::string::npos) fail_usage("'" + pair + "' is no pair of mesh files", "write TEMPLATE=MEMBER");
+    const Mesh first = read_mesh(pair.substr(0, split)).mesh, second = read_mesh(pair.substr(split + 1)).mesh;
+    if (first.number_of_vertices() != second.number_of_vertices() || first.number_of_faces() != second.number_of_faces())
+        fail_input(pair, "are not in correspondence: their vertices or faces are not as many");
+    Members members{std::filesystem::path(pair.substr(split + 1)).stem().string(), first, {}, {}, second, {}};
+    std::vector<Index> all;
+    for (const Vertex v : first.vertices()) all.push_back(v.idx());
+    std::vector<Point> centres;
+    for (const Index v : spread_out(first, all, 10)) centres.push_back(first.point(Vertex(v)));
+    const std::vector<int> labels = cells(first, centres);
+    SimplifyOptions how;
+    how.vertices = options.vertices;
+    simplify(members.shape, how);
+    how.vertices = options.vertices * 5 / 4;
+    simplify(members.other, how);
+    const SurfaceSearch on_first(first), on_second(second);
+    for (const Vertex v : members.shape.vertices()) {
+        const SurfaceHit hit = on_first.closest(members.shape.point(v));
+        const auto c = corners(second, Face(hit.face));
+        Vector3d sum = Vector3d::Zero();
+        for (std::size_t k = 0; k < 3; ++k) sum += hit.barycentric[k] * eigen(second.point(c[k]));
+        members.truth.push_back(point_of(sum));
+    }
+    for (const Face f : members.shape.faces())
+        members.labels.push_back(labels[on_first.closest(centroid(members.shape, f)).face]);
+    for (const Face f : members.other.faces())
+        members.other_labels.push_back(labels[on_second.closest(centroid(members.other, f)).face]);
+    return members;
+}
+
+struct Case {
+    std::string name;
+    bool same_mesh = false;
+    double share = 1, noise = 0, holes = 0, scale = 1;
+    double annotated = 1;  ///< share of the annotations
+};
+
+const std::vector<Case>& cases() {
+    static const std::vector<Case> list{
+        {"same mesh", true},
+        {"same mesh, 60 %", true, 0.6, 0.001},
+        {"whole", false},
+        {"whole, noise", false, 1, 0.003},
+        {"whole, holes", false, 1, 0.001, 0.02},
+        {"whole, 1.3 times", false, 1, 0.001, 0, 1.3},
+        {"60 %", false, 0.6, 0.001},
+        {"30 %", false, 0.3, 0.001},
+        {"whole, half annotated", false, 1, 0.001, 0, 1, 0.5},
+        {"60 %, half annotated", false, 0.6, 0.001, 0, 1, 0.5},
+        {"whole, bare", false, 1, 0.001, 0, 1, 0},
+        {"60 %, bare", false, 0.6, 0.001, 0, 1, 0},
+    };
+    return list;
+}
+
+/// Regions by labels and landmarks, of them the first share.
+AnnotationSet annotate(const std::vector<int>& labels, const std::vector<Index>& landmarks, double share) {
+    AnnotationSet set;
+    const int parts = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
+    const auto skipped = [&](std::size_t i) { return share <= 0 || (share < 1 && i % 2 == 1); };
+    for (int part = 0; part < parts; ++part) {
+        if (skipped(static_cast<std::size_t>(part))) continue;
+        Annotation region;
+        region.id = part;
+        region.tag = "part " + std::to_string(part);
+        region.type = AnnotationType::region;
+        for (Index f = 0; f < labels.size(); ++f)
+            if (labels[f] == part) region.faces.push_back(f);
+        if (!region.faces.empty()) set.annotations.push_back(std::move(region));
+    }
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+        if (landmarks[i] == no_index || skipped(i)) continue;
+        Annotation point;
+        point.id = 1000 + static_cast<int>(i);
+        point.tag = "landmark " + std::to_string(i);
+        point.type = AnnotationType::point;
+        point.points = {landmarks[i]};
+        set.annotations.push_back(std::move(point));
+    }
+    return set;
+}
+
+/// Vertices where parts meet.
+std::vector<Index> joints(const Mesh& mesh, const std::vector<int>& labels) {
+    std::vector<Index> found;
+    for (const Vertex v : mesh.vertices()) {
+        int label = -1;
+        bool more = false;
+        for (const Face face : mesh.faces_around_target(mesh.halfedge(v))) {
+            if (face == Mesh::null_face()) continue;
+            more = more || (label >= 0 && labels[face] != label);
+            label = labels[face];
+        }
+        if (more) found.push_back(v);
+    }
+    return found;
+}
+
+struct Scene {
+    AnnotationSet set;
+    Fragment fragment;
+    Motion to_piece;         ///< from the truth's frame
+    std::vector<bool> seen;  ///< of each template vertex
+};
+
+Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
+    BreakOptions breaking;
+    breaking.share = what.share;
+    breaking.noise = what.noise;
+    breaking.seed = seed;
+    Random random(seed, 99);
+    std::vector<Index> all;
+    for (const Vertex v : members.other.vertices()) all.push_back(v.idx());
+    const Point at = members.other.point(Vertex(all[random.below(all.size())]));
+    const BrokenPiece piece = break_off(members.other, at, breaking);
+    std::vector<bool> keep(piece.mesh.number_of_faces(), true);
+    for (int hole = 0; what.holes > 0 && hole < 5; ++hole) {
+        const auto middle = static_cast<Index>(random.below(piece.mesh.number_of_vertices()));
+        for (const Index f : disc(piece.mesh, Vertex(middle), what.holes)) keep[f] = false;
+    }
+    SubMesh left = keep_faces(piece.mesh, keep, true);
+    Scene scene;
+    scene.to_piece = piece.pose.inverse();
+    if (what.scale != 1) {
+        left.mesh = scaled_by(left.mesh, what.scale);
+        Motion larger;
+        larger.scale = what.scale;
+        scene.to_piece = larger.after(scene.to_piece);
+    }
+    std::vector<Index> marks = spread_out(members.shape, joints(members.shape, members.labels), 8), whole;
+    for (const Vertex v : members.shape.vertices()) whole.push_back(v.idx());
+    const std::vector<Index> free_marks = spread_out(members.shape, whole, 12);
+    marks.insert(marks.end(), free_marks.begin(), free_marks.end());
+    const PointTree tree(ostraka::points_of(left.mesh));
+    const double edge = mean_edge_length(left.mesh);
+    const auto there = [&](Index v) {
+        return tree.nearest(point_of(scene.to_piece(eigen(members.truth[v]))), edge + 3 * what.noise * box_diagonal(left.mesh));
+    };
+    std::vector<Index> their_marks;
+    for (const Index v : marks) their_marks.push_back(there(v).index);
+    std::vector<int> labels;
+    for (const Index f : left.faces) labels.push_back(members.other_labels[piece.faces[f]]);
+    scene.set = annotate(members.labels, marks, what.annotated);
+    scene.fragment.name = what.name;
+    scene.fragment.annotations = annotate(labels, their_marks, what.annotated);
+    scene.fragment.mesh = std::move(left.mesh);
+    for (const Vertex v : members.shape.vertices()) scene.seen.push_back(there(v).index != no_index);
+    return scene;
+}
+
+struct Result {
+    bool placed = false;
+    double all = 0, seen = 0, missing = 0;  ///< mean distance from the true places, share of the diagonal
+    double seconds = 0;
+    std::size_t folds = 0, crossings = 0;
+    double rigid = 0;
+};
+
+Result run(const Members& members, const Scene& scene, const std::string& way) {
+    ReconstructOptions how;
+    how.completion.join = false;
+    set_option(how.fit, "counterparts", way == "nearest" ? "surface" : way);
+    if (way == "nearest") {
+        how.annotations.min_score = 1;  // no annotation agrees so well but a landmark
+        how.fit.outlines = false;
+    }
+    const Stopwatch watch;
+    const Reconstruction result = reconstruct(members.shape, scene.set, {}, {&scene.fragment}, how);
+    Result row;
+    row.placed = result.placement.any();
+    if (!row.placed) return row;
+    row.seconds = watch.seconds().processor;
+    const Motion frame = result.placement.fragments[0].pose.after(scene.to_piece);
+    double seen = 0;
+    std::vector<Vector3d> truth;
+    for (const Point& p : members.truth) truth.push_back(frame(eigen(p)));
+    Eigen::AlignedBox3d box;
+    for (const Vector3d& p : truth) box.extend(p);
+    const double diagonal = box.diagonal().norm();
+    for (std::size_t v = 0; v < truth.size(); ++v) {
+        const double off = (eigen(result.points[v]) - truth[v]).norm() / diagonal;
+        row.rigid +=
+            (result.placement.scale * eigen(members.shape.point(Vertex(static_cast<Index>(v)))) - truth[v]).norm() / diagonal;
+        row.all += off;
+        (scene.seen[v] ? row.seen : row.missing) += off;
+        seen += scene.seen[v] ? 1 : 0;
+    }
+    const auto count = static_cast<double>(truth.size());
+    row.all /= count;
+    row.rigid /= count;
+    row.seen /= std::max(1.0, seen);
+    row.missing /= std::max(1.0, count - seen);
+    Mesh fitted = members.shape;
+    for (const Vertex v : fitted.vertices()) fitted.point(v) = result.points[v];
+    row.folds = count_folds(fitted);
+    row.crossings = self_intersections(to_soup(fitted)).pairs.size();
+    return row;
+}
+
+/// A row of the table, and of the file.
+std::string judge(const Members& members, const Case& what, const CounterpartExperiment& options) {
+    const Scene scene = make_scene(members, what, options.seed);
+    std::cout << "| " << members.name << " | " << what.name << " |";
+    std::string rows;
+    for (const std::string& way : options.ways) {
+        const Result row = run(members, scene, way);
+        if (row.placed)
+            std::cout << format(" %.3f (%.3f; %.2f s; %zu, %zu) |", 100 * row.all, 100 * row.seen, row.seconds, row.folds,
+                                row.crossings)
+                      << std::flush;
+        else std::cout << " not placed |" << std::flush;
+        rows += members.name + ",\"" + what.name + "\"," + way +
+                format(",%d,%.6g,%.6g,%.6g,%.6g,%zu,%zu,%.4g\n", row.placed ? 1 : 0, row.all, row.seen, row.missing, row.rigid,
+                       row.folds, row.crossings, row.seconds);
+    }
+    std::cout << '\n';
+    return rows;
+}
+
+bool wanted(const Case& what, std::size_t number, const std::vector<std::string>& list) {
+    const auto names = [&](const std::string& one) { return one == what.name || one == std::to_string(number); };
+    return list.empty() || std::any_of(list.begin(), list.end(), names);
+}
+
+}  // namespace
+
+void counterparts(const CounterpartExperiment& options) {
+    std::filesystem::create_directories(options.output);
+    std::string csv = "object,case,counterparts,placed,all,seen,missing,rigid,folds,crossings,seconds\n";
+    std::cout << "Mean distance of vertices from their true places, % of the diagonal (where observed; seconds of the processor; "
+                 "edges folded, pairs of faces that cross).\n\n| object | case |";
+    for (const std::string& way : options.ways) std::cout << ' ' << way << " |";
+    std::cout << "\n|---|---|";
+    for (std::size_t i = 0; i < options.ways.size(); ++i) std::cout << "---|";
+    std::cout << '\n';
+    std::vector<std::string> names = options.objects;
+    names.insert(names.end(), options.pairs.begin(), options.pairs.end());
+    for (const std::string& name : names) {
+        const bool pair = name.find('=') != std::string::npos;
+        std::map<bool, Members> members;  // by whether they have the same mesh
+        for (std::size_t c = 0; c < cases().size(); ++c) {
+            const Case& what = cases()[c];
+            if (!wanted(what, c + 1, options.cases) || (pair && what.same_mesh)) continue;
+            if (!members.contains(what.same_mesh))
+                members.emplace(what.same_mesh, pair ? read_members(name, options) : make_members(name, options, what.same_mesh));
+            csv += judge(members.at(what.same_mesh), what, options);
+        }
+    }
+    write_file(Path(options.output) / "counterparts.csv", csv);
+}
+
+}  // namespace ostraka::experiments
