@@ -412,7 +412,7 @@ private:
     std::vector<AreaSample> of_a_, of_b_;
 };
 
-constexpr double hopeless = 0.05;       // residual of a rough registration beyond which nothing is aligned
+constexpr double max_rough_residual = 0.05;  // residual of a rough registration beyond which nothing is aligned
 constexpr double mirrored_gain = 0.5;   // residual of the mirror image over that of the object, for the object to be mirrored
 constexpr double equal_residual = 1.5;  // of poses that fit equally, beside a ten-thousandth
 
@@ -457,9 +457,10 @@ MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const Mes
     const MeshRegistrar registrar(source, target, options);
     MeshRegistration result;
     progress.advance();
-    const std::vector<UnitPose> found = registrar.search({}, hopeless);
+    const std::vector<UnitPose> found = registrar.search({}, max_rough_residual);
     progress.advance();
-    const std::vector<UnitPose> reflected = registrar.search({.mirrored = true}, std::min(hopeless, 2 * found.front().residual));
+    const std::vector<UnitPose> reflected =
+        registrar.search({.mirrored = true}, std::min(max_rough_residual, 2 * found.front().residual));
     progress.advance();
     choose_pose(registrar, found, result);
     result.mirrored = registrar.judge(reflected.front().pose, {.mirrored = true});
@@ -471,7 +472,7 @@ MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const Mes
     } else {
         for (const bool too : {false, true}) {
             const Handedness hand{.mirrored = too, .turned_round = true};
-            const SurfaceAgreement agreement = registrar.judge(registrar.search(hand, hopeless).front().pose, hand);
+            const SurfaceAgreement agreement = registrar.judge(registrar.search(hand, max_rough_residual).front().pose, hand);
             if (!registrar.aligned(agreement)) continue;
             result.verdict = too ? RegistrationVerdict::mirrored : RegistrationVerdict::inside_out;
             if (too) result.mirrored = agreement;

@@ -22,15 +22,15 @@ namespace {
 using QueryKind = AnnotationQuery::Node::Kind;
 
 /// A number; with a unit it is of a power of a length (0: an angle or a ratio), in metres or radians.
-struct Amount {
+struct QueryAmount {
     double value = 0;
     bool bare = true;  ///< without a unit
     int power = 0;
 };
 
-Amount amount_of(double value, const std::string& unit) {
+QueryAmount query_amount(double value, const std::string& unit) {
     const auto known = detail::query_unit(unit);
-    return known ? Amount{value * known->factor, false, known->power} : Amount{value};
+    return known ? QueryAmount{value * known->factor, false, known->power} : QueryAmount{value};
 }
 
 /// What an attribute says, as text that is the same for the same value.
@@ -42,7 +42,7 @@ std::string value_text(const Attribute& attribute, const AllowedAttribute* allow
     const Figures figures = figures_of(attribute);
     std::string text;
     for (const double value : figures.values) {
-        const Amount amount = amount_of(value, figures.unit);
+        const QueryAmount amount = query_amount(value, figures.unit);
         text += digits(amount.value, 9) + (amount.bare ? figures.unit : "m" + std::to_string(amount.power)) + " ";
     }
     return text;
@@ -202,10 +202,10 @@ private:
     }
 
     /// Whether they can be compared or added; a problem is noted if not.
-    bool alike(const Amount& a, const Amount& b, std::size_t at) {
+    bool alike(const QueryAmount& a, const QueryAmount& b, std::size_t at) {
         if (a.bare == b.bare ? a.bare || a.power == b.power : (a.bare ? b : a).power == 0) return true;
         if ((a.bare && a.value == 0) || (b.bare && b.value == 0)) return true;
-        const auto named = [](const Amount& x) {
+        const auto named = [](const QueryAmount& x) {
             return x.bare         ? std::string("a number without a unit")
                    : x.power == 0 ? std::string("a ratio or an angle")
                    : x.power == 1 ? std::string("a length")
@@ -218,12 +218,13 @@ private:
         return false;
     }
 
-    std::optional<Amount> amount(const AnnotationQuery::Node& node, Support& used) {
-        if (node.kind == QueryKind::number) return node.unit.empty() ? Amount{node.value} : amount_of(node.value, node.unit);
+    std::optional<QueryAmount> amount(const AnnotationQuery::Node& node, Support& used) {
+        if (node.kind == QueryKind::number)
+            return node.unit.empty() ? QueryAmount{node.value} : query_amount(node.value, node.unit);
         if (node.kind == QueryKind::number_of) {
             const auto& list = means_.at(node.words.front());
             used.insert(list.begin(), list.end());
-            return Amount{static_cast<double>(list.size())};
+            return QueryAmount{static_cast<double>(list.size())};
         }
         if (node.kind == QueryKind::quantity) {
             const auto at = chosen(node.words.front());
@@ -236,29 +237,29 @@ private:
         if (node.kind == QueryKind::multiply || node.kind == QueryKind::divide) {
             const bool times = node.kind == QueryKind::multiply;
             if (!times && b->value == 0) return std::nullopt;
-            return Amount{times ? a->value * b->value : a->value / b->value, a->bare && b->bare,
-                          a->power + (times ? b->power : -b->power)};
+            return QueryAmount{times ? a->value * b->value : a->value / b->value, a->bare && b->bare,
+                               a->power + (times ? b->power : -b->power)};
         }
         if (!alike(*a, *b, node.at)) return std::nullopt;
         const bool plus = node.kind == QueryKind::add;
-        return Amount{plus ? a->value + b->value : a->value - b->value, a->bare && b->bare, a->bare ? b->power : a->power};
+        return QueryAmount{plus ? a->value + b->value : a->value - b->value, a->bare && b->bare, a->bare ? b->power : a->power};
     }
 
-    std::optional<Amount> quantity(std::size_t at, const std::string& name) {
+    std::optional<QueryAmount> quantity(std::size_t at, const std::string& name) {
         const auto [known, fresh] = quantities_.try_emplace({at, name});
         if (!fresh) return known->second;
         const Annotation& annotation = object_.set->annotations[at];
         if (const Attribute* attribute = names_.find(annotation, name); attribute != nullptr && !figures_of(*attribute).stale) {
             const Figures figures = figures_of(*attribute);
-            if (figures.values.size() == 1) known->second = amount_of(figures.values.front(), figures.unit);
+            if (figures.values.size() == 1) known->second = query_amount(figures.values.front(), figures.unit);
             if (attribute->type == AttributeType::semantic) {
                 double value = 0;
                 const char* const end = attribute->note.data() + attribute->note.size();
                 if (const auto [to, code] = std::from_chars(attribute->note.data(), end, value); code == std::errc() && to == end)
-                    known->second = Amount{value};
+                    known->second = QueryAmount{value};
             }
         } else if (const auto computed = descriptors_.find(annotation, name); computed && computed->values.size() == 1) {
-            known->second = amount_of(computed->values.front(), unit_of(*computed, object_.set->unit));
+            known->second = query_amount(computed->values.front(), unit_of(*computed, object_.set->unit));
         }
         return known->second;
     }
@@ -312,7 +313,7 @@ private:
     std::map<std::string, std::vector<std::size_t>> means_;
     std::vector<const std::string*> variables_;
     std::map<std::string, std::size_t> chosen_;
-    std::map<std::pair<std::size_t, std::string>, std::optional<Amount>> quantities_;
+    std::map<std::pair<std::size_t, std::string>, std::optional<QueryAmount>> quantities_;
     double choices_ = 1;
     bool holds_ = false;
     Support supporting_;
