@@ -1,5 +1,7 @@
 #include "distortion.h"
 
+#include "reader.h"
+
 #include "ostraka/fields/thickness.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/semantic/edit.h"
