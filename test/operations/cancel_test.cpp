@@ -60,7 +60,7 @@ const std::vector<Step>& steps() {
         {"annotation segment", R"({"mesh": "pot.ply", "output": "segments.ant.json"})"},
         {"annotation creases", R"({"mesh": "pot.ply", "output": "creases.ant.json", "scale": 0.03})"},
         {"annotation smooth", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "smooth.ant.json"})"},
-        {"annotation find", R"({"query": "area(spout) < area(body)", "objects": ["pot.ply"]})"},
+        {"annotation find", R"q({"query": "area(spout) < area(body)", "objects": ["pot.ply"]})q"},
         {"measure take", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "tape.ant.json", "tool": "tape",
                              "geodesic": "exact", "at": ["-100,0,61", "102,0,89"]})"},
         {"measure describe", R"({"mesh": "pot.ply", "annotations": "pot.ant.json", "output": "described.ant.json"})"},
