@@ -14,6 +14,13 @@ using Eigen::Vector3d;
 
 namespace {
 
+/// Some face at a vertex that has one, also at a border.
+Face face_at(const Mesh& mesh, Vertex vertex) {
+    for (const Face face : mesh.faces_around_target(mesh.halfedge(vertex)))
+        if (face != Mesh::null_face()) return face;
+    return Mesh::null_face();
+}
+
 constexpr int no_label = -1;
 
 /// For each face the number that comes with the smallest of the regions that hold it.
@@ -138,8 +145,7 @@ std::vector<VertexMatch> MatchSearch::shared_of(const Mesh& mesh, const std::vec
             const Index here = vertex_map.empty() ? ours : vertex_map[ours];
             if (here == no_index || shared[here].fragment >= 0) continue;
             const Vector3d moved = eigen(mesh.point(Vertex(here))) - eigen(template_.point(Vertex(ours)));
-            shared[here] = {static_cast<int>(k), fragment.face(fragment.halfedge(v)), eigen(fragment.point(v)) / scale_ + moved,
-                            0};
+            shared[here] = {static_cast<int>(k), face_at(fragment, v), eigen(fragment.point(v)) / scale_ + moved, 0};
         }
     }
     return shared;
@@ -308,7 +314,7 @@ void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labe
             const Eigen::Vector3d place = eigen(fragment.mesh.point(Vertex(there))) / scale_;
             const double distance = (place - now.col(static_cast<Eigen::Index>(v))).norm();
             if (!ours && match.distance <= distance) continue;
-            match = {other.fragment, fragment.mesh.face(fragment.mesh.halfedge(Vertex(there))), place, distance};
+            match = {other.fragment, face_at(fragment.mesh, Vertex(there)), place, distance};
         }
     }
 }
