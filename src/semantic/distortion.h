@@ -1,4 +1,4 @@
-// What solving did to parts that nobody asked to change.
+// Parts that were to stay as they are, and that solving distorts.
 #pragma once
 
 #include "ostraka/semantic/deform.h"
