@@ -3,6 +3,7 @@
 
 #include "ostraka/coords/nested.h"
 #include "ostraka/semantic/cage_density.h"
+#include "ostraka/semantic/cage_reach.h"
 #include "ostraka/semantic/part_cages.h"
 
 #include <algorithm>
@@ -11,6 +12,26 @@
 namespace ostraka {
 
 namespace {
+
+/// The table of what a cage can hold.
+void declare_reach(ReportLayout& report) {
+    report.table("reach", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"), integer("rows", "rows"),
+                 integer("rank", "rank through the cage"), number("asked", "asked", "length"), number("left", "left", "length"),
+                 number("tolerance", "tolerance", "length"), text("lacking", "most at"), text("verdict", "verdict"),
+                 boolean("reached", "reached"));
+}
+
+void report_reach(Report& report, const std::vector<ConstraintReach>& list, const AnnotationSet& set) {
+    report.empty_table("reach", false);
+    for (const ConstraintReach& one : list) {
+        std::vector<std::string> parts;
+        for (const int id : one.annotations) parts.push_back(set.find(id)->tag);
+        const Annotation* lacking = one.lacking ? set.find(*one.lacking) : nullptr;
+        report.row("reach")("id", one.id)("type", one.type)("parts", parts)("rows", one.rows)("rank", one.rank)(
+            "asked", one.asked)("left", one.left)("tolerance", one.tolerance)("lacking", lacking ? lacking->tag : "")(
+            "verdict", to_string(one.verdict))("reached", one.reached);
+    }
+}
 
 struct CageMake final : Operation {
     void describe(Parameters& p) override {
@@ -22,6 +43,10 @@ struct CageMake final : Operation {
             "graph", Kind::graph, graph,
             "relationships (.graph.json): a mirror symmetry gives the plane of the cage, and parts of which one is the "
             "image of the other get cages that are, too");
+        p.input_option("for", Kind::graph, constraints,
+                       "relationships (.graph.json) whose constraints the cage is to be able to meet: denser at their parts, "
+                       "nearer to the mesh and with "
+                       "up to twice the vertices if need be (exit code 3: it cannot meet one)");
         vocabulary.describe(p, "by which tags are compared with --parts");
         options.describe(p.options);
         p.options("levels", levels,
@@ -38,9 +63,14 @@ struct CageMake final : Operation {
         p.report.table("cages", text("file", "cage"), integer("level"), text("part"), integer("vertices", "vertices"),
                        integer("faces", "faces"), boolean("reached"), integer("genus", "genus"),
                        number("clearance", "clearance", "length"), number("alpha", "alpha"));
+        declare_reach(p.report);
     }
 
     void check() const override {
+        if (constraints && (!levels.empty() || !parts.empty() || !details.empty()))
+            fail_usage("--for with --levels, --parts or --detail",
+                       "let --for choose where the cage is dense, or say it yourself");
+        if (constraints && !annotations) fail_usage("--for without --annotations", "add --annotations");
         const auto sizes = wanted();
         if (std::adjacent_find(sizes.begin(), sizes.end()) != sizes.end())
             fail_usage("--levels has a number twice", "give each once");
@@ -73,7 +103,10 @@ struct CageMake final : Operation {
         const RelationGraph& relations = graph ? graph.on(set) : none;
         const auto plane = mirror_of(object, set, relations, report);
         const std::vector<std::size_t> regions = regions_of(set);
-        auto results = in_file(mesh.file(), [&] { return make_nested_cages(object, sizes, options, density, plane); });
+        auto results = in_file(mesh.file(), [&] {
+            return constraints ? for_constraints(object, set, plane, report)
+                               : make_nested_cages(object, sizes, options, density, plane);
+        });
         bool reached = true;
         std::size_t left_out = 0;
         std::set<long> genera;
@@ -111,6 +144,22 @@ struct CageMake final : Operation {
         for (std::size_t i = 0; i < results.size(); ++i)
             if (levels.empty()) output.write(std::move(results[i].cage));
             else output.write_part(ending(sizes[i]), std::move(results[i].cage));
+    }
+
+    /// One cage that can meet the constraints, as far as one can.
+    [[nodiscard]] std::vector<CageResult> for_constraints(const Mesh& object, const AnnotationSet& set,
+                                                          const std::optional<MirrorPlane>& plane, Report& report) const {
+        CageForConstraints made =
+            make_cage_for(object, set, constraints.on(set), options, plane, deform_tolerances(), constraints.file());
+        report_reach(report, made.reach, set);
+        for (const ConstraintReach& one : made.reach) {
+            if (one.reached) continue;
+            report.note(ostraka::describe(one, set) + "; 'deform --space auto' solves for it over the mesh");
+            report.answer_no();
+        }
+        std::vector<CageResult> results;
+        results.push_back(std::move(made.made));
+        return results;
     }
 
     /// All levels and the cages of the parts as one mesh, the outermost first.
@@ -224,14 +273,14 @@ struct CageMake final : Operation {
     [[nodiscard]] std::optional<MirrorPlane> mirror_of(const RelationGraph& relations, const Mesh& object,
                                                        const AnnotationSet& set) const {
         for (const Annotation& one : set.annotations)
-            if (one.all || one.faces.size() == object.number_of_faces())
+            if (is_whole(object, one))
                 if (const auto plane = symmetry_plane(object, set, relations, {one.id}, graph.file())) return plane;
         return {};
     }
 
     MeshInput mesh;
     AnnotationsInput annotations;
-    GraphInput graph;
+    GraphInput graph, constraints;
     VocabularyOption vocabulary;
     MeshOutput output;
     CageOptions options;
@@ -247,12 +296,56 @@ struct CheckOfCage final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("cage", Kind::cage, cage, "cage file");
+        p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json), for --graph");
+        p.input_option(
+            "graph", Kind::graph, graph,
+            "relationships (.graph.json): which of the constraints can the cage meet, and where are control points missing?");
+        p.input_option("weights", Kind::coordinates, weights,
+                       "weights of 'cage weights' (.npy), for --graph; without: mean value");
+        p.input_option("edit", Kind::edit, edit,
+                       "an edit (.edit.json), for --graph; without, the object is stretched by a tenth along x, y and z");
         p.report.checks = true;
+        declare_reach(p.report);
     }
 
-    void run(Context&, Report& report) override { report.findings(findings(check_cage(cage->mesh, mesh->mesh), "")); }
+    void check() const override {
+        if (static_cast<bool>(annotations) != static_cast<bool>(graph))
+            fail_usage("--annotations and --graph belong together", "give both");
+        if (!graph && (weights || edit)) fail_usage("--weights and --edit are for --graph", "add --annotations and --graph");
+    }
+
+    void run(Context&, Report& report) override {
+        std::vector<Finding> list = findings(check_cage(cage->mesh, mesh->mesh), "");
+        const bool sound = std::none_of(list.begin(), list.end(), [](const Finding& one) { return one.defect; });
+        if (graph && sound) {
+            for (const ConstraintReach& one : reach(report))
+                if (!one.reached) list.push_back({true, "/reach/" + std::to_string(one.id), ostraka::describe(one, *set_)});
+        } else if (graph) {
+            report.note("what the cage can hold is told of a sound cage only");
+        }
+        report.findings(list);
+    }
+
+private:
+    [[nodiscard]] std::vector<ConstraintReach> reach(Report& report) {
+        set_ = &annotations.on(mesh->mesh);
+        report.set_unit(set_->unit);
+        const std::string edit_name = edit ? edit.file() : "a stretch by a tenth";
+        if (edit) validate(*edit, "edit", edit_name);
+        Coordinates own;
+        if (!weights) own = compute_coordinates("mean-value", cage->mesh, mesh->mesh);
+        const HandleSpace space{mesh->mesh, *set_, &cage->mesh, weights ? &weights.of(mesh->mesh, cage->mesh) : &own};
+        auto list = cage_reach(space, graph.on(*set_), edit ? &*edit : nullptr, edit_name, deform_tolerances(), graph.file());
+        report_reach(report, list, *set_);
+        return list;
+    }
 
     MeshInput mesh, cage;
+    AnnotationsInput annotations;
+    GraphInput graph;
+    CoordinatesInput weights;
+    JsonInput edit;
+    const AnnotationSet* set_ = nullptr;
 };
 
 }  // namespace

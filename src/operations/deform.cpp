@@ -36,14 +36,12 @@ struct Deform final : Operation {
         p.options("states", states, "also write the shape after each step of the edit, before constraints: output-step1 ...");
         words.describe(p.options);
         options.describe(p.options);
-        // Tighter than what relations ask of scans: a wobbling chair shows.
-        tolerances.distance = 0.002;
-        tolerances.angle = 1;
         tolerances.describe(p.options);
         p.report.values(boolean("acceptable"), texts("objections"), number("followed.share"), integer("followed.vertices"),
                         number("followed.mean"), number("followed.largest"), integer("selfIntersections"),
                         integer("selfIntersectionsBefore"), integer("selfIntersectionsNew"), integer("folds"), integer("kinks"),
-                        integer("iterations"), integer("rounds"), text("stopped"), integer("passes"));
+                        integer("iterations"), integer("rounds"), text("stopped"), integer("passes"), text("space"),
+                        numbers("seated"));
         p.report.table("constraints", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"),
                        number("weight", "weight"), boolean("hard"), boolean("used"), text("before"), text("verdict", "verdict"),
                        text("text"), any("deviations", "how well"), number("residual.mean"), number("residual.median"),
@@ -130,6 +128,7 @@ struct Deform final : Operation {
         for (std::size_t i = 0; i < result.selected.size(); ++i)
             report.note("step " + std::to_string(i + 1) + " moves " + std::to_string(result.selected[i]) + " of " + handles);
         report_result(report, result, *subject.set);
+        if (options.space == DeformOptions::Space::automatic && result.solved) report_choice(report, result);
         if (!result.acceptable) report.answer_no();
     }
 
@@ -229,6 +228,7 @@ struct Deform final : Operation {
         report("acceptable", result.acceptable)("iterations", result.summary.iterations)("rounds", result.rounds);
         const std::string stopped = result.passes > 0 ? std::string(ostraka::describe(result.summary.stop)) : "nothing to solve";
         report("stopped", stopped)("passes", result.passes);
+        report("space", result.space == DeformOptions::Space::cage ? "cage" : "mesh")("seated", result.seated);
         report.empty_table("constraints", false);
         for (const ConstraintReport& constraint : result.constraints) report_result(report, constraint, set);
         if (result.passes > 0)
@@ -247,6 +247,15 @@ struct Deform final : Operation {
                     : result.constraints.empty() ? "acceptable; no constraints"
                                                  : "acceptable: every constraint holds");
         report("objections", result.objections);
+    }
+
+    static void report_choice(Report& report, const DeformResult& result) {
+        std::vector<std::string> seated;
+        for (const ConstraintReport& constraint : result.constraints)
+            if (std::find(result.seated.begin(), result.seated.end(), constraint.id) != result.seated.end())
+                seated.push_back(std::to_string(constraint.id) + " (" + constraint.type + ")");
+        report.note("solved over the " + std::string(result.space == DeformOptions::Space::cage ? "cage" : "mesh") +
+                    (seated.empty() ? "" : "; the parts of " + joined(seated) + " are seated"));
     }
 
     static void report_edit(Report& report, const DeformResult& result, const std::string& unit) {
@@ -328,7 +337,7 @@ struct Deform final : Operation {
     bool states = false;
     EditWords words;
     DeformOptions options;
-    RelationOptions tolerances;
+    RelationOptions tolerances = deform_tolerances();
     AnnotationSet own_set;  ///< with measures that the words keep
     MeshFile own_cage;      ///< of the template, with its coordinates
     Coordinates own_weights;

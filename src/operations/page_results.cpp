@@ -158,6 +158,40 @@ std::vector<PageConstraint> page_constraints(const JsonValue& result, const Anno
     return constraints;
 }
 
+std::vector<PageVerdict> page_conformance(const JsonValue& result, const AnnotationSet& set) {
+    std::vector<PageVerdict> verdicts;
+    const auto place_of = [&](const JsonValue& id, std::vector<std::size_t>& members) {
+        for (std::size_t i = 0; i < set.annotations.size(); ++i)
+            if (id.IsInt() && set.annotations[i].id == id.GetInt()) members.push_back(i);
+    };
+    for (const JsonValue& from : list_in(result, "rules")) {
+        if (!from.IsObject()) continue;
+        PageVerdict& one = verdicts.emplace_back(PageVerdict{"rule", text_in(from, "rule"), {}, false, text_in(from, "text")});
+        if (const JsonValue* id = find_member(from, "annotation")) place_of(*id, one.members);
+    }
+    for (const JsonValue& from : list_in(result, "relationships")) {
+        if (!from.IsObject() || find_member(from, "verdict") == nullptr) continue;
+        const bool constraint = flag_in(from, "isConstraint");
+        const std::string type = text_in(from, "type");
+        PageVerdict& one = verdicts.emplace_back();
+        one.kind = !constraint ? "relation" : type == "proportion" ? "canon" : "constraint";
+        one.name = type;
+        for (const JsonValue& id : list_in(from, "annotations")) place_of(id, one.members);
+        if (const std::string verdict = text_in(from, "verdict"); verdict != "unknown") one.holds = verdict == "holds";
+        if (const JsonValue* parameters = find_member(from, "parameters"); parameters != nullptr && parameters->IsObject())
+            for (const JsonValue& deviation : list_in(*parameters, "deviations")) {
+                const auto value = deviation.IsObject() ? finite_in(deviation, "value") : std::nullopt;
+                if (!value) continue;
+                const auto tolerance = finite_in(deviation, "tolerance");
+                const std::string unit = text_in(deviation, "unit");
+                one.text += (one.text.empty() ? "" : "; ") + text_in(deviation, "quantity") + " " + number(*value, 4) +
+                            (tolerance ? " (at most " + number(*tolerance, 4) + ")" : "") + (unit.empty() ? "" : " " + unit);
+            }
+        if (const std::string text = text_in(from, "text"); !text.empty()) one.text += (one.text.empty() ? "" : "; ") + text;
+    }
+    return verdicts;
+}
+
 std::vector<std::string> page_conflicts(const JsonValue& result) {
     std::vector<std::string> texts;
     const auto constraints = list_in(result, "constraints");

@@ -33,6 +33,7 @@ struct ShownObject {
     std::optional<PageSlices> slices;
     std::vector<PageConstraint> constraints;
     std::vector<std::string> conflicts;
+    std::vector<PageVerdict> conformance;
     std::string unit;
 };
 
@@ -53,7 +54,8 @@ struct MakeReport final : Operation {
         p.input("results", Kind::text, results,
                 "what to show: meshes, each followed by what belongs to it (.ant.json, .graph.json, .cage.ply, maps .npy, slices "
                 "and "
-                "reports of deformations .json); templates (.template.json); tables (.csv), other reports (.json) and drawings "
+                "reports of deformations and of 'relation check' .json); templates (.template.json); tables (.csv), other "
+                "reports (.json) and drawings "
                 "(.svg); folders of such files, such as a run's or a fit's, but for cages and maps")
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
@@ -220,6 +222,11 @@ struct MakeReport final : Operation {
             of.constraints = page_constraints(*result, of.set ? *of.set : AnnotationSet{});
             of.conflicts = page_conflicts(*result);
             shown = {"constraints", "conflicts"};
+        }
+        if (is_report && text_in(document, "command") == "relation check") {
+            ShownObject& of = object_for(name);
+            of.conformance = page_conformance(*result, of.set ? *of.set : AnnotationSet{});
+            shown = {"relationships", "rules"};
         }
         for (PageTable& table : record_tables(*result, stem, shown)) tables.push_back(std::move(table));
     }
@@ -397,6 +404,7 @@ struct MakeReport final : Operation {
         shown.slices = one.slices ? &*one.slices : nullptr;
         shown.constraints = std::move(one.constraints);
         shown.conflicts = std::move(one.conflicts);
+        shown.conformance = std::move(one.conformance);
         if (one.graph && one.set) shown.checks = judge_relationships(one.file.mesh, *one.set, *one.graph);
         PageTable table;
         if (one.set && !one.set->annotations.empty()) {

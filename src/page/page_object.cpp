@@ -256,6 +256,12 @@ JsonValue constraint_json(const PageConstraint& one, JsonAllocator& allocator) {
     return entry;
 }
 
+JsonValue verdict_json(const PageVerdict& one, JsonAllocator& allocator) {
+    JsonValue entry = json_object(allocator, "kind", one.kind, "name", one.name, "members", one.members, "text", one.text);
+    if (one.holds) add_members(entry, allocator, "holds", *one.holds);
+    return entry;
+}
+
 JsonValue slices_json(const PageSlices& slices, const Relative& relative, const Keep& keep, JsonAllocator& allocator) {
     std::vector<float> places;
     JsonValue levels(rapidjson::kArrayType);
@@ -337,6 +343,8 @@ std::size_t Page::add(const PageObject& object) {
                   return constraint_json(one, allocator);
               }));
     add_given(entry, allocator, "conflicts", object.conflicts);
+    add_given(entry, allocator, "conformance",
+              json_list(object.conformance, allocator, [&](const PageVerdict& one) { return verdict_json(one, allocator); }));
     add_given(entry, allocator, "parts", object.parts);
     if (object.slices != nullptr) add_members(entry, allocator, "slices", slices_json(*object.slices, relative, keep, allocator));
     if (object.whole)

@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/geom/point_tree.h"
 #include "ostraka/relation/geometric.h"
+#include "ostraka/semantic/edit.h"
 
 #include <memory>
 
@@ -22,7 +23,7 @@ CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set, const
     if (factors.empty()) {
         for (const Annotation& annotation : set.annotations) {
             lines(annotation, 4);
-            if (annotation.all || annotation.faces.size() == mesh.number_of_faces()) continue;
+            if (is_whole(mesh, annotation)) continue;
             std::vector<bool> inside(mesh.number_of_faces(), false);
             for (const Index f : annotation.faces) inside[f] = true;
             for (const Index f : annotation.faces)

@@ -1,13 +1,65 @@
 #include "ostraka/semantic/deform.h"
 
 #include "deformer.h"
+#include "seating.h"
 
 #include "ostraka/geom/eigen.h"
+
+#include <functional>
+#include <optional>
 
 namespace ostraka {
 
 using semantic::Deformer;
 using semantic::list_of;
+
+namespace {
+
+using Space = DeformOptions::Space;
+
+/// One way to solve for the constraints.
+struct Way {
+    const RelationGraph* graph;
+    Space space;
+    std::vector<int> seated;
+};
+
+/// Whether one result is nearer to acceptable than the other.
+bool is_better(const DeformResult& one, const DeformResult& other) {
+    const auto failing = [](const DeformResult& result) {
+        return std::count_if(result.constraints.begin(), result.constraints.end(),
+                             [](const ConstraintReport& report) { return report.used && report.verdict != Verdict::holds; });
+    };
+    return std::pair(failing(one), one.objections.size()) < std::pair(failing(other), other.objections.size());
+}
+
+/// The first of the ways that gives an acceptable result, or the best of them.
+DeformResult deform_automatically(const HandleSpace& space, const RelationGraph& graph, const DeformOptions& options,
+                                  const std::function<DeformResult(const RelationGraph&, const DeformOptions&)>& solve) {
+    const semantic::Seating seating = semantic::seat_ornaments(space, graph);
+    std::vector<Way> ways;
+    if (!seating.seated.empty()) ways.push_back({&seating.graph, Space::mesh, seating.seated});
+    ways.push_back({&graph, Space::mesh, {}});
+    if (space.cage != nullptr && !space.coordinates->has_normals()) ways.push_back({&graph, Space::cage, {}});
+    const auto try_way = [&](const Way& way, int conflicts) {
+        DeformOptions how = options;
+        how.space = way.space;
+        how.conflicts = conflicts;
+        DeformResult result = solve(*way.graph, how);
+        result.seated = way.seated;
+        return result;
+    };
+    std::optional<DeformResult> best;
+    const Way* best_way = nullptr;
+    for (const Way& way : ways) {
+        DeformResult result = try_way(way, 0);
+        if (!best || is_better(result, *best)) best = std::move(result), best_way = &way;
+        if (best->acceptable || !best->solved) return std::move(*best);
+    }
+    return options.conflicts > 0 ? try_way(*best_way, options.conflicts) : std::move(*best);
+}
+
+}  // namespace
 
 std::vector<Point> shape_of_edit(const HandleSpace& space, const EditState& state, const DeformOptions& options) {
     if (space.cage != nullptr) return deformed(*space.coordinates, *space.cage, state.handles);
@@ -38,7 +90,12 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
     if (options.space == DeformOptions::Space::cage && space.cage == nullptr)
         throw Error(ErrorKind::usage, "space", "is the cage's, and there is none",
                     "give --cage and --weights, or use --space mesh");
-    return Deformer(space, graph, options, tolerances, edit_name, graph_name).follow(edit);
+    const auto solve = [&](const RelationGraph& constraints, const DeformOptions& how) {
+        DeformResult result = Deformer(space, constraints, how, tolerances, edit_name, graph_name).follow(edit);
+        result.space = how.space;
+        return result;
+    };
+    return options.space == Space::automatic ? deform_automatically(space, graph, options, solve) : solve(graph, options);
 }
 
 DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
@@ -46,7 +103,7 @@ DeformResult restore_constraints(const Mesh& mesh, const AnnotationSet& set, con
                                  const RelationOptions& tolerances, const std::string& graph_name) {
     check_options(options, "deform");
     check_options(tolerances, "deform");
-    if (options.space == DeformOptions::Space::cage)
+    if (options.space != DeformOptions::Space::mesh)
         fail_usage("there is no cage here", "solve over the mesh's points: space mesh");
     if (points.size() != mesh.number_of_vertices() || held.size() != points.size())
         fail_usage("positions are given for " + std::to_string(points.size()) + " vertices and flags for " +
@@ -65,9 +122,11 @@ void check_constraint(const Mesh& mesh, const AnnotationSet& set, const Relation
 }
 
 void DeformOptions::describe(OptionList& visit) {
-    visit("space", space,
-          "mesh (constraints hold as well as weights let them) or cage (interactive; as well as the cage can): the unknowns",
-          Choices{"mesh", "cage"});
+    visit(
+        "space", space,
+        "the unknowns: mesh (constraints hold as well as weights let them), cage (interactive; as well as the cage can) or auto "
+        "(ornaments are seated, all else is solved over the mesh; where that is not acceptable, the best of these)",
+        Choices{"mesh", "cage", "auto"});
     visit("details", details,
           "Laplacian displacements that the surface tends to: edited (those of the shape as the edit alone leaves it) or "
           "rest (those of the "

@@ -116,6 +116,22 @@ public:
         return result;
     }
 
+    struct Solved {
+        Points edited, points;
+    };
+    /// The shape after the edit, and after solving; nothing is judged.
+    Solved solve_only(const JsonValue& edit) {
+        follow_steps(edit);
+        const std::vector<Point> shape = shape_of_edit(space_, last_, options_);
+        edited_ = columns_of(shape);
+        edited_mesh_ = with_points(space_.mesh, shape);
+        asked_ = semantic::asked_vertices(space_, last_, edited_ - rest_);
+        DeformResult result;
+        understand(result);
+        return {edited_, solve(used(result)).points};
+    }
+    [[nodiscard]] const std::vector<semantic::Statement>& statements() const { return statements_; }
+
     /// For a drag of these handles from where the edit leaves the cage, whose vertices are handed over; no solver where no
     /// constraint asks for anything.
     CageSystem begin(const JsonValue& edit, const std::vector<Index>& handles, std::vector<Point>& cage) {
@@ -549,10 +565,15 @@ private:
             }
         system.displacements = list.size() - system.first_displacement;
         system.solver = std::make_unique<CageSpaceSolver>(take(std::move(list)), *system.extended, rest_cage);
-        // What must hold counts a thousandfold: a cage may not be able to do it.
-        for (std::size_t i = 0; i < owner_.size(); ++i)
-            if (statements_[owner_[i]].hard)
-                system.solver->set_weight(first_ + i, 1e3 * system.solver->constraint(first_ + i).weight());
+        for (std::size_t i = 0; i < owner_.size(); ++i) {
+            const Constraint& constraint = system.solver->constraint(first_ + i);
+            // What must hold counts a thousandfold: a cage may not be able to do it. The level of a part counts as much as all of
+            // its points, whose shape a cage can keep only so far.
+            double factor = statements_[owner_[i]].hard ? 1e3 : 1;
+            if (constraint.kind() == "MeansOnLevel")
+                factor *= static_cast<double>(constraint.ids().size()) / static_cast<double>(constraint.map().rows);
+            if (factor != 1) system.solver->set_weight(first_ + i, factor * constraint.weight());
+        }
         return system;
     }
 

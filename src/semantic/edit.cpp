@@ -315,6 +315,10 @@ std::vector<Index> strongest(const Coordinates& coordinates, const std::vector<I
     return flagged(chosen);
 }
 
+bool is_whole(const Mesh& mesh, const Annotation& annotation) {
+    return annotation.all || annotation.faces.size() == mesh.number_of_faces();
+}
+
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation) { return touched_vertices(mesh, annotation); }
 
 std::vector<EditState> follow_edit(const JsonValue& edit, const HandleSpace& space, const std::string& where) {

@@ -105,7 +105,8 @@ struct Backlog {
 
 /// Whether the request leaves the session as it is: then it is of no use to a page that is gone.
 bool only_asks(const std::string& request) {
-    static const std::set<std::string> words{"hello", "scene", "select", "handles", "parts", "influence", "grab", "drag", "file"};
+    static const std::set<std::string> words{"hello",     "scene", "select", "handles", "parts",
+                                             "influence", "reach", "grab",   "drag",    "file"};
     try {
         const Json document = parse_json(request, "the request");
         return !document.IsObject() || words.contains(text_in(document, "do"));

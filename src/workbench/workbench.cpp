@@ -10,6 +10,7 @@
 #include "ostraka/operations/page_results.h"
 #include "ostraka/relation/topology.h"
 #include "ostraka/select/recipe.h"
+#include "ostraka/semantic/cage_reach.h"
 #include "ostraka/vocabulary/skos.h"
 
 #include <cmath>
@@ -99,6 +100,7 @@ const std::map<std::string, Workbench::Answer>& Workbench::answers() {
         {"grab", &Workbench::grab},           {"drag", &Workbench::drag},
         {"influence", &Workbench::influence}, {"file", &Workbench::file},
         {"handles", &Workbench::handles},     {"parts", &Workbench::parts},
+        {"reach", &Workbench::reach},
     };
     return all;
 }
@@ -398,6 +400,18 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
     }
     auto& a = result.GetAllocator();
     add_members(result, a, "values", keep(bytes, bytes_of(sums), a));
+}
+
+/// Which constraints the cage cannot meet, before anything is edited: how many there are, and a sentence for each of these.
+void Workbench::reach(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
+    const Deformation& drag = deformation();
+    if (!drag.rest->graph) fail_request(drag.of + " has no relationships", "state a constraint first");
+    const HandleSpace space{drag.rest->mesh->mesh, *drag.set, &drag.rest->cage->mesh, &drag.coordinates};
+    const auto list = cage_reach(space, *drag.rest->graph);
+    std::vector<std::string> texts;
+    for (const ConstraintReach& one : list)
+        if (!one.reached) texts.push_back(describe(one, *drag.set));
+    add_members(result, result.GetAllocator(), "constraints", list.size(), "texts", texts);
 }
 
 /// Begins a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. While all handles follow one affine map x -> A x + t, a

@@ -519,6 +519,29 @@ TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
     const JsonValue& moved = tables[tables.Size() - 1];
     EXPECT_STREQ(moved["title"].GetString(), "moved: moved");
     EXPECT_EQ(moved["annotations"][0].GetInt(), static_cast<int>(constraint["members"][1].GetUint())) << "by its tag";
+    // What 'relation check' says: a rule that is broken, relations, and a proportion that is a constraint (a canon).
+    write_file(scratch / "checked.json", R"({"format": "ostraka-report", "command": "relation check", "result": {
+        "relationships": [{"id": 0, "type": "adjacency", "annotations": [2, 5], "isConstraint": false, "verdict": "holds",
+                           "text": "", "parameters": {}},
+                          {"id": 1, "type": "proportion", "annotations": [5, 2], "isConstraint": true, "verdict": "fails",
+                           "text": "", "parameters": {"deviations": [{"quantity": "ratio", "value": 12.5, "tolerance": 1,
+                           "unit": "%"}]}},
+                          {"id": 2, "type": "my own", "annotations": [], "isConstraint": true, "verdict": "unknown",
+                           "text": "nothing is known of it", "parameters": {}}],
+        "rules": [{"rule": "two handles", "annotation": 5, "part": "neck", "text": "there must be exactly 2"}],
+        "holds": 1, "fails": 1, "unknown": 1, "conforms": false}})");
+    const ReadPage checked = page_of(vase + file("checked.json"));
+    const JsonValue& verdicts = checked.data["objects"][0]["conformance"];
+    ASSERT_EQ(verdicts.Size(), 4U);
+    EXPECT_STREQ(verdicts[0]["kind"].GetString(), "rule");
+    EXPECT_STREQ(verdicts[0]["name"].GetString(), "two handles");
+    EXPECT_FALSE(verdicts[0]["holds"].GetBool());
+    EXPECT_STREQ(verdicts[1]["kind"].GetString(), "relation");
+    EXPECT_TRUE(verdicts[1]["holds"].GetBool());
+    EXPECT_STREQ(verdicts[2]["kind"].GetString(), "canon");
+    EXPECT_STREQ(verdicts[2]["text"].GetString(), "ratio 12.5 (at most 1) %");
+    EXPECT_STREQ(checked.data["objects"][0]["annotations"][verdicts[2]["members"][0].GetUint()]["tag"].GetString(), "neck");
+    EXPECT_EQ(verdicts[3].FindMember("holds"), verdicts[3].MemberEnd()) << "it cannot be told";
     // Labels of faces are parts, which can be moved apart where they share no vertex; real properties are maps.
     TriangleSoup two = octahedron_sphere(2);
     const auto count = static_cast<Index>(two.points.size());

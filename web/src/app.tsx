@@ -1,6 +1,6 @@
 import { gradient } from "./colours";
 import { Index } from "./collection";
-import { Constraints } from "./constraints";
+import { Conformance, Constraints } from "./constraints";
 import type { Language } from "./data";
 import { Details } from "./details";
 import { Graph } from "./graph";
@@ -250,6 +250,7 @@ export function App() {
         )}
         {ready && about && (
           <>
+            <Conformance />
             <Constraints />
             <Slices />
             <Graph />

@@ -1,8 +1,68 @@
-// What became of the constraints of a deformation.
+// What became of the constraints of a deformation, and whether an object conforms to the rules and relationships of its class.
 import { choose, chosen, numberText, object, page, withUnit, word } from "./state";
 
+type Answer = "holds" | "broken" | "unknown";
+const answerOf = (holds: boolean | undefined): Answer => (holds === undefined ? "unknown" : holds ? "holds" : "broken");
+
+function Verdict({ answer }: { answer: Answer }) {
+  return (
+    <span class={`verdict ${answer}`}>
+      <span aria-hidden="true">{{ holds: "✓", broken: "✗", unknown: "?" }[answer]}</span> {word(answer)}
+    </span>
+  );
+}
+
+function Members({ members }: { members: number[] }) {
+  const { annotations } = page.objects[object.value];
+  return (
+    <>
+      {members.map((m, k) => (
+        <span key={k}>
+          {k > 0 && ", "}
+          <button type="button" class="link" onClick={() => choose(m)}>
+            {annotations[m]?.tag || `#${annotations[m]?.id ?? m}`}
+          </button>
+        </span>
+      ))}
+    </>
+  );
+}
+
+/** What is broken stands first; what holds is folded away. */
+export function Conformance() {
+  const { conformance = [] } = page.objects[object.value];
+  if (conformance.length === 0) return null;
+  const of = (answer: Answer) => conformance.filter((one) => answerOf(one.holds) === answer);
+  const list = (answer: Answer) => (
+    <ul class="constraints">
+      {of(answer).map((one, i) => (
+        <li key={i} class={one.members.includes(chosen.value) ? "chosen" : ""} data-verdict={answer}>
+          <Verdict answer={answer} /> {word(one.kind)} <strong>{one.name}</strong>
+          {one.members.length > 0 && ": "}
+          <Members members={one.members} />
+          {one.text && <div>{one.text}</div>}
+        </li>
+      ))}
+    </ul>
+  );
+  return (
+    <section aria-labelledby="conformance-title">
+      <h2 id="conformance-title">{word("conformance")}</h2>
+      <p>{word("conformanceCounts", of("holds").length, of("broken").length, of("unknown").length)}</p>
+      {list("broken")}
+      {list("unknown")}
+      {of("holds").length > 0 && (
+        <details>
+          <summary>{word("conformanceHolds", of("holds").length)}</summary>
+          {list("holds")}
+        </details>
+      )}
+    </section>
+  );
+}
+
 export function Constraints() {
-  const { constraints = [], conflicts = [], annotations } = page.objects[object.value];
+  const { constraints = [], conflicts = [] } = page.objects[object.value];
   if (constraints.length === 0 && conflicts.length === 0) return null;
   return (
     <section aria-labelledby="constraints-title">
@@ -18,21 +78,10 @@ export function Constraints() {
       )}
       <ul class="constraints">
         {constraints.map((one, i) => {
-          const verdict = one.holds === undefined ? "unknown" : one.holds ? "holds" : "broken";
+          const verdict = answerOf(one.holds);
           return (
             <li key={i} class={one.members.includes(chosen.value) ? "chosen" : ""} data-verdict={verdict}>
-              <span class={`verdict ${verdict}`}>
-                <span aria-hidden="true">{{ holds: "✓", broken: "✗", unknown: "?" }[verdict]}</span> {word(verdict)}
-              </span>{" "}
-              <strong>{one.type}</strong>:{" "}
-              {one.members.map((m, k) => (
-                <span key={k}>
-                  {k > 0 && ", "}
-                  <button type="button" class="link" onClick={() => choose(m)}>
-                    {annotations[m]?.tag || `#${annotations[m]?.id ?? m}`}
-                  </button>
-                </span>
-              ))}{" "}
+              <Verdict answer={verdict} /> <strong>{one.type}</strong>: <Members members={one.members} />{" "}
               <span class="quiet">
                 {word("before")}: {one.before}, {word("after")}: {one.verdict}; {one.hard ? word("hard") : `${word("weight")} ${numberText(one.weight)}`}
               </span>

@@ -120,6 +120,8 @@ export interface PageObject extends Shown {
   tree: { annotation: number; depth: number }[];
   relations: Relation[];
   constraints?: Constraint[];
+  /** What 'relation check' says: rules of the class, relations, constraints, canons (proportions). */
+  conformance?: { kind: "rule" | "relation" | "constraint" | "canon"; name: string; members: number[]; holds?: boolean; text: string }[];
   /** Constraints that cannot hold together, in words. */
   conflicts?: string[];
   slices?: Slices;

@@ -244,6 +244,75 @@ try {
     await server.stop();
   });
 
+  await test("figure 5.3 by hand: a teapot is stretched, its flowers keep their level and their shape", async () => {
+    ostraka("mesh", "make", "teapot", at("flowers.ply"), "--vertices", process.env.VERTICES ?? "8000", "--labels", at("flowers.txt"));
+    ostraka("annotation", "apply", at("flowers.ply"), join(project, "data/teapot.recipe.json"), at("flowers.ant.json"));
+    ostraka("cage", "make", at("flowers.ply"), at("flowers.cage.ply"), "--vertices", process.env.CAGE ?? "150");
+    const labels = readFileSync(at("flowers.txt"), "utf8").trim().split(/\s+/).map(Number);
+    const server = serve(at("flowers.ply"));
+    const { page, told, close } = await open(await server.address);
+    await steps(page, 1);
+    await tab(page, "relating");
+    await page.locator("#panel select[multiple]").selectOption([1, 2, 3, 4, 5].map((i) => ({ label: `flower ${i}` })));
+    await page.locator("#panel form select").first().selectOption("same level");
+    await page.locator("#panel form button[type=submit]").click();
+    await steps(page, 2);
+    await tab(page, "deforming");
+    await page.getByRole("button", { name: "Link cage and mesh" }).click();
+    await steps(page, 3);
+    // Before the edit: what the cage can hold.
+    await until(page, "the reach", "() => ostraka.deform.reach.value !== undefined");
+    const reach = await page.evaluate(() => ostraka.deform.reach.value);
+    assert.equal(reach.constraints, 1);
+    assert.match(reach.texts[0], /same level.*control points are missing there/);
+    assert.ok(await page.getByText(reach.texts[0]).isVisible());
+    const [w, h] = await page.evaluate(() => [ostraka.view.canvas.clientWidth, ostraka.view.canvas.clientHeight]);
+    await page.evaluate(() => (ostraka.selection.visible.value = false));
+    await useTool(page, "handles");
+    await drag(page, [2, 2], [w - 2, h - 2]);
+    assert.equal(await page.evaluate(() => ostraka.deform.handles.value.size), await page.evaluate(() => ostraka.page.page.objects[0].cage.vertices));
+    await useTool(page, "stretch");
+    await drag(page, [0.5 * w, 0.7 * h], [0.5 * w, 0.62 * h], 6);
+    await steps(page, 4);
+    const said = await page.evaluate(() => ostraka.model.outcome.value);
+    assert.ok(said.holds, said.text);
+    assert.match(said.notes.join(" "), /over the mesh; the parts of 0 \(same level\) are seated/);
+    // The file that was written, measured here.
+    const shape = (name) => {
+      ostraka("mesh", "convert", name, at("measured.obj"));
+      const lines = readFileSync(at("measured.obj"), "utf8").split("\n");
+      const points = lines.filter((one) => one.startsWith("v ")).map((one) => one.slice(2).trim().split(/\s+/).map(Number));
+      const faces = lines.filter((one) => one.startsWith("f ")).map((one) => one.slice(2).trim().split(/\s+/).map((i) => parseInt(i) - 1));
+      return { points, faces };
+    };
+    const deformed = await page.evaluate(() => ostraka.model.object.value.parts.deformed);
+    const before = shape(at("flowers.ply"));
+    const after = shape(join(at("flowers-session"), deformed));
+    const heights = [6, 7, 8, 9, 10].map((label) => {
+      let sum = 0;
+      let area = 0;
+      after.faces.forEach((face, f) => {
+        if (labels[f] !== label) return;
+        const [p, q, r] = face.map((v) => after.points[v]);
+        const [u, v] = [q.map((x, k) => x - p[k]), r.map((x, k) => x - p[k])];
+        const size = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+        sum += (size * (p[2] + q[2] + r[2])) / 3;
+        area += size;
+      });
+      return sum / area;
+    });
+    assert.ok(Math.max(...heights) - Math.min(...heights) < 1e-3, heights.join(", "));
+    // Edges of the flowers are as long as they were; those of the body are longer.
+    const length = (points, a, b) => Math.hypot(...points[a].map((x, k) => x - points[b][k]));
+    const strain = (label) => Math.max(...before.faces.filter((_, f) => labels[f] === label).map(([a, b]) => Math.abs(length(after.points, a, b) / length(before.points, a, b) - 1)));
+    assert.ok(strain(6) < 0.05, `${strain(6)}`);
+    assert.ok(strain(0) > 0.1, `${strain(0)}`);
+    await picture(page, "workbench-flowers.png");
+    await close();
+    await server.stop();
+    assert.deepEqual(told, []);
+  });
+
   await test("the secret is in the page's address alone", async () => {
     mkdirSync(at("alone"));
     copyFileSync(at("pot.ply"), join(at("alone"), "pot.ply"));

@@ -16,6 +16,9 @@ namespace ostraka {
 /// Of a slices file (slices.schema.json). Throws Error (input).
 PageSlices page_slices(const JsonValue& document, const std::string& where);
 
+/// What 'relation check' says of an object, from its report: broken rules first, then relationships in the order of the graph.
+std::vector<PageVerdict> page_conformance(const JsonValue& result, const AnnotationSet& set);
+
 /// The constraints and conflicts in the report of a deformation, by the tags of their parts in the object's annotations.
 std::vector<PageConstraint> page_constraints(const JsonValue& result, const AnnotationSet& set);
 std::vector<std::string> page_conflicts(const JsonValue& result);

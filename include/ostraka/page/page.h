@@ -61,6 +61,15 @@ struct PageConstraint {
     std::optional<std::array<double, 2>> residual;  ///< mean and largest
 };
 
+/// What 'relation check' says of one rule, relation, constraint or canon (a proportion that is a constraint).
+struct PageVerdict {
+    std::string kind;                  ///< "rule", "relation", "constraint" or "canon"
+    std::string name;                  ///< the rule's, or the type
+    std::vector<std::size_t> members;  ///< places in the set of annotations
+    std::optional<bool> holds;         ///< none: it cannot be told
+    std::string text;                  ///< what is measured, against what is allowed; what breaks the rule
+};
+
 /// What is shown of one object. The mesh and what is said of it must live until the object is added.
 struct PageObject {
     std::string name;
@@ -70,7 +79,8 @@ struct PageObject {
     std::vector<RelationCheck> checks = {};      ///< of the graph's relationships; or empty
     const Mesh* cage = nullptr;                  ///< null: none
     std::vector<PageMap> maps = {};
-    const PageSlices* slices = nullptr;  ///< null: none
+    const PageSlices* slices = nullptr;         ///< null: none
+    std::vector<PageVerdict> conformance = {};  ///< what 'relation check' says; or empty
     std::vector<PageConstraint> constraints = {};
     std::vector<std::string> conflicts = {};  ///< of constraints, in words
     std::vector<std::size_t> parts = {};      ///< places of regions that can be moved apart: they share no vertex

@@ -9,7 +9,10 @@
 namespace ostraka {
 
 struct DeformOptions {
-    enum class Space { mesh, cage } space = Space::mesh;            ///< where constraints are solved: the points of which
+    /// Where constraints are solved: the points of which. Automatic: ornaments are seated and the rest is solved over the mesh;
+    /// where that is not acceptable, nothing is seated; where that is not either, over the cage. The best of them, if none is
+    /// acceptable.
+    enum class Space { mesh, cage, automatic } space = Space::mesh;
     enum class Details { edited, rest } details = Details::edited;  ///< what the surface tends to between constraints
     /// Over what length a change fades out, as a share of the diagonal. Each vertex tends to its edited position with the weight
     /// laplacian (edge / length)^4, edge the mean edge: what it is does not depend on the resolution. Three edges at least.
@@ -28,6 +31,15 @@ struct DeformOptions {
 
     void describe(OptionList& visit);
 };
+
+/// The tolerances by which the result of a deformation is judged: tighter than what relations ask of scans, since a wobbling
+/// chair shows.
+inline RelationOptions deform_tolerances() {
+    RelationOptions tolerances;
+    tolerances.distance = 0.002;
+    tolerances.angle = 1;
+    return tolerances;
+}
 
 /// What became of one constraint.
 struct ConstraintReport {
@@ -101,9 +113,11 @@ struct DeformResult {
     std::vector<DistortedPart> distorted;  ///< the worst first
     std::vector<Point> cage;               ///< handles after solving, if there is a cage
     std::vector<ConstraintReport> constraints;
-    SolveSummary summary;  ///< with hard constraints in mesh space: of the last round
-    int rounds = 0;        ///< in which hard constraints were enforced
-    bool solved = false;   ///< there were constraints to solve
+    SolveSummary summary;                                     ///< with hard constraints in mesh space: of the last round
+    int rounds = 0;                                           ///< in which hard constraints were enforced
+    bool solved = false;                                      ///< there were constraints to solve
+    DeformOptions::Space space = DeformOptions::Space::mesh;  ///< where they were solved: over the mesh or over the cage
+    std::vector<int> seated;  ///< ids of constraints whose parts were seated by the automatic choice
     /// Every constraint holds, the edit is followed, and no faces cross or fold over that did not at rest (of restored positions,
     /// which follow no edit: the constraints alone).
     bool acceptable = true;
@@ -116,7 +130,7 @@ struct DeformResult {
 
 /// Follows the edit and solves for the constraints of the graph (relationships that are constraints). With a cage the edit moves
 /// its vertices and the mesh by the weights; without one it moves vertices of the mesh, and those around follow (shape_of_edit).
-/// Constraints are then solved over the mesh's points or over the cage's. Throws Error
+/// Constraints are then solved over the mesh's points or over the cage's, as options.space says. Throws Error
 /// as follow_edit does, (input) for constraints that cannot be made sense of: a missing annotation, attribute or measure, a range
 /// upside down, an empty region, a part without an axis; (usage) for cage space without a cage.
 DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, const std::string& edit_name,

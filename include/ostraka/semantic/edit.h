@@ -38,6 +38,9 @@ std::vector<Index> strongest(const Coordinates& coordinates, const std::vector<I
 /// Vertices of an annotation's selection, ascending.
 std::vector<Index> vertices_of(const Mesh& mesh, const Annotation& annotation);
 
+/// Whether it selects all faces.
+bool is_whole(const Mesh& mesh, const Annotation& annotation);
+
 /// Validates and follows an edit; a state for each step. Throws Error (input) naming the step: a schema that is not met, a
 /// missing annotation or one that several have the tag of, indices out of range, nothing selected (with the largest influence
 /// there is), no or several operations, zero axes and directions, numbers that are not finite, a wrong number of positions.

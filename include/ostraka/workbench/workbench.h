@@ -47,6 +47,7 @@ private:
     void run(const JsonValue& request, Json& result, std::string& bytes);
     void handles(const JsonValue& request, Json& result, std::string& bytes);
     void parts(const JsonValue& request, Json& result, std::string& bytes);
+    void reach(const JsonValue& request, Json& result, std::string& bytes);
     void influence(const JsonValue& request, Json& result, std::string& bytes);
     void grab(const JsonValue& request, Json& result, std::string& bytes);
     void drag(const JsonValue& request, Json& result, std::string& bytes);

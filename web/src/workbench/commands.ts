@@ -81,7 +81,14 @@ export const commands: Command[] = [
 ];
 
 export const makeCage = (vertices = 100) => run({ operation: "cage make", title: text("makeCage"), with: { mesh: part("mesh"), vertices } });
-export const linkCage = () => run({ operation: "cage weights", title: text("linkCage"), with: { mesh: part("mesh"), cage: part("cage") } });
+/** Denser where the constraints' parts are. */
+export const makeCageFor = (vertices: number) =>
+  run({ operation: "cage make", title: text("makeCageFor"), with: { mesh: part("mesh"), annotations: part("annotations"), for: part("graph"), vertices } });
+export async function linkCage(): Promise<boolean> {
+  const linked = await run({ operation: "cage weights", title: text("linkCage"), with: { mesh: part("mesh"), cage: part("cage") } });
+  if (linked && has("graph") && has("coordinates")) await deform.askReach();
+  return linked;
+}
 export const extract = () =>
   run({
     operation: "relation extract",

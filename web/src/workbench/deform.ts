@@ -11,7 +11,12 @@ import { text } from "./words";
 
 export type Motion = "move" | "rotate" | "scale" | "stretch";
 export const handles = signal<ReadonlySet<number>>(new Set());
-export const keepsConstraints = signal(false);
+export const keepsConstraints = signal(true);
+/** Where the command solves for constraints when the pointer is let go. */
+export const spaces = ["auto", "mesh", "cage"] as const;
+export const space = signal<(typeof spaces)[number]>("auto");
+/** Which constraints the cage cannot meet, in sentences, and of how many. */
+export const reach = signal<{ constraints: number; texts: string[] } | undefined>(undefined);
 export const showsPoints = signal(true);
 export const latency = signal<number[]>([]);
 
@@ -96,6 +101,13 @@ export const ofAnnotation = (id: number, discards = false) =>
       else next.add(i);
     }
     set(next);
+  });
+
+/** Which constraints the cage can meet, before anything is edited. */
+export const askReach = () =>
+  attempt(text("reach"), async () => {
+    const { result } = await link.ask("reach");
+    reach.value = { constraints: result.constraints as number, texts: result.texts as string[] };
   });
 
 /** How much the chosen ones move each place, as colour. */
@@ -307,7 +319,7 @@ async function finishWith(one: Drag, step: object): Promise<boolean> {
     given.annotations = part("annotations");
     keep.push("annotations-out");
   }
-  if (constrained) Object.assign(given, { graph: part("graph"), space: "cage" });
+  if (constrained) Object.assign(given, { graph: part("graph"), space: space.value });
   const done = await run({ operation: "deform", title: text("deformedBy", text(one.motion), one.list.length), with: given, keep, as: "deformed" });
   still(one.of);
   return done;
@@ -369,7 +381,13 @@ async function colour() {
   view?.draw();
 }
 
+/** The files that the reach was told of. */
+let reachOf = "";
+const reachFiles = () => ["mesh", "annotations", "graph", "cage", "coordinates"].map((one) => object.value?.parts[one] ?? "").join("\n");
+
 onShown.push(() => {
+  if (reachOf !== reachFiles()) reach.value = undefined;
+  reachOf = reachFiles();
   colour().catch(() => {}); // without colours they can be dragged all the same
   now = undefined;
   shared.bend.value.set(0, 0, 0, 0, 0, 0, 0, 0, 0);

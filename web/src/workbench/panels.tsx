@@ -7,7 +7,7 @@ import { Legend } from "../legend";
 import { Slices } from "../slices";
 import * as page from "../state";
 import { Tables } from "../tables";
-import { extract, linkCage, makeCage } from "./commands";
+import { extract, linkCage, makeCage, makeCageFor } from "./commands";
 import * as deform from "./deform";
 import { helpOf, Operations } from "./forms";
 import { change, download, files, goTo, has, history, object, objects, operations, outcome, part, place, run, words as vocabulary } from "./model";
@@ -271,6 +271,28 @@ export function Relations() {
   );
 }
 
+/** Which constraints the cage cannot meet, told before an edit. */
+function Reach() {
+  const last = deform.reach.value;
+  return (
+    <>
+      <div class="buttons">
+        <Button name="reach" title={helpOf("cage check")} onClick={() => void deform.askReach()} />
+      </div>
+      {last && (
+        <div role="status">
+          <p class="quiet">{text("reached", last.constraints - last.texts.length, last.constraints)}</p>
+          <ul>
+            {last.texts.map((one) => (
+              <li key={one}>{one}</li>
+            ))}
+          </ul>
+        </div>
+      )}
+    </>
+  );
+}
+
 export function Deforming() {
   const [vertices, setVertices] = useState("100");
   const about = page.page.objects[page.object.value];
@@ -288,8 +310,15 @@ export function Deforming() {
             {text("controlPoints")} <input type="number" min="4" max="100000" value={vertices} onInput={(event) => setVertices(event.currentTarget.value)} />
           </label>
           <Button name="makeCage" title={helpOf("cage make")} onClick={() => void makeCage(Number(vertices))} />
+          <Button
+            name="makeCageFor"
+            title={text("makeCageForHelp")}
+            disabled={!has("graph") || !has("annotations")}
+            onClick={() => void makeCageFor(Number(vertices))}
+          />
           <Button name="linkCage" title={helpOf("cage weights")} disabled={!has("cage")} onClick={() => void linkCage()} />
         </div>
+        {has("graph") && has("coordinates") && <Reach />}
       </section>
       <section aria-labelledby="handles-title">
         <h2 id="handles-title">{text("handles")}</h2>
@@ -309,6 +338,20 @@ export function Deforming() {
               onChange={(event) => (deform.keepsConstraints.value = event.currentTarget.checked)}
             />{" "}
             {text("keepConstraints")}
+          </label>
+          <label title={text("solvedHelp")}>
+            {text("solved")}{" "}
+            <select
+              value={deform.space.value}
+              disabled={!has("graph") || !deform.keepsConstraints.value}
+              onChange={(event) => (deform.space.value = event.currentTarget.value as typeof deform.space.value)}
+            >
+              {deform.spaces.map((one) => (
+                <option key={one} value={one}>
+                  {text(({ auto: "solvedAuto", mesh: "solvedMesh", cage: "solvedCage" } as const)[one])}
+                </option>
+              ))}
+            </select>
           </label>
           <label>
             <input

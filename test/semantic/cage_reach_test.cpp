@@ -1,0 +1,156 @@
+// Where constraints are solved when the choice is left to us, and what a cage can hold.
+#include "caged.h"
+
+#include "ostraka/geom/eigen.h"
+#include "ostraka/semantic/cage_reach.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace ostraka;
+using namespace ostraka::test;
+
+namespace {
+
+const std::vector<int> flowers{7, 8, 9, 10, 11};
+const char* const stretched = R"({"select": {"all": true}, "stretch": {"direction": [0, 0, 1], "factor": 1.4}})";
+
+RelationGraph one(const Relationship& relationship) {
+    RelationGraph graph;
+    graph.relationships.push_back(relationship);
+    return graph;
+}
+
+DeformResult automatic(const HandleSpace& space, const RelationGraph& graph, const std::string& steps) {
+    DeformOptions options;
+    options.space = DeformOptions::Space::automatic;
+    return deform(space, graph, edit(steps), "e", options, deform_tolerances());
+}
+
+/// Greatest difference of the heights of the parts' centroids, by area.
+double level_spread(const Caged& object, const std::vector<Point>& points, const std::vector<int>& ids) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const int id : ids) {
+        double sum = 0, whole = 0;
+        for (const Index f : object.set.find(id)->faces) {
+            const auto [a, b, c] = corners(object.made.mesh, Face(f));
+            const double area = std::sqrt(CGAL::cross_product(points[b] - points[a], points[c] - points[a]).squared_length());
+            sum += area * (points[a].z() + points[b].z() + points[c].z()) / 3;
+            whole += area;
+        }
+        low = std::min(low, sum / whole), high = std::max(high, sum / whole);
+    }
+    return high - low;
+}
+
+}  // namespace
+
+TEST(AutomaticSpace, SeatsOrnamentsWithAndWithoutACage) {
+    const Caged& object = teapot();
+    const RelationGraph graph = one(constraint(0, "same level", flowers, "{}"));
+    for (const HandleSpace& space : {object.handles(), object.bare()}) {
+        const DeformResult result = automatic(space, graph, stretched);
+        EXPECT_TRUE(result.acceptable) << (result.objections.empty() ? "" : result.objections.front());
+        EXPECT_EQ(result.seated, std::vector<int>{0});
+        EXPECT_EQ(result.space, DeformOptions::Space::mesh);
+        EXPECT_LT(level_spread(object, result.points, flowers), 1e-9 * box_diagonal(object.made.mesh));
+    }
+}
+
+TEST(AutomaticSpace, SeatsNothingThatSaysHowItIsKept) {
+    const Caged& object = teapot();
+    for (const char* parameters : {R"({"shapes": "free"})", R"({"follow": true})", R"({"heights": "rest"})"}) {
+        const DeformResult result = automatic(object.handles(), one(constraint(0, "same level", flowers, parameters)), stretched);
+        EXPECT_TRUE(result.seated.empty()) << parameters;
+        EXPECT_TRUE(result.solved) << parameters;
+    }
+    // Spout and handle are no ornaments: they stand out.
+    EXPECT_TRUE(automatic(object.handles(), one(constraint(0, "same level", {5, 6}, "{}")), stretched).seated.empty());
+    // Two constraints about one flower: it is not to be put in two places.
+    RelationGraph two = one(constraint(0, "same level", flowers, "{}"));
+    two.relationships.push_back(constraint(1, "keep shape", {7}, "{}"));
+    EXPECT_TRUE(automatic(object.handles(), two, stretched).seated.empty());
+}
+
+TEST(AutomaticSpace, WithoutConstraintsIsTheEdit) {
+    const Caged& object = teapot();
+    const DeformResult result = automatic(object.handles(), {}, stretched);
+    EXPECT_FALSE(result.solved);
+    EXPECT_EQ(result.points, result.edited);
+}
+
+TEST(AutomaticSpace, IsNeverWorseThanTheMesh) {
+    // Two levels at once that the parts cannot have: nothing is acceptable, and the answer is that of the mesh or a better one.
+    const Caged& object = teapot();
+    RelationGraph graph =
+        one(constraint(0, "keep measure", {0}, R"({"measure": "height", "minValue": 100, "maxValue": 101, "hard": true})"));
+    graph.relationships.push_back(
+        constraint(1, "keep measure", {0}, R"({"measure": "height", "minValue": 150, "maxValue": 151, "hard": true})"));
+    DeformOptions options;
+    const auto failing = [](const DeformResult& result) {
+        return std::count_if(result.constraints.begin(), result.constraints.end(),
+                             [](const ConstraintReport& report) { return report.verdict != Verdict::holds; });
+    };
+    const DeformResult mesh = deform(object.handles(), graph, edit(stretched), "e", options, deform_tolerances());
+    const DeformResult result = automatic(object.handles(), graph, stretched);
+    EXPECT_FALSE(result.acceptable);
+    EXPECT_LE(failing(result), failing(mesh));
+    EXPECT_FALSE(result.conflicts.empty() && result.untried == 0 && failing(result) < 2) << "conflicts are looked for";
+}
+
+TEST(CageReach, APointCanBePutAnywhere) {
+    // One row of which the weights sum to one: every cage can meet it, with rank 1.
+    const Caged& object = teapot();
+    const auto list = cage_reach(object.handles(), one(constraint(4, "keep position", {14}, "{}")));
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_EQ(list[0].id, 4);
+    EXPECT_EQ(list[0].rank, 1u);
+    EXPECT_TRUE(list[0].reached) << describe(list[0], object.set);
+    EXPECT_EQ(describe(list[0], object.set), "");
+}
+
+TEST(CageReach, SmallRigidPartsNeedControlPointsNearby) {
+    const Caged& object = teapot();
+    const RelationGraph graph = one(constraint(0, "same level", flowers, "{}"));
+    const auto list = cage_reach(object.handles(), graph);
+    ASSERT_EQ(list.size(), 1u);
+    const ConstraintReach& coarse = list[0];
+    EXPECT_FALSE(coarse.reached);
+    EXPECT_GT(coarse.left, coarse.tolerance);
+    EXPECT_LT(coarse.left, coarse.asked) << "solving makes it better";
+    EXPECT_LE(coarse.rank, std::min<std::size_t>(coarse.rows, object.cage.number_of_vertices()));
+    ASSERT_TRUE(coarse.lacking);
+    EXPECT_TRUE(std::find(flowers.begin(), flowers.end(), *coarse.lacking) != flowers.end());
+    EXPECT_NE(describe(coarse, object.set).find("'" + object.set.find(*coarse.lacking)->tag + "'"), std::string::npos);
+    // A cage that is made for it comes nearer, and still is one.
+    const CageForConstraints made = make_cage_for(object.made.mesh, object.set, graph, {.vertices = 150});
+    ASSERT_EQ(made.reach.size(), 1u);
+    EXPECT_LT(made.reach[0].left, 0.8 * coarse.left);
+    EXPECT_LE(made.made.cage.number_of_vertices(), 300u);
+    EXPECT_TRUE(check_cage(made.made.cage, object.made.mesh).outside.empty());
+    // Seated, they are put back as they were: no cage has to hold them.
+    EXPECT_TRUE(cage_reach(object.handles(), one(constraint(0, "same level", flowers, R"({"shapes": "seat"})"))).empty());
+}
+
+TEST(CageReach, TellsOfTheEditThatIsGiven) {
+    const Caged& object = teapot();
+    const RelationGraph graph = one(constraint(0, "same level", flowers, "{}"));
+    const Json strong = edit(stretched), none = edit(R"({"select": {"all": true}, "translate": [1, 2, 3]})");
+    const auto far = cage_reach(object.handles(), graph, &strong), still = cage_reach(object.handles(), graph, &none);
+    ASSERT_EQ(far.size(), 1u);
+    ASSERT_EQ(still.size(), 1u);
+    EXPECT_TRUE(still[0].reached) << "what moves as a whole keeps its shape: " << describe(still[0], object.set);
+    EXPECT_GT(far[0].left, 2 * cage_reach(object.handles(), graph)[0].left) << "four times as strong an edit";
+}
+
+TEST(CageReach, OfNothing) {
+    const Caged& object = teapot();
+    EXPECT_TRUE(cage_reach(object.handles(), {}).empty());
+    EXPECT_TRUE(cage_reach(object.handles(), one(constraint(0, "same level", flowers, "{}", 0))).empty());
+    EXPECT_THROW(cage_reach(object.bare(), {}), Error);
+    EXPECT_THROW(cage_reach(object.handles(), one(constraint(0, "same level", {99, 100}, "{}"))), Error);
+    const CageForConstraints made = make_cage_for(object.made.mesh, object.set, {}, {.vertices = 100});
+    EXPECT_EQ(made.made.cage.number_of_vertices(), 100u);
+    EXPECT_TRUE(made.reach.empty());
+}
