@@ -55,8 +55,17 @@ struct WatchedPoints {
     friend void put(const WatchedPoints& points, Vertex v, const Point& point) { points.mesh->point(v) = point; }
 };
 
-/// The same where the library's tree of triangles is built, which compares them.
+/// The same where the library's tree of triangles is built, which compares them. Faces without area have a normal of next to no
+/// length here: at a vertex around which no face has a normal the library's relaxation (CGAL 5.5) reads an edge that does not
+/// exist.
 struct WatchedKernel : Kernel {
+    struct Construct_cross_product_vector_3 {
+        Vector operator()(const Vector& a, const Vector& b) const {
+            const Vector product = CGAL::cross_product(a, b);
+            return product == CGAL::NULL_VECTOR ? Vector(1e-100, 0, 0) : product;
+        }
+    };
+    [[nodiscard]] static Construct_cross_product_vector_3 construct_cross_product_vector_3_object() { return {}; }
     [[nodiscard]] Less_x_3 less_x_3_object() const { return ask(), Kernel::less_x_3_object(); }
     [[nodiscard]] Less_y_3 less_y_3_object() const { return ask(), Kernel::less_y_3_object(); }
     [[nodiscard]] Less_z_3 less_z_3_object() const { return ask(), Kernel::less_z_3_object(); }

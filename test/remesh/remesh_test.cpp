@@ -64,6 +64,23 @@ TEST(Remesh, APointFarAwayIsAnErrorNotAHang) {
     }
 }
 
+TEST(Remesh, APieceWithoutAreaBesideTheObject) {
+    // Around none of its vertices there is a face with a normal.
+    TriangleSoup soup = octahedron_sphere(3);
+    const auto first = static_cast<Index>(soup.points.size());
+    for (const double x : {2.0, 2.01, 2.03, 2.04}) soup.points.push_back({x, 0, 0});
+    for (const auto& [a, b, c] : {std::array<Index, 3>{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}})
+        soup.triangles.push_back({first + a, first + b, first + c});
+    RemeshOptions options;
+    options.vertices = 500;
+    const RemeshResult result = remesh(build_mesh(soup), options);
+    EXPECT_NEAR(surface_area(result.mesh) / surface_area(build_mesh(octahedron_sphere(3))), 1, 0.03);
+    for (const Vertex v : result.mesh.vertices()) {
+        const Point& p = result.mesh.point(v);
+        ASSERT_TRUE(std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()));
+    }
+}
+
 TEST(Remesh, NothingToRemesh) {
     RemeshOptions options;
     options.vertices = 100;
