@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/geom/eigen.h"
+#include "ostraka/geom/submesh.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
 
@@ -37,6 +38,9 @@ std::vector<std::string> explained_text(const MemberFit& fit) {
     };
     lines.push_back("the template explains " + per_cent(1 - fit.residuals->unexplained) + " of its surface within " +
                     digits(fit.near, 3) + "; " + per_cent(1 - fit.residuals->unmatched) + " of the template lies on it");
+    if (fit.cavity > 0)
+        lines.push_back("it is hollow: " + per_cent(fit.cavity) +
+                        " of its surface is the inside of walls whose outside lies on the template, and does not count");
     constexpr std::size_t maximum = 3;
     for (std::size_t i = 0; i < std::min(maximum, fit.foreign.size()); ++i) {
         const OffRegion& region = fit.foreign[i];
@@ -115,6 +119,23 @@ Residuals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object,
     std::vector<Point> points(fitted.points().begin(), fitted.points().end());
     measure_distortion(rest, points, scale, residuals.numbers);
     return residuals;
+}
+
+/// The object without the insides of its walls, closed where these are cut off, and their share of its surface; none where there
+/// are none, or where nothing else is left.
+std::optional<std::pair<Mesh, double>> without_insides(const Mesh& fitted, const Mesh& object, double near) {
+    std::vector<bool> keep = insides_of_walls(object, SurfaceSearch(fitted), near);
+    double share = 0;
+    const double area = surface_area(object);
+    for (const Face f : object.faces())
+        if (keep[f]) share += face_area(object, f) / area;
+    if (!(share > 0) || !(share < 0.9)) return {};
+    keep.flip();
+    Mesh outer = keep_faces(object, keep).mesh;
+    if (holes_of(object).empty())
+        for (const Halfedge border : holes_of(outer))
+            if (outer.is_border(border)) close_hole(outer, border);
+    return std::pair(std::move(outer), share);
 }
 
 /// The regions moved.
@@ -281,8 +302,10 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         std::vector<PlacedFragment> list;
         list.push_back(std::move(placed));
         const NonRigidFit fit = fit_template(scaled, set, list, options.fit);
+        const Mesh fitted = with_points(mesh, fit.points);
+        const auto outer = without_insides(fitted, list.front().mesh, options.observed * place.scale * box_diagonal(mesh));
         const Residuals residuals =
-            residuals_of(mesh, with_points(mesh, fit.points), list.front().mesh, place.scale, options.observed);
+            residuals_of(mesh, fitted, outer ? outer->first : list.front().mesh, place.scale, options.observed);
         const double cost = std::hypot(residuals.numbers.distance, residuals.numbers.back);
         if (!(cost < minimum)) continue;
         minimum = cost;
@@ -290,6 +313,8 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         best.residuals = residuals.numbers;
         best.near = options.observed * place.scale * box_diagonal(mesh);
         best.points.clear();
+        best.cavity = outer ? outer->second : 0;
+        best.outer = outer ? std::make_shared<const Mesh>(outer->first) : nullptr;
         const Motion back = place.pose.inverse();
         best.foreign = moved_regions(residuals.foreign, back);
         best.missing = moved_regions(residuals.missing, back);

@@ -1,6 +1,7 @@
 #include "ostraka/shape_classes/off_regions.h"
 
 #include "ostraka/core/parallel.h"
+#include "ostraka/geom/submesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,30 @@ std::vector<OffRegion> regions_of(const Mesh& mesh, const Spread& spread, const 
 }
 
 }  // namespace
+
+std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& other, double near) {
+    const Spread spread = spread_over(object, max_samples);
+    const SurfaceSearch own(object);
+    std::vector<char> inside(spread.points.size(), 0);
+    parallel_for(inside.size(), [&](std::size_t i) {
+        const SurfaceHit hit = other.closest(spread.points[i]);
+        const Vector normal = other.normal(hit.face);
+        if (!(normal * spread.normals[i] < 0) || !(normal * (spread.points[i] - hit.point) < 0)) return;
+        if (hit.distance <= near && other.closest_compatible(spread.points[i], spread.normals[i], like_normals, near)) return;
+        inside[i] = own.closest_compatible(hit.point, normal, like_normals, near).has_value();
+    });
+    const std::vector<std::size_t> sample = samples_of_faces(object, spread);
+    std::vector<bool> flags(object.number_of_faces(), false);
+    for (const Face f : object.faces()) flags[f] = sample[f] < inside.size() && inside[sample[f]] != 0;
+    const FacePieces pieces = face_pieces(
+        object, [&](Face f) { return flags[f]; }, [](Halfedge) { return true; });
+    std::vector<double> area(pieces.count, 0);
+    for (const Face f : object.faces())
+        if (flags[f]) area[pieces.of_face[f]] += face_area(object, f);
+    const double least = least_share * surface_area(object);
+    for (const Face f : object.faces()) flags[f] = flags[f] && area[pieces.of_face[f]] >= least;
+    return flags;
+}
 
 SurfaceOff surface_off(const Mesh& mesh, const SurfaceSearch& other, double near) {
     const Spread spread = spread_over(mesh, max_samples);

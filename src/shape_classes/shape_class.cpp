@@ -76,7 +76,9 @@ LearntMember measure_member(const ClassTemplate& known, const WholeObject& membe
     }
     learnt.fragments = fragment_quantities(known, learnt.fit.points, learnt.quantities);
     for (ClassQuantity& quantity : geometry_quantities(learnt.fit.residuals)) learnt.quantities.push_back(std::move(quantity));
-    for (ClassQuantity& quantity : geometry_quantities(whole != nullptr ? *whole : measure_whole_shape(member.mesh)))
+    const bool is_given = whole != nullptr && learnt.fit.outer == nullptr;
+    const Mesh& surface = learnt.fit.outer ? *learnt.fit.outer : member.mesh;
+    for (ClassQuantity& quantity : geometry_quantities(is_given ? *whole : measure_whole_shape(surface)))
         learnt.quantities.push_back(std::move(quantity));
     return learnt;
 }

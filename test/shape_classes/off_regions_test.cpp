@@ -50,6 +50,36 @@ TEST(OffRegions, AreConnectedAndTheLargestComesFirst) {
     EXPECT_LT(off.regions[1].middle.x(), 0.1);
 }
 
+/// A ball with a smaller one inside, whose surface looks inwards if `hollow`.
+Mesh ball_with(double radius, bool hollow) {
+    TriangleSoup soup = test::octahedron_sphere(4), inner = soup;
+    const auto first = static_cast<Index>(soup.points.size());
+    for (const auto& p : inner.points) soup.points.push_back({radius * p[0], radius * p[1], radius * p[2]});
+    for (const auto& [a, b, c] : inner.triangles)
+        soup.triangles.push_back(hollow ? std::array<Index, 3>{first + a, first + c, first + b}
+                                        : std::array<Index, 3>{first + a, first + b, first + c});
+    return build_mesh(soup);
+}
+
+TEST(InsidesOfWalls, AreWhatLooksInwardsBehindWhatIsExplained) {
+    const Mesh ball = build_mesh(test::octahedron_sphere(4));
+    const SurfaceSearch whole(ball);
+    for (const double radius : {0.3, 0.6, 0.98}) {
+        const Mesh hollow = ball_with(radius, true);
+        const std::vector<bool> flags = insides_of_walls(hollow, whole, 0.04);
+        for (const Face f : hollow.faces())
+            ASSERT_EQ(flags[f], f.idx() >= ball.number_of_faces()) << radius << ", face " << f.idx();
+    }
+    // A ball within is no inside; nor is one that looks inwards where the outside is not there.
+    for (const bool flag : insides_of_walls(ball_with(0.6, false), whole, 0.04)) EXPECT_FALSE(flag);
+    Mesh alone = ball_with(0.6, true);
+    for (const Vertex v : alone.vertices())
+        if (v.idx() < ball.number_of_vertices()) alone.point(v) = alone.point(v) + Vector(5, 0, 0);
+    for (const bool flag : insides_of_walls(alone, whole, 0.04)) EXPECT_FALSE(flag);
+    // Nothing off: nothing inside.
+    for (const bool flag : insides_of_walls(ball, whole, 0.04)) EXPECT_FALSE(flag);
+}
+
 TEST(OffRegions, ASurfaceThatLooksTheOtherWayIsOff) {
     const Mesh whole = sheet(1);
     Mesh turned = whole;

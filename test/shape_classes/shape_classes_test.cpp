@@ -323,6 +323,47 @@ TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
     EXPECT_NEAR(area / surface_area(object.mesh), 1, 0.15) << "the two halves cover it";
 }
 
+TEST(MemberFit, AHollowMemberIsMeasuredAsASolidOne) {
+    // Half as large inside, and looking inwards: a fifth of the surface.
+    const Tower known = tower();
+    const WholeObject solid = member_of(known, "solid", 0.5, 0.6, 0.95);
+    WholeObject hollow = solid;
+    TriangleSoup soup = to_soup(solid.mesh);
+    const std::size_t points = soup.points.size(), faces = soup.triangles.size();
+    std::array<double, 3> middle{};
+    for (const auto& p : soup.points)
+        for (std::size_t k = 0; k < 3; ++k) middle[k] += p[k] / static_cast<double>(points);
+    for (std::size_t i = 0; i < points; ++i) {
+        std::array<double, 3> p = soup.points[i];
+        for (std::size_t k = 0; k < 3; ++k) p[k] = middle[k] + 0.5 * (p[k] - middle[k]);
+        soup.points.push_back(p);
+    }
+    for (std::size_t t = 0; t < faces; ++t) {
+        const auto [a, b, c] = soup.triangles[t];
+        const auto n = static_cast<Index>(points);
+        soup.triangles.push_back({n + a, n + c, n + b});
+    }
+    hollow.mesh = build_mesh(soup);
+    LearnOptions how;
+    how.correspondence = CorrespondenceChoice::fitted;
+    const LearntMember one = learn_member(known.known(), solid, how), other = learn_member(known.known(), hollow, how);
+    EXPECT_EQ(one.fit.cavity, 0);
+    EXPECT_EQ(one.fit.outer, nullptr);
+    EXPECT_NEAR(other.fit.cavity, 0.2, 0.01);
+    ASSERT_TRUE(other.fit.residuals.has_value());
+    EXPECT_LT(other.fit.residuals->unexplained, 0.02);
+    const auto value = [](const LearntMember& member, const std::string& name) {
+        for (const ClassQuantity& quantity : member.quantities)
+            if (quantity.name == name) return quantity.value.value_or(-1);
+        return -2.0;
+    };
+    for (const char* name : {"compactness", "share of the hull", "thickness mean"}) {
+        EXPECT_GT(value(one, name), 0) << name;
+        EXPECT_NEAR(value(other, name), value(one, name), 1e-3) << name;
+    }
+    EXPECT_NE(explained_text(other.fit)[1].find("it is hollow: 20"), std::string::npos);
+}
+
 TEST(MemberFit, DistortionIsThatOfTheMap) {
     const Tower known = tower();
     const WholeObject wide = member_of(known, "wide", 1, 1, 2);

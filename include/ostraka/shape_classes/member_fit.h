@@ -7,6 +7,7 @@
 #include "ostraka/registration/align.h"
 #include "ostraka/shape_classes/off_regions.h"
 
+#include <memory>
 #include <optional>
 
 namespace ostraka {
@@ -62,6 +63,11 @@ struct MemberFit {
     std::vector<std::string> notes;
     std::optional<FitResiduals> residuals;  ///< none in correspondence
     double near = 0;                        ///< surfaces farther apart do not lie on each other, in the object's unit
+    /// Share of the object's surface that is the inside of walls whose outside lies on the template, as of a hollow figurine
+    /// (insides_of_walls). It is left out of the residuals and of the numbers of the whole shape: `outer` is the object without
+    /// it, where it was cut off closed. None: there is no such inside.
+    double cavity = 0;
+    std::shared_ptr<const Mesh> outer;
     /// Regions of the object that no part of the template lies on, and of the fitted template that do not lie on the object,
     /// where the object is. None in correspondence.
     std::vector<OffRegion> foreign, missing;

@@ -30,4 +30,9 @@ struct SurfaceOff {
 /// with a point is, counted in steps from face to face.
 SurfaceOff surface_off(const Mesh& mesh, const SurfaceSearch& other, double near);
 
+/// The faces of an object that are the inside of walls whose outside lies on the other surface: those off it as above whose
+/// normal is turned away from that of the other surface at the nearest place, where this place in turn lies on the object. One
+/// flag a face; connected regions of less than one per cent of the area do not count.
+std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& other, double near);
+
 }  // namespace ostraka
