@@ -116,7 +116,7 @@ std::vector<RelationCheck> check_relations(const Mesh& given_mesh, const Annotat
         std::vector<const Annotation*> members;
         for (const int id : relationship.annotations) members.push_back(set.find(id));
         const RelationType* type = find_relation_type(relationship.type);
-        if (relationship.is_constraint) check.text = "a constraint: judge_constraints tells";
+        if (relationship.is_constraint) check.text = "a constraint, which is judged apart";
         else if (type == nullptr) check.text = "a type of its own: experts tell";
         else if (type->geometric == GeometricRelation::containment) check_containment(mesh, cut, members, check);
         else if (type->geometric == GeometricRelation::equal_selections) check_equal_selections(mesh, cut, members, check);

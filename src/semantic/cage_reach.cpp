@@ -170,7 +170,7 @@ CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, con
     struct Try {
         double density, vertices, offset;  ///< factors
     };
-    constexpr std::array<Try, 4> tries{{{4, 1, 1}, {8, 1, 0.5}, {16, 1.5, 0.5}, {30, 2, 0.25}}};
+    constexpr std::array<Try, 5> tries{{{1, 1, 1}, {4, 1, 1}, {8, 1, 0.5}, {16, 1.5, 0.5}, {30, 2, 0.25}}};
     std::set<int> parts;
     for (const Relationship& relationship : graph.relationships)
         if (relationship.is_constraint && relationship.weight > 0)

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <set>
 #include "distortion.h"
 #include "ostraka/cage/cage.h"
 #include "ostraka/coords/nested.h"
 #include "ostraka/core/error.h"
+#include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
@@ -203,7 +205,9 @@ private:
         if (flags.change.empty()) flags.change.assign(flags.size.size(), false);
         for (std::size_t i = 0; i < statements_.size(); ++i) {
             const ConstraintReport& report = result.constraints[i];
-            if (!report.used || report.before == Verdict::holds) continue;
+            // What is enforced by its values changes its members also within its tolerance.
+            const bool enforced = statements_[i].hard && !statements_[i].sized.empty();
+            if (!report.used || (report.before == Verdict::holds && !enforced)) continue;
             for (const int id : report.annotations)
                 for (const Index v : vertices_of(space_.mesh, *space_.set.find(id))) {
                     flags.change[v] = true;
@@ -241,7 +245,12 @@ private:
         for (const Relationship& relationship : graph_.relationships) {
             if (!relationship.is_constraint) continue;
             statements_.push_back(semantic::understand(shape, relationship, tolerances_, graph_where_));
-            const semantic::Statement& statement = statements_.back();
+            result.constraints.push_back(semantic::report_of(relationship, statements_.back()));
+        }
+        let_levels_be_resized(shape, result);
+        for (std::size_t i = 0; i < statements_.size(); ++i) {
+            const semantic::Statement& statement = statements_[i];
+            const ConstraintReport& relationship = result.constraints[i];
             if (statement.reattachment && relationship.weight > 0)
                 for (const Annotation* feature : statement.reattachment->features)
                     for (const Index v : vertices_of(space_.mesh, *feature)) {
@@ -252,7 +261,31 @@ private:
                                             std::to_string(other->second) + ", seated as well",
                                         "seat one of them, or make one annotation of both");
                     }
-            result.constraints.push_back(semantic::report_of(relationship, statement));
+        }
+    }
+
+    /// Parts on one level keep their shape; but their size only where no other constraint changes it, and where the constraint
+    /// does not say itself how they are kept.
+    void let_levels_be_resized(const semantic::Shape& shape, const DeformResult& result) {
+        std::set<int> resized;
+        for (std::size_t i = 0; i < statements_.size(); ++i)
+            if (statements_[i].resizes && result.constraints[i].used)
+                resized.insert(result.constraints[i].annotations.begin(), result.constraints[i].annotations.end());
+        std::size_t place = 0;
+        for (const Relationship& relationship : graph_.relationships) {
+            if (!relationship.is_constraint) continue;
+            const std::size_t i = place++;
+            if (relationship.type != "same level" ||
+                std::none_of(relationship.annotations.begin(), relationship.annotations.end(),
+                             [&](int id) { return resized.count(id) > 0; }))
+                continue;
+            Json parameters = relationship.constraint.empty() ? Json(rapidjson::kObjectType)
+                                                              : parse_json(relationship.constraint, graph_where_);
+            if (parameters.HasMember("shapes")) continue;
+            add_members(parameters, parameters.GetAllocator(), "shapes", "similar");
+            Relationship& similar = resized_levels_.emplace_back(relationship);
+            similar.constraint = to_compact_text(parameters);
+            statements_[i] = semantic::understand(shape, similar, tolerances_, graph_where_);
         }
     }
 
@@ -470,6 +503,15 @@ private:
         return others;
     }
 
+    /// Vertices that the edit moves itself: its handles, or through a cage those of the parts that it names, unless these are
+    /// most of the object.
+    [[nodiscard]] std::vector<bool> handles_on_mesh() const {
+        if (space_.cage == nullptr) return last_.touched;
+        const auto named = static_cast<std::size_t>(std::count(last_.named.begin(), last_.named.end(), true));
+        if (2 * named <= last_.named.size()) return last_.named;
+        return std::vector<bool>(last_.named.size(), false);
+    }
+
     void solve_mesh(Outcome& outcome) {
         std::vector<std::unique_ptr<Constraint>> list;
         std::vector<bool> constrained(space_.mesh.number_of_vertices(), false);
@@ -477,10 +519,11 @@ private:
             for (const int v : constraint->ids()) constrained[static_cast<std::size_t>(v)] = true;
         for (const semantic::Sizes::Copy& copy : sizes_->copies())
             for (const int v : copy.ids) constrained[static_cast<std::size_t>(v)] = true;
+        const std::vector<bool> handles = handles_on_mesh();
         std::vector<int> free, held, yielding;
         for (const Vertex v : space_.mesh.vertices()) {
             if (space_.mesh.is_isolated(v)) continue;
-            const bool handle = space_.cage == nullptr && last_.touched[v], anchor = anchors_.count(v.idx()) > 0;
+            const bool handle = handles[v], anchor = anchors_.count(v.idx()) > 0;
             const bool stands = handle || (referred_.count(v.idx()) > 0 && rotating_.count(v.idx()) == 0);
             (anchor || (stands && !constrained[v]) ? held : handle ? yielding : free).push_back(static_cast<int>(v.idx()));
         }
@@ -705,6 +748,7 @@ private:
     Mesh edited_mesh_;
     Points edited_;
     std::vector<semantic::Statement> statements_;  ///< of the constraints in the report
+    std::deque<Relationship> resized_levels_;      ///< that statements refer to
     std::vector<std::unique_ptr<Constraint>> lowered_;
     std::vector<std::unique_ptr<Constraint>> support_;
     std::vector<std::size_t> owner_;  ///< of each lowered constraint, in the report

@@ -245,7 +245,31 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     };
     const auto ratio = [=](const State& s) { return part->gauge().value(s) / other.value(s); };
     statement.measure = within(range, ratio, part);
-    if (tapes || read->follows()) return statement;
+    if (tapes) return statement;
+    if (read->follows()) {
+        // Each of them by its own measure: that of the leader stays, the other one's is a multiple of it.
+        const auto reference = std::make_shared<const Stretch>(read, 1, other);
+        for (const std::size_t i : {0U, 1U}) {
+            const Stretch& one = i == 0 ? *part : *reference;
+            const Gauge gauge = one.gauge(), partner = i == 0 ? other : part->gauge();
+            statement.sized.push_back(one.sized());
+            Sized& sized = statement.sized.back();
+            sized.value = [=](const State& s) { return gauge.value(s); };
+            const auto from = [=](double led) {
+                return i == 0 ? std::pair(range.min * led, range.max * led) : std::pair(led / range.max, led / range.min);
+            };
+            sized.range = [=](const State& s) {
+                const double own = gauge.value(s);
+                return i == 0 ? from(partner.value(s)) : std::pair(own, own);
+            };
+            sized.led = [=](const State& edited) -> std::optional<std::pair<double, double>> {
+                const auto leader = read->leader(edited);
+                if (!leader) return {};
+                return *leader == i ? std::pair(gauge.value(edited), gauge.value(edited)) : from(partner.value(edited));
+            };
+        }
+        return statement;
+    }
     statement.sized.push_back(part->sized());
     statement.sized.back().value = ratio;
     statement.sized.back().range = [=](const State&) { return std::pair(range.min, range.max); };
@@ -303,9 +327,15 @@ Statement same_measure(const ReaderPtr& read, const RelationOptions& tolerances)
         return verdict_of({worst});
     };
     const bool tapes = std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part->gauge().is_tape(); });
-    if (tapes || read->follows()) return statement;
+    if (tapes) return statement;
     for (const auto& part : parts) {
         statement.sized.push_back(part->sized());
+        statement.sized.back().led = [=](const State& edited) -> std::optional<std::pair<double, double>> {
+            const auto leader = read->leader(edited);
+            if (!leader) return {};
+            const double size = parts[*leader]->gauge().value(edited);
+            return std::pair(size, size);
+        };
         statement.sized.back().value = [part](const State& s) { return part->gauge().value(s); };
         statement.sized.back().range = [mean](const State& s) { return std::pair(mean(s), mean(s)); };
     }

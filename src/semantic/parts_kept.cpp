@@ -224,8 +224,13 @@ Statement keep_position(const ReaderPtr& read, const RelationOptions& tolerances
     const Vector3d place = read->vector("point").value_or(mean_of(vertices, read->shape().rest));
     Statement statement;
     if (!read->has("point")) statement.keeps = "its place";
-    // The part as the edit leaves it, moved as a whole.
-    statement.lower = [=](const State& edited, const State&) {
+    statement.lower = [=](const State&, const State&) {
+        ConstraintParameters parameters;
+        parameters.point = place;
+        return only(read->make("MeanPosition", ids_of(vertices), parameters, static_cast<double>(vertices.size())));
+    };
+    // The part as the edit leaves it moves as a whole, as far as other constraints let it.
+    statement.support = [=](const State& edited, const State&) {
         ConstraintParameters parameters;
         const Vector3d way = place - mean_of(vertices, edited.points);
         parameters.target.emplace(3, static_cast<Eigen::Index>(vertices.size()));

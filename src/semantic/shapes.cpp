@@ -50,11 +50,19 @@ std::vector<Index> base_of(const Points& rest, const std::vector<Index>& vertice
 }
 
 /// What stands for the height of a part, where it is solved for, seated and measured alike: the centroid of its area (of a line's
-/// length, of points), or the mean of some of its vertices.
+/// length, of points), or the mean of some of its vertices. Of a base these are others where the part has turned.
 struct LevelReference {
     const Annotation* part;
     std::vector<Index> vertices;
     bool centroid;
+    bool base = false;
+
+    /// On another state of the shape.
+    [[nodiscard]] LevelReference on(const Mesh& mesh, const Points& points, const Vector3d& up) const {
+        LevelReference now = *this;
+        if (base) now.vertices = base_of(points, vertices_of(mesh, *part), up);
+        return now;
+    }
 
     /// Of each vertex in the mean.
     [[nodiscard]] std::vector<double> weights(const Mesh& mesh) const {
@@ -90,7 +98,7 @@ std::vector<LevelReference> level_references(const Reader& read, const std::stri
         std::vector<Index> vertices = read.vertices(i);
         if (reference == "base") vertices = base_of(read.shape().rest, vertices, up);
         if (reference == "vertex") vertices = {reference_vertex(read.shape().rest, vertices)};
-        list.push_back({&read.member(i), std::move(vertices), reference == "mean"});
+        list.push_back({&read.member(i), std::move(vertices), reference == "mean", reference == "base"});
     }
     return list;
 }
@@ -100,7 +108,7 @@ double apart(const std::vector<LevelReference>& references, const Vector3d& up, 
              const std::vector<Vector3d>& rest = {}) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t i = 0; i < references.size(); ++i) {
-        const Vector3d place = references[i].place(state.mesh, state.points);
+        const Vector3d place = references[i].on(state.mesh, state.points, up).place(state.mesh, state.points);
         const double height = up.dot(rest.empty() ? place : Vector3d(place - rest[i]));
         low = std::min(low, height), high = std::max(high, height);
     }
@@ -109,15 +117,16 @@ double apart(const std::vector<LevelReference>& references, const Vector3d& up, 
 
 /// The constraint on the heights of references; with places at rest, their differences are those.
 std::unique_ptr<Constraint> level_of(const Reader& read, const std::vector<LevelReference>& references, const Vector3d& up,
-                                     const Mesh& weighted_on, const std::vector<Vector3d>& rest) {
+                                     const Mesh& weighted_on, const State& now, const std::vector<Vector3d>& rest) {
     ConstraintParameters level;
     level.direction = up;
     std::vector<int> ids;
     for (std::size_t i = 0; i < references.size(); ++i) {
-        const std::vector<double> weights = references[i].weights(weighted_on);
+        const LevelReference reference = references[i].on(now.mesh, now.points, up);
+        const std::vector<double> weights = reference.weights(weighted_on);
         for (std::size_t k = 0; k < weights.size(); ++k) {
             if (!(weights[k] > 0)) continue;
-            ids.push_back(static_cast<int>(references[i].vertices[k]));
+            ids.push_back(static_cast<int>(reference.vertices[k]));
             level.stations.push_back(static_cast<int>(i));
             level.coefficients.push_back(weights[k]);
         }
@@ -182,7 +191,7 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
 Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
     const Vector3d up = read->up();
-    const std::string shapes = read->word("shapes", "keep", {"keep", "free", "seat"});
+    const std::string shapes = read->word("shapes", "keep", {"keep", "similar", "free", "seat"});
     // The thesis takes a reference vertex of each part, whose place on the part is as fine as the mesh: at rest such vertices are
     // not on one level themselves. Centroids of parts are.
     const std::string reference = read->word("reference", "mean", {"mean", "vertex", "base"});
@@ -205,8 +214,9 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     } else {
         read->read_leader();
         // Rigid parts have the centroid of their vertices as they weigh at rest; of others the weights follow.
-        const bool rigid = shapes == "keep";
-        statement.follows = !rigid && reference == "mean";
+        const bool rigid = shapes != "free";
+        const char* const kind = shapes == "similar" ? "Similarity" : "Rigid";
+        statement.follows = (!rigid && reference == "mean") || reference == "base";
         statement.lower = [=](const State& edited, const State& now) {
             const auto leader = read->leader(edited);
             Statement::Constraints list;
@@ -214,8 +224,8 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
             if (rigid)
                 for (std::size_t i = 0; i < read->members(); ++i)
                     if (const auto ids = ids_of(read->vertices(i)); i != leader && ids.size() > 1)
-                        list.push_back(read->make("Rigid", ids, {}));
-            list.push_back(level_of(*read, *references, up, rigid ? read->shape().mesh : now.mesh, places));
+                        list.push_back(read->make(kind, ids, {}));
+            list.push_back(level_of(*read, *references, up, rigid ? read->shape().mesh : now.mesh, now, places));
             return list;
         };
     }

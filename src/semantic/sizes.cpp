@@ -39,6 +39,7 @@ Sizes::Sizes(std::vector<const Sized*> parts, const Shape& shape, const State& e
         for (const Index v : parts_[i]->vertices) asked += edited.asked.empty() || edited.asked[v] ? 1 : 0;
         // A part that only gave way to its neighbours is as it was.
         start_.push_back(2 * asked >= parts_[i]->vertices.size() ? edited.points : shape.rest);
+        led_.push_back(parts_[i]->led ? parts_[i]->led(edited) : std::nullopt);
     }
     factors_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
     renew_maps();
@@ -60,7 +61,7 @@ Eigen::VectorXd Sizes::errors(const State& now) const {
     Eigen::VectorXd list(static_cast<Eigen::Index>(parts_.size()));
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const double value = parts_[i]->value(now);
-        const auto [low, high] = parts_[i]->range(now);
+        const auto [low, high] = led_[i] ? *led_[i] : parts_[i]->range(now);
         constexpr double far = 5;  // of what has vanished
         list[static_cast<Eigen::Index>(i)] =
             value > 0 ? std::clamp(std::log(value / std::clamp(value, low, high)), -far, far) : -far;

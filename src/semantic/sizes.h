@@ -41,8 +41,9 @@ private:
     std::vector<std::vector<std::size_t>> in_;  ///< other parts that hold each
     std::vector<int> owner_;                    ///< of each vertex, -1 for none
     std::vector<Eigen::Matrix3d> maps_;
-    Eigen::VectorXd factors_, errors_, step_;  ///< logarithms
-    Eigen::MatrixXd slopes_;                   ///< of measures by factors
+    std::vector<std::optional<std::pair<double, double>>> led_;  ///< ranges that a part gives that the edit leads
+    Eigen::VectorXd factors_, errors_, step_;                    ///< logarithms
+    Eigen::MatrixXd slopes_;                                     ///< of measures by factors
 };
 
 /// Whether no shape can have both: all of the part's vertices are the whole's, along the same axis, and more is asked of the part

@@ -76,7 +76,7 @@ Statement understand(const Shape& shape, const Relationship& relationship, const
         return statement;
     }
     statement.hard = read->flag("hard");
-    statement.left_alone = statement.left_alone || (statement.hard && !statement.sized.empty());
+    statement.left_alone = statement.left_alone || (statement.hard && !statement.sized.empty() && !read->follows());
     read->refuse_others();
     return statement;
 }

@@ -44,6 +44,8 @@ struct Sized {
     bool extent = false;          ///< the measure is how far the vertices reach along the axis, and its range does not change
     std::function<double(const State& deformed)> value;
     std::function<std::pair<double, double>(const State& deformed)> range;
+    /// Where it follows a part that the edit leads: the range that this one gives it; none where nothing leads. May be empty.
+    std::function<std::optional<std::pair<double, double>>(const State& edited)> led = {};
 };
 
 struct Statement {

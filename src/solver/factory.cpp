@@ -96,6 +96,7 @@ const std::vector<Entry>& table() {
         {{"AxisDirection", 2, 0}, make_axis_direction},
         {{"AxisOnLine", 1, 0}, make_axis_on_line},
         {{"MeansOnLevel", 2, 0}, make_means_on_level},
+        {{"MeanPosition", 1, 0}, make_mean_position},
         {{"MirrorSymmetry", 2, 0}, make_mirror_symmetry},
         {{"Proportion", 2, 0}, make_proportion},
         {{"Angle", 3, 3}, make_angle},

@@ -66,6 +66,7 @@ std::unique_ptr<Constraint> make_axis_direction(Making&&);
 // placement.cpp
 std::unique_ptr<Constraint> make_axis_on_line(Making&&);
 std::unique_ptr<Constraint> make_means_on_level(Making&&);
+std::unique_ptr<Constraint> make_mean_position(Making&&);
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&&);
 std::unique_ptr<Constraint> make_proportion(Making&&);
 // edges.cpp

@@ -18,6 +18,7 @@ protected:
     StationMeans(const Making& m, const std::vector<double>& shares, const std::vector<double>& weights = {})
         : Constraint(m.kind, m.ids, m.weight) {
         std::vector<int> stations = m.parameters.stations;
+        if (m.kind == "MeanPosition") stations.assign(ids().size(), 0);
         if (stations.empty())
             for (std::size_t i = 0; i < ids().size(); ++i) stations.push_back(static_cast<int>(i));
         if (stations.size() != ids().size()) m.fail("there must be a station for each point");
@@ -99,6 +100,23 @@ public:
 private:
     Vector3d up_;
     Eigen::VectorXd heights_;  ///< of each group above their mean
+};
+
+/// The mean of all points at a given place.
+class MeanPosition final : public StationMeans {
+public:
+    MeanPosition(const Making& m, const Vector3d& place) : StationMeans(m, {}, m.parameters.coefficients), place_(place) {}
+    void project(const RowsIn& rows, RowsOut projected) const override { projected = place_.replicate(1, rows.cols()); }
+    [[nodiscard]] bool constant() const override { return true; }
+    [[nodiscard]] std::optional<Components> given_components() const override {
+        Components given;
+        given.directions = Matrix3d::Identity();
+        given.values = place_.replicate(1, map_.rows);
+        return given;
+    }
+
+private:
+    Vector3d place_;
 };
 
 /// Pairs of points that mirror each other: in a given plane (rows: the points), or in the best one (rows: the centred points),
@@ -314,6 +332,11 @@ std::unique_ptr<Constraint> make_axis_on_line(Making&& m) {
 }
 
 std::unique_ptr<Constraint> make_means_on_level(Making&& m) { return std::make_unique<MeansOnLevel>(m, m.direction()); }
+
+std::unique_ptr<Constraint> make_mean_position(Making&& m) {
+    const Vector3d place = m.point();
+    return std::make_unique<MeanPosition>(m, place);
+}
 
 std::unique_ptr<Constraint> make_mirror_symmetry(Making&& m) {
     if (!m.parameters.coefficients.empty()) {

@@ -80,6 +80,17 @@ TEST(AutomaticSpace, WithoutConstraintsIsTheEdit) {
     EXPECT_EQ(result.points, result.edited);
 }
 
+TEST(AutomaticSpace, ThroughACageThePartThatTheEditNamesIsMovedAsWithoutOne) {
+    // The constraint must not take half of the edit back, as if nothing held it.
+    const Caged& object = teapot();
+    const RelationGraph graph = one(constraint(0, "same level", {4, 14}, R"({"reference": "vertex", "hard": true})"));
+    const DeformResult result =
+        automatic(object.handles(), graph, R"({"select": {"annotation": "knob"}, "translate": [0, 0, 8]})");
+    EXPECT_EQ(result.space, DeformOptions::Space::mesh);
+    EXPECT_GT(result.followed.share, 0.9);
+    EXPECT_EQ(result.constraints[0].verdict, Verdict::holds);
+}
+
 TEST(AutomaticSpace, IsNeverWorseThanTheMesh) {
     // Two levels at once that the parts cannot have: nothing is acceptable, and the answer is that of the mesh or a better one.
     const Caged& object = teapot();

@@ -285,3 +285,62 @@ TEST(PartsKept, WhatMakesNoSenseIsRefused) {
     EXPECT_NE(said(constraint(0, "keep direction", {top}, R"({"angle": 120})")).find("angle"), std::string::npos);
     EXPECT_NE(said(constraint(0, "keep position", {top}, R"({"point": [1, 2]})")).find("three numbers"), std::string::npos);
 }
+
+TEST(PartsKept, TheirPlaceAndTheirShapeOrDirectionTogether) {
+    // Each holds with the part as it was; neither must pull the other half of the way.
+    const Column column;
+    const std::string bend = R"({"select": {"annotation": "shaft"}, "rotate": {"axis": [0, 1, 0], "angle": 8}})";
+    const Eigen::Vector3d place = column.mean(top, points_of(column.mesh));
+    for (const auto& [other, parameters] :
+         {std::pair{"keep shape", R"({"hard": true})"}, {"keep direction", R"({"hard": true, "angle": 0})"}}) {
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, other, {top}, parameters));
+        graph.relationships.push_back(constraint(1, "keep position", {top}, R"({"hard": true})"));
+        const DeformResult result =
+            deform({column.mesh, column.set}, graph, edit(bend), "e", DeformOptions(), deform_tolerances());
+        for (const ConstraintReport& one : result.constraints) EXPECT_EQ(one.verdict, Verdict::holds) << one.type;
+        EXPECT_TRUE(result.conflicts.empty()) << other;
+        EXPECT_LT((column.mean(top, result.points) - place).norm(), 1e-6) << other;
+    }
+}
+
+TEST(PartsKept, ABaseIsWhatIsLowestThen) {
+    // The parts are tilted, so that other vertices are lowest than at rest: the level is that of these.
+    Column column;
+    for (const bool hard : {true, false}) {
+        RelationGraph graph;
+        graph.relationships.push_back(
+            constraint(0, "same level", {left_line, right_line},
+                       hard ? R"({"reference": "base", "shapes": "free", "hard": true})" : R"({"reference": "base"})", 10));
+        const DeformResult result =
+            deform({column.mesh, column.set}, graph,
+                   edit(R"({"select": {"all": true}, "rotate": {"axis": [0, 1, 0], "angle": 10}})"), "e", DeformOptions());
+        const auto base = [&](int id) {
+            const auto vertices = vertices_of(column.mesh, *column.set.find(id));
+            double low = 1e300, high = -1e300, sum = 0, count = 0;
+            for (const Index v : vertices) low = std::min(low, result.points[v].z()), high = std::max(high, result.points[v].z());
+            for (const Index v : vertices)
+                if (result.points[v].z() <= low + 0.05 * (high - low)) sum += result.points[v].z(), ++count;
+            return sum / count;
+        };
+        const Deviation& said = result.constraints[0].deviations.front();
+        EXPECT_NEAR(*said.value, std::abs(base(left_line) - base(right_line)), 1e-9) << "they are on one level at rest";
+        if (hard) {
+            EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << *said.value;
+        }
+    }
+}
+
+TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
+    const Column column;
+    RelationGraph graph;
+    graph.relationships.push_back(constraint(0, "part similarity", {foot, top}, follows("true")));
+    graph.relationships.push_back(constraint(1, "same level", {foot, top}, R"({"hard": true})"));
+    const DeformResult result =
+        deform({column.mesh, column.set}, graph,
+               edit(R"({"select": {"annotation": "top"}, "scale": {"factor": 1.2, "centre": [0, 0, 8]}})"), "e");
+    const Mesh there = with_points(column.mesh, result.points);
+    for (const int id : {foot, top})
+        EXPECT_NEAR(area_of(there, column.set.find(id)->faces) / area_of(column.mesh, column.set.find(id)->faces), 1.44, 1e-3)
+            << id;
+}

@@ -129,6 +129,9 @@ TEST(Constraint, AdmitsWhatItsNameSays) {
         } else if (e.kind == "MeansOnLevel") {
             for (Eigen::Index i = 1; i < m.rows.cols(); ++i)
                 EXPECT_NEAR((m.rows.col(i) - m.rows.col(0)).dot(*e.parameters.direction), 0, 1e-12);
+        } else if (e.kind == "MeanPosition") {
+            EXPECT_EQ(m.rows.cols(), 1);
+            EXPECT_LT((m.rows.col(0) - *e.parameters.point).norm(), 1e-12);
         } else if (e.kind == "Proportion") {
             const Vector3d first = m.rows.col(1) - m.rows.col(0);
             const Vector3d second = e.parameters.absolute ? Vector3d::UnitX() : Vector3d(m.rows.rightCols<1>());
@@ -177,8 +180,8 @@ TEST(Constraint, ConstantsAreWhatTheyWereAtRest) {
         if (e.kind == "Laplacian" || e.kind == "CotangentLaplacian") {
             EXPECT_EQ(outcome(*c, e.points).projected.norm(), 0) << e.name;
         }
-        EXPECT_EQ(c->constant(),
-                  displacement || e.kind == "Closeness" || e.kind == "Laplacian" || e.kind == "CotangentLaplacian");
+        EXPECT_EQ(c->constant(), displacement || e.kind == "Closeness" || e.kind == "MeanPosition" || e.kind == "Laplacian" ||
+                                     e.kind == "CotangentLaplacian");
     }
 }
 

@@ -271,6 +271,11 @@ inline std::vector<Example> examples() {
         triangles(e);
         e.parameters.target = random_points(2, 81, 0.2);
     }
+    {
+        Example& e = add("MeanPosition", "MeanPosition", 6);
+        e.parameters.point = place;
+        e.parameters.coefficients = {1, 2, 1, 0.5, 1, 3};
+    }
     return list;
 }
 
