@@ -77,6 +77,38 @@ double volume(const Mesh& mesh, const Points& points) {
 
 }  // namespace
 
+void doubt_axes(const Reader& read, const State& deformed, double tolerance, Measured& measured) {
+    if (measured.verdict != Verdict::holds) return;
+    for (std::size_t i = 0; i < read.members(); ++i) {
+        const Annotation& part = read.member(i);
+        const Axis axis = axis_of_part(deformed.mesh, part);
+        if (!axis.found) continue;
+        Vector3d middle = Vector3d::Zero();
+        double area = 0;
+        for (const Index f : part.faces) {
+            const double own = face_area(deformed.mesh, Face(f));
+            middle += own * eigen(centroid(deformed.mesh, Face(f)));
+            area += own;
+        }
+        middle /= area;
+        Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+        for (const Index f : part.faces) {
+            const Vector3d from = eigen(centroid(deformed.mesh, Face(f))) - middle;
+            spread += face_area(deformed.mesh, Face(f)) / area * from * from.transpose();
+        }
+        const SymmetricEigen3 principal(spread);
+        if (!principal.found() || principal.eigenvalues()[2] < 4 * principal.eigenvalues()[1]) continue;
+        const Vector3d longest = principal.eigenvectors().col(2), own = eigen(axis.direction);
+        const double apart = std::atan2(longest.cross(own).norm(), std::abs(longest.dot(own))) / degree;
+        if (apart <= tolerance) continue;
+        measured.verdict = Verdict::unknown;
+        measured.text += (measured.text.empty() ? "" : "; ") + std::string("the axis of '") + printable(part.tag, 60) +
+                         "' is certain to " + digits(apart, 2) +
+                         " degrees only: so far are that of its slices and that of its area "
+                         "apart";
+    }
+}
+
 Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) {
     const std::vector<Axis> axes = axes_of_parts(*read);
     Statement statement;
@@ -122,7 +154,12 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
         }
         return list;
     };
-    statement.measure = as_related(read, read->relationship(), tolerances);
+    statement.measure = [read, related = as_related(read, read->relationship(), tolerances),
+                         tolerance = tolerances.angle](const State& deformed) {
+        Measured measured = related(deformed);
+        doubt_axes(*read, deformed, tolerance, measured);
+        return measured;
+    };
     return statement;
 }
 

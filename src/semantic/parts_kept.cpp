@@ -213,7 +213,9 @@ Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerance
             if (!axis.found) return {Verdict::unknown, {}, "a part has no axis any more: " + axis.reason};
             worst.value = std::max(*worst.value, std::abs(angle_to(axis) - parts[i].angle) / degree);
         }
-        return verdict_of({worst});
+        Measured measured = verdict_of({worst});
+        if (given >= 0) doubt_axes(*read, deformed, tolerances.angle, measured);  // else what is off at rest is off then, too
+        return measured;
     };
     return statement;
 }

@@ -285,6 +285,10 @@ inline Points columns_at(const Points& points, const std::vector<Index>& vertice
 }
 
 /// What relations measure for the type of this name.
+/// An angle of axes that is within its tolerance is not known to hold where the axis of a part is less certain than that: where
+/// that of its slices and the longest principal axis of its area are farther apart, in a part at least twice as long as wide.
+void doubt_axes(const Reader& read, const State& deformed, double tolerance, Measured& measured);
+
 std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances);
 /// The mean of vertices, and the unit normal of the plane that fits them.
 Vector3d mean_of(const std::vector<Index>& vertices, const Points& points);
