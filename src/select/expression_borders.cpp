@@ -210,6 +210,7 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
         const double radius = length((*value)["radius"].GetDouble(), frame);
         add_level(mesh_, distances_within(mesh_, brush_centres(*value, frame, here), radius), radius, false, borders.curves);
     } else if (kind == "lasso" && !keeps_to_edges(*value)) {
+        static_cast<void>(faces(expression, around, at));  // refuses one that crosses itself, or has its seed on the outline
         const std::vector<Index> points = picks((*value)["points"], frame, here + "/points");
         auto& legs = borders.lassos[here];
         for (std::size_t i = 0; i < points.size(); ++i) {

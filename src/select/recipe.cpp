@@ -253,7 +253,7 @@ private:
                          const std::string& here, Outline outline) {
         const Annotation before = annotation;
         const bool was_free = is_free(before);
-        if (outline == Outline::drawn && action != "replace") outline = was_free ? Outline::free : Outline::edges;
+        if (outline == Outline::drawn && action != "replace" && !before.all) outline = was_free ? Outline::free : Outline::edges;
         if (annotation.type == AnnotationType::region) {
             auto region = region_where_drawn(select, frame, here, outline, action, &before);
             if (region) {

@@ -128,7 +128,8 @@ std::array<double, 3> PlaceMapping::on_longest_edge(Index face, std::array<doubl
 bool PlaceMapping::is_mutual(const MappedPlace& one) const {
     const std::vector<Face> own = faces_of(source_, one.from);
     const auto faces_up = [&](Index f) { return on_source_->normal(f) * one.up >= min_cosine_; };
-    if (std::none_of(own.begin(), own.end(), faces_up)) return false;
+    // On the rim of a fold the line may as well pass by.
+    if (!std::all_of(own.begin(), own.end(), faces_up)) return false;
     const double at = std::abs((one.from.point - one.to.point) * one.up), tolerance = 1e-4 * edge_;
     for (const SurfaceHit& hit : on_source_->line_hits(one.to.point, one.up, at))
         if (std::abs(hit.distance) < at - tolerance && faces_up(hit.face)) return false;

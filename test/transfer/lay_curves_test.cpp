@@ -154,7 +154,7 @@ TEST(LayCurves, LabelsOfAPartitionBecomeFree) {
     };
     for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_TRUE(is_free(one));
     const double free = worst_perimeter();
-    EXPECT_LT(free, 0.01);
+    EXPECT_LT(free, 0.03);  // of the two meshes, which share no vertex
     // Others stay as they are: what is asked for, and what leaves a gap.
     options.outlines = TransferOptions::Outlines::kept;
     for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
