@@ -137,6 +137,23 @@ double area_of(const Mesh& mesh, const Annotation& annotation) {
     return is_free(annotation) ? filling_of(mesh, annotation).area(mesh) : area_of(mesh, annotation.faces);
 }
 
+std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region) {
+    std::vector<std::pair<Index, double>> shares;
+    if (!is_free(region)) {
+        for (const Index f : region.faces) shares.emplace_back(f, 1.0);
+        return shares;
+    }
+    const CurveFilling filling = filling_of(mesh, region);
+    auto cut = filling.cut.begin();
+    for (Index f = 0; f < filling.sides.size(); ++f) {
+        if (filling.sides[f] == FaceSide::in) shares.emplace_back(f, 1.0);
+        if (filling.sides[f] != FaceSide::cut) continue;
+        while (cut->first != f) ++cut;
+        shares.emplace_back(f, cut->second);
+    }
+    return shares;
+}
+
 double length_of(const Mesh& mesh, const Annotation& annotation) {
     double sum = 0;
     if (is_free(annotation)) {

@@ -160,7 +160,10 @@ AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation) {
         case AnnotationType::region: {
             const RegionMeasures measures = measure_region(mesh, annotation);
             summary.elements = annotation.faces.size();
-            summary.patches = std::max<std::size_t>(is_free(annotation) ? 1 : 0, count_patches(mesh, annotation.faces));
+            // Faces that a curve cuts may hold parts together which faces of the nearer side do not.
+            std::vector<Index> touched;
+            for (const auto& [face, share] : face_shares(mesh, annotation)) touched.push_back(face);
+            summary.patches = count_patches(mesh, touched);
             summary.outlines = is_free(annotation) ? annotation.curves.size() : extract_outlines(mesh, annotation.faces).size();
             summary.area = measures.area;
             summary.length = measures.perimeter;

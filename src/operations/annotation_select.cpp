@@ -71,6 +71,7 @@ struct AnnotationSelect final : Operation {
         const Path folder = start.folder;
         AnnotationSet set;
         context.record([&] { set = follow_recipe(now, file.mesh, std::move(start), "selection"); });
+        context.notes("", set.notes);
         report_result(report, file.mesh, set, made["id"].GetInt());
 
         const std::string text = to_text(steps);

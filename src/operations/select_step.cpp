@@ -80,7 +80,9 @@ void SelectStep::describe(OptionList& visit) {
     visit("id", id, "its id; a free one if it is new and none is given");
     visit("type", type, "of a new one; else what the tool selects", Choices{"point", "line", "region"});
     visit("outline", outline,
-          "along the edges of the mesh, or free: as drawn, through its faces; of an edited one as it is, of a new one edges",
+          "free: through the faces of the mesh; edges: along its edges; if left out, an edited one is as it is, and a new region "
+          "free where its border is a level (of a volume, a picture's, a threshold's on vertices, a brush's, a lasso's, a "
+          "distance's), along the edges where it is a set of faces; lines run along the edges",
           Choices{"edges", "free"});
     visit("colour", colour, "red,green,blue", Range{0, 255});
     visit("action", action, "what to do with the annotation of this id",
@@ -286,8 +288,7 @@ Json SelectStep::step(const AnnotationSet& set) const {
     if (!colour.empty()) add_members(document, a, "colour", colour);
     const char* made = !path.empty() ? "line" : nearest.empty() && vertices.empty() ? "region" : "point";
     if (makes) add_members(document, a, "type", type.value_or(made));
-    if (outline && action != "delete" && action != "retag" && (*outline == "free" || !makes))
-        add_members(document, a, "outline", *outline);
+    if (outline && action != "delete" && action != "retag") add_members(document, a, "outline", *outline);
     if (action != "delete" && action != "retag")
         add_members(document, a, "frame", frame, "select", StepWriter(*this, a).selected());
     return document;

@@ -1,5 +1,6 @@
 #include "ostraka/reconstruction/annotation_matches.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
 #include "ostraka/relation/topology.h"
@@ -42,8 +43,8 @@ std::vector<Portrait> portraits(const Mesh& mesh, const AnnotationSet& set, cons
             weight += w;
         };
         if (annotation.type == AnnotationType::region) {
-            for (const Index face : annotation.faces) {
-                const double area = face_area(mesh, Face(face)) * pose.scale * pose.scale;
+            for (const auto& [face, share] : face_shares(mesh, annotation)) {
+                const double area = share * face_area(mesh, Face(face)) * pose.scale * pose.scale;
                 portrait.extent += area;
                 add(pose(eigen(centroid(mesh, Face(face)))), area);
             }

@@ -1,4 +1,5 @@
 #include "parts.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/dense.h"
 
 #include <map>
@@ -60,18 +61,16 @@ const Vector3d& Part::centroid() {
 
 double Part::area() {
     if (area_) return *area_;
-    double sum = 0;
-    if (annotation_.type == AnnotationType::region)
-        for (const double weight : cloud().weights) sum += weight;
-    return area_.emplace(sum);
+    return area_.emplace(area_of(mesh_, annotation_));
 }
 
 const std::vector<Vector3d>& Part::samples() {
     if (samples_) return *samples_;
     const std::size_t maximum = 500;
     std::vector<Vector3d> list;
-    const double total = area();
-    double passed = 0;
+    double total = 0, passed = 0;
+    if (annotation_.type == AnnotationType::region)
+        for (const double weight : cloud().weights) total += weight;
     for (std::size_t i = 0; i < cloud().points.size() && total > 0; ++i) {
         passed += cloud().weights[i];
         if (cloud().points.size() <= maximum || passed / total * double(maximum) >= double(list.size()) + 0.5)

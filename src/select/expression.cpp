@@ -29,12 +29,12 @@ bool visible_only(const JsonValue& value) {
     return visible == nullptr || visible->GetBool();
 }
 
+}  // namespace
+
 PathMetric metric_of(const JsonValue& value) {
     const std::string metric = text_in(value, "metric");
     return path_metric(metric.empty() ? "euclidean" : metric);
 }
-
-}  // namespace
 
 std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression) {
     for (const auto& member : expression.GetObject()) {
@@ -164,7 +164,8 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
                                  level->above ? ScalarRange{level->level, infinite} : ScalarRange{-infinite, level->level});
         }
     // What runs along the edges of the mesh is asked there.
-    if (whole_ != nullptr && (kind == "segments" || kind == "grow" || kind == "shrink" || kind == "faces"))
+    if (whole_ != nullptr && (kind == "segments" || kind == "grow" || kind == "shrink" || kind == "faces" ||
+                              (kind == "lasso" && whole_->keeps_to_edges(*value))))
         return faces_of_origin(whole_->faces(expression, around, at));
     if (is_reckoned(kind)) return reckoned_faces(kind, *value, frame, at + '/' + kind);
     if (whole_ != nullptr && kind == "lasso") return lassoed(*value, frame, at + "/lasso");

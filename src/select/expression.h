@@ -5,6 +5,7 @@
 
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/json.h"
+#include "ostraka/geom/shortest_path.h"
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/select/scalars.h"
 #include "ostraka/select/screen.h"
@@ -65,6 +66,14 @@ public:
     /// The lines of an expression as geodesics.
     std::vector<std::vector<SurfacePlace>> curves(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
+    /// Whether a part of the border of these faces is a level of a field, which runs through the faces: of volumes, of what is
+    /// drawn on pictures, thresholds on vertices, brushes, lassos along geodesics, growth by a distance, and of regions that are
+    /// free. All others are sets of faces.
+    bool ends_at_levels(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
+
+    /// From now on borders of sets of faces run along the edges of the mesh, or (as at first) at isolines.
+    void keep_face_sets(bool along_edges) { face_sets_along_edges_ = along_edges; }
+
     /// The faces of an expression where its borders are, on the mesh cut along them.
     CutSelection cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
 
@@ -108,10 +117,13 @@ private:
     std::vector<Index> brush_centres(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     bool on_faces(const JsonValue& threshold, PlaceFrame frame, const std::string& at) const;
     /// Of what is grown or shrunk by a distance: the exact geodesic distance from its border, below 0 inside. Of what is chosen
-    /// face by face (segments, labels, thresholds on faces, growth by rings): the share of the faces' area around each vertex
-    /// that is, where a vertex has half; otherwise, and of other kinds, nothing. Kept by the place in the recipe.
+    /// face by face (segments, labels, thresholds on faces, growth by rings), unless that keeps to the edges: the share of the
+    /// faces' area around each vertex that is, where a vertex has half; otherwise, and of other kinds, nothing. Kept by the
+    /// place in the recipe.
     const SelectionLevel* level_of(const JsonValue& expression, PlaceFrame frame, const std::string& at) const;
     std::vector<bool> faces_of_origin(const std::vector<bool>& whole) const;
+    /// Whether this lasso runs along the edges of the mesh, of which its metric speaks.
+    bool keeps_to_edges(const JsonValue& lasso) const;
     std::vector<bool> lassoed(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     ScalarMap scalar(const JsonValue& value, PlaceFrame frame, const std::string& at) const;
     const ScalarMap& thickness_map() const;
@@ -125,6 +137,7 @@ private:
     std::pair<std::string, const JsonValue*> only_kind(const JsonValue& expression, const std::string& at) const;
     [[noreturn]] void fail(const std::string& at, const std::string& what, const std::string& remedy) const;
 
+    bool face_sets_along_edges_ = false;
     const ExpressionEvaluator* whole_ = nullptr;  ///< of the mesh that was cut, if this one is
     const CutMesh* cut_ = nullptr;
     const SelectionBorders* borders_ = nullptr;
@@ -144,5 +157,8 @@ private:
 
 /// The kind of an expression (its member that is not "frame") and its value.
 std::pair<std::string, const JsonValue*> kind_of(const JsonValue& expression);
+
+/// The metric of a path or lasso.
+PathMetric metric_of(const JsonValue& value);
 
 }  // namespace ostraka

@@ -209,7 +209,8 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
     } else if (kind == "brush") {
         const double radius = length((*value)["radius"].GetDouble(), frame);
         add_level(mesh_, distances_within(mesh_, brush_centres(*value, frame, here), radius), radius, false, borders.curves);
-    } else if (kind == "lasso") {
+    } else if (kind == "lasso" && !keeps_to_edges(*value)) {
+        static_cast<void>(faces(expression, around, at));  // refuses one that crosses itself, or has its seed on the outline
         const std::vector<Index> points = picks((*value)["points"], frame, here + "/points");
         auto& legs = borders.lassos[here];
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -231,6 +232,34 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
             add_borders((*value)[i], frame, here + '/' + std::to_string(i), borders);
     }
     // Others run along the edges of the mesh.
+}
+
+bool ExpressionEvaluator::ends_at_levels(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
+    const PlaceFrame frame = frame_of(expression, around);
+    const auto [kind, value] = only_kind(expression, at);
+    const std::string here = at + '/' + kind;
+    if (kind == "box" || kind == "sphere" || kind == "halfspace" || kind == "rectangle" || kind == "polygon" || kind == "brush")
+        return true;
+    if (kind == "threshold") return !on_faces(*value, frame, here);
+    if (kind == "lasso") return metric_of(*value) == PathMetric::euclidean;
+    if (kind == "grow" || kind == "shrink") return by_distance(*value, here);
+    if (kind == "invert") return ends_at_levels(*value, frame, here);
+    if (kind == "annotation") {
+        const Annotation* found = set_.find(value->GetInt());
+        return found != nullptr && is_free(*found);
+    }
+    if (kind == "component") {
+        const JsonValue* of = find_member(*value, "of");
+        return of != nullptr && ends_at_levels(*of, frame, here + "/of");
+    }
+    if (kind != "union" && kind != "intersection" && kind != "difference") return false;
+    for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
+        if (ends_at_levels((*value)[i], frame, here + '/' + std::to_string(i))) return true;
+    return false;
+}
+
+bool ExpressionEvaluator::keeps_to_edges(const JsonValue& lasso) const {
+    return face_sets_along_edges_ && metric_of(lasso) != PathMetric::euclidean;
 }
 
 CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, PlaceFrame frame, const std::string& at) const {
@@ -259,6 +288,7 @@ const SelectionLevel* ExpressionEvaluator::level_of(const JsonValue& expression,
     const bool grows = kind == "grow" || kind == "shrink";
     if (!grows && kind != "segments" && kind != "labels" && (kind != "threshold" || !on_faces(*value, frame, here)))
         return nullptr;
+    if (face_sets_along_edges_ && !(grows && by_distance(*value, here))) return nullptr;
     const auto [entry, fresh] = levels_.try_emplace(at);
     std::optional<SelectionLevel>& known = entry->second;
     if (fresh && grows && by_distance(*value, here)) {

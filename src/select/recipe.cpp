@@ -23,6 +23,13 @@ AnnotationType type_of(const std::string& name) {
     return name == "point" ? AnnotationType::point : name == "line" ? AnnotationType::line : AnnotationType::region;
 }
 
+/// How the outline of a region runs.
+enum class Outline {
+    drawn,  ///< free, where a part of its border is the level of a field; sets of faces end along the edges of the mesh
+    edges,
+    free,  ///< everywhere: sets of faces end at isolines
+};
+
 /// Members of a recipe must all be understood: a misspelt one would silently change the outcome.
 class RecipeRunner {
 public:
@@ -110,11 +117,45 @@ private:
         return annotation;
     }
 
+    /// The outline that a step asks for; of one that does not say, `drawn`.
+    static Outline outline_of(const JsonValue& step) {
+        const std::string asked = text_in(step, "outline");
+        return asked == "free" ? Outline::free : asked == "edges" ? Outline::edges : Outline::drawn;
+    }
+
+    /// A region of a step that asks for this outline, joined with one that is given. Where a free one cannot be made it runs
+    /// along the edges of the mesh, which is noted; nothing, where the outline is not to be free or `given` has no edges.
+    std::optional<Annotation> region_where_drawn(const JsonValue& select, PlaceFrame frame, const std::string& here,
+                                                 Outline outline, const std::string& action, const Annotation* given) {
+        if (outline == Outline::edges) return std::nullopt;
+        if (outline == Outline::drawn && !evaluator_.ends_at_levels(select, frame, here)) return std::nullopt;
+        evaluator_.keep_face_sets(outline == Outline::drawn);
+        try {
+            return selected_free(select, frame, here, action, given);
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled || error.kind() == ErrorKind::usage) throw;
+            not_free_ = error.problem();
+            return std::nullopt;
+        }
+    }
+
+    /// Says of an annotation that its outline was to be free and is not.
+    void note_edges(const Annotation& annotation) {
+        if (not_free_.empty()) return;
+        set_.notes.push_back(name_of(annotation) +
+                             ": its outline runs along the edges of the mesh, since no free one could be made (" + not_free_ +
+                             ")");
+        not_free_.clear();
+    }
+
     /// Faces, poly-lines or points of a step, in an annotation of this type.
-    Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here, bool free) {
-        if (free)
-            return type == AnnotationType::region ? selected_free(select, frame, here, "make", nullptr)
-                                                  : drawn_free(type, select, frame, here);
+    Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here,
+                        Outline outline) {
+        if (type == AnnotationType::region) {
+            if (auto region = region_where_drawn(select, frame, here, outline, "make", nullptr)) return std::move(*region);
+        } else if (outline == Outline::free) {
+            return drawn_free(type, select, frame, here);
+        }
         Annotation annotation;
         annotation.type = type;
         if (type == AnnotationType::region) {
@@ -149,10 +190,11 @@ private:
                  "give each annotation its own (free is " + to_string(free_id(set_)) +
                      "), or an action such as 'add to' that edits the older one");
         Annotation annotation =
-            selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select", wants_free(step));
+            selected(type_of(step["type"].GetString()), step["select"], frame, at + "/select", outline_of(step));
         annotation.id = id;
         annotation.colour = fresh_colour(mesh_, set_, annotation);
         set_looks(annotation, step);
+        note_edges(annotation);
         if (const JsonValue* attributes = find_member(step, "attributes"))
             add_attributes(annotation, *attributes, frame, at + "/attributes");
         set_.annotations.push_back(std::move(annotation));
@@ -182,18 +224,7 @@ private:
         Annotation annotation = *found;
         if (changes) {
             const std::string here = at + "/select";
-            const bool free = wants_free(step) || (is_free(annotation) && text_in(step, "outline").empty());
-            if (annotation.type == AnnotationType::region && free) {
-                const Annotation region = selected_free(*select, frame, here, action, found);
-                annotation.faces = region.faces;
-                annotation.curves = region.curves;
-                annotation.all = region.all;
-            } else {
-                const Annotation part = selected(annotation.type, *select, frame, here, free);
-                // Lines of which one is free are free: along the edges if need be.
-                if (free || is_free(annotation)) change_curves(annotation, action, part, here);
-                else change(annotation, action, part);
-            }
+            change_elements(annotation, action, *select, frame, here, outline_of(step));
             if (annotation.faces.empty() && annotation.polylines.empty() && annotation.points.empty() && !is_free(annotation))
                 fail(here, "leaves nothing of annotation " + to_string(id), "select less, or use the action 'delete'");
             for (Attribute& attribute : annotation.attributes)
@@ -216,15 +247,39 @@ private:
         *set_.find(id) = std::move(annotation);
     }
 
-    static bool wants_free(const JsonValue& step) { return text_in(step, "outline") == "free"; }
+    /// What an edit selects, added, taken away or put in the place of what there was. An edited outline stays what it is, free or
+    /// along the edges; one that is replaced is as a new one.
+    void change_elements(Annotation& annotation, const std::string& action, const JsonValue& select, PlaceFrame frame,
+                         const std::string& here, Outline outline) {
+        const Annotation before = annotation;
+        const bool was_free = is_free(before);
+        if (outline == Outline::drawn && action != "replace" && !before.all) outline = was_free ? Outline::free : Outline::edges;
+        if (annotation.type == AnnotationType::region) {
+            auto region = region_where_drawn(select, frame, here, outline, action, &before);
+            if (region) {
+                annotation.faces = std::move(region->faces);
+                annotation.curves = std::move(region->curves);
+                annotation.all = region->all;
+                return;
+            }
+            const Annotation part = selected(annotation.type, select, frame, here, Outline::edges);
+            note_edges(annotation);
+            annotation.curves.clear();
+            change(annotation, action, part);
+            return;
+        }
+        const bool free = outline == Outline::free || (was_free && outline == Outline::drawn);
+        const Annotation part = selected(annotation.type, select, frame, here, free ? Outline::free : Outline::edges);
+        // Lines of which one is free are free: along the edges if need be.
+        if (free || was_free) change_curves(annotation, action, part, here);
+        else change(annotation, action, part);
+    }
 
     void change_curves(Annotation& annotation, const std::string& action, const Annotation& part, const std::string& here) const {
-        if (action == "replace" || (annotation.type == AnnotationType::region)) {
-            annotation.faces = part.faces;
+        if (action == "replace") {
             annotation.polylines = part.polylines;
             annotation.points = part.points;
             annotation.curves = part.curves;
-            annotation.all = part.all;
             return;
         }
         if (action != "add to")
@@ -351,6 +406,7 @@ private:
     AnnotationSet set_;
     Path folder_;
     std::set<int> before_, touched_;  ///< ids of annotations that were there, and of those that steps name
+    std::string not_free_;            ///< why the outline made last could not be free
     Surroundings surroundings_;
     ExpressionEvaluator evaluator_;
 };

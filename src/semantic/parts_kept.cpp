@@ -1,6 +1,7 @@
 // Relations of parts to each other that a deformation keeps, and where and which way a single part is.
 #include "reader.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/axis/axis.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/relation/geometric.h"
@@ -65,8 +66,6 @@ Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& toleran
 /// A share of the tolerance, so that what is kept is not on its brink.
 constexpr double well_within = 0.5;
 
-double surface(const Mesh& mesh, const std::vector<Index>& faces) { return area_of(mesh, faces); }
-
 /// The vertices along the only poly-line of a member.
 std::vector<int> only_polyline(const Reader& read, std::size_t i) {
     const Annotation& line = read.member(i);
@@ -100,7 +99,10 @@ Statement contact(const ReaderPtr& read, const RelationOptions& tolerances) {
 Statement part_similarity(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
     std::vector<double> at_rest;
-    for (std::size_t i = 0; i < read->members(); ++i) at_rest.push_back(surface(read->shape().mesh, read->faces(i)));
+    for (std::size_t i = 0; i < read->members(); ++i) {
+        read->need_region(i);
+        at_rest.push_back(area_of(read->shape().mesh, read->member(i)));
+    }
     for (const double area : at_rest)
         if (!(area > 0)) read->fail("has a part without area", "use other parts");
     read->read_leader();
@@ -112,7 +114,7 @@ Statement part_similarity(const ReaderPtr& read, const RelationOptions& toleranc
     statement.lower = [=](const State& edited, const State& now) {
         const auto leader = read->leader(edited);
         const auto growth = [&](const State& state, std::size_t i) {
-            return std::sqrt(surface(state.mesh, read->faces(i)) / at_rest[i]);
+            return std::sqrt(area_of(state.mesh, read->member(i)) / at_rest[i]);
         };
         double factor = leader ? growth(edited, *leader) : 0;
         if (!leader)

@@ -1,5 +1,6 @@
 #include "ostraka/shape_classes/parts.h"
 
+#include "ostraka/annotation/curves.h"
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/core/dense.h"
 #include "ostraka/geom/eigen.h"
@@ -24,9 +25,9 @@ struct FaceMoments {
     Vector3d first = Vector3d::Zero();
     Matrix3d second = Matrix3d::Zero();
 
-    void add(const Mesh& mesh, Face face, const Vector3d& origin) {
+    void add(const Mesh& mesh, Face face, const Vector3d& origin, double share = 1) {
         const auto c = corners(mesh, face);
-        const double a = face_area(mesh, face);
+        const double a = share * face_area(mesh, face);
         const Vector3d p = eigen(mesh.point(c[0])) - origin, q = eigen(mesh.point(c[1])) - origin,
                        r = eigen(mesh.point(c[2])) - origin, m = (p + q + r) / 3;
         area += a;
@@ -42,10 +43,16 @@ struct FaceMoments {
     }
 };
 
-template <class Faces>
-FaceMoments face_moments(const Mesh& mesh, const Faces& faces, const Vector3d& origin) {
+FaceMoments face_moments(const Mesh& mesh, const Vector3d& origin) {
     FaceMoments moments;
-    for (const auto face : faces) moments.add(mesh, Face(face), origin);
+    for (const Face face : mesh.faces()) moments.add(mesh, face, origin);
+    return moments;
+}
+
+/// Of what the outline encloses: faces that it cuts count with their share.
+FaceMoments part_moments(const Mesh& mesh, const Annotation& part, const Vector3d& origin) {
+    FaceMoments moments;
+    for (const auto& [face, share] : face_shares(mesh, part)) moments.add(mesh, Face(face), origin, share);
     return moments;
 }
 
@@ -105,9 +112,9 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std
         if (!theirs.annotations.empty()) same = counterparts(overlap_of(known, fitted, parts, *own, theirs));
     }
     const Vector3d origin = eigen(points.front());
-    const FaceMoments whole = face_moments(fitted, fitted.faces(), origin);
+    const FaceMoments whole = face_moments(fitted, origin);
     FaceMoments own_whole;
-    if (!same.empty()) own_whole = face_moments(own->mesh, own->mesh.faces(), origin);
+    if (!same.empty()) own_whole = face_moments(own->mesh, origin);
     struct Part {
         const Annotation* annotation;
         FaceMoments moments;
@@ -119,8 +126,8 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std
         const auto there = same.find(annotation.id);
         const bool theirs_counts = there != same.end();
         measured[annotation.id] = {&annotation,
-                                   theirs_counts ? face_moments(own->mesh, theirs.find(there->second)->faces, origin)
-                                                 : face_moments(fitted, annotation.faces, origin),
+                                   theirs_counts ? part_moments(own->mesh, *theirs.find(there->second), origin)
+                                                 : part_moments(fitted, annotation, origin),
                                    (theirs_counts ? own_whole : whole).middle(),
                                    std::sqrt((theirs_counts ? own_whole : whole).area)};
     }

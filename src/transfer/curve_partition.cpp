@@ -101,30 +101,43 @@ private:
     std::vector<std::size_t> owner_;
 };
 
+/// The sum of the areas of some of them, added up in their order.
+template <class Regions>
+double area_of_all(const Mesh& mesh, const Regions& regions) {
+    std::vector<double> areas(regions.size());
+    parallel_for(
+        regions.size(), [&](std::size_t k) { areas[k] = area_of(mesh, *regions[k]); }, 1);
+    return std::accumulate(areas.begin(), areas.end(), 0.0);
+}
+
+/// Whether an area is the whole of a mesh's.
+bool is_whole(double area, const Mesh& mesh) {
+    const double whole = surface_area(mesh);
+    return std::abs(area - whole) <= rounding_share * whole;
+}
+
 }  // namespace
+
+bool part_surface(const Mesh& mesh, const std::vector<const Annotation*>& annotations) {
+    std::vector<const Annotation*> regions;
+    for (const Annotation* one : annotations)
+        if (one->type == AnnotationType::region && !one->all) regions.push_back(one);
+    return regions.size() > 1 && is_whole(area_of_all(mesh, regions), mesh);
+}
 
 void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
                     std::vector<Laid>& laid) {
-    std::vector<std::size_t> regions, which;  // of the source, and of these what is left on the target
+    std::vector<std::size_t> which;  // of the regions, what is left on the target
+    std::vector<const Annotation*> there;
     bool untangled = false;
     for (std::size_t i = 0; i < annotations.size(); ++i) {
-        if (annotations[i]->type != AnnotationType::region || annotations[i]->all) continue;
-        regions.push_back(i);
-        if (laid[i].lost) continue;
+        if (annotations[i]->type != AnnotationType::region || annotations[i]->all || laid[i].lost) continue;
         which.push_back(i);
+        there.push_back(&laid[i].annotation);
         untangled = untangled || laid[i].untangled;
     }
-    const auto sum = [](const std::vector<std::size_t>& list, const auto& area) {
-        std::vector<double> areas(list.size());
-        parallel_for(
-            list.size(), [&](std::size_t k) { areas[k] = area(list[k]); }, 1);
-        return std::accumulate(areas.begin(), areas.end(), 0.0);
-    };
-    const double of_source = surface_area(source), of_target = surface_area(target);
-    const double before = sum(regions, [&](std::size_t i) { return area_of(source, *annotations[i]); });
-    if (which.empty() || std::abs(before - of_source) > rounding_share * of_source) return;
-    const double after = sum(which, [&](std::size_t i) { return area_of(target, laid[i].annotation); });
-    if (!untangled && std::abs(after - of_target) <= rounding_share * of_target) return;
+    if (which.empty() || !part_surface(source, annotations)) return;
+    if (!untangled && is_whole(area_of_all(target, there), target)) return;
     AnnotationSet set;
     for (const std::size_t i : which) set.annotations.push_back(laid[i].annotation);
     try {

@@ -2,20 +2,19 @@
 
 #include "curve_loops.h"
 #include "curve_partition.h"
+#include "curve_thinning.h"
 #include "ostraka/annotation/curve_strands.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/error.h"
-#include "ostraka/core/flood.h"
+#include "ostraka/core/limits.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/words.h"
 #include "ostraka/geom/geodesic.h"
-#include "ostraka/geom/insert_curves.h"
 #include "ostraka/geom/shortest_path.h"
+#include "place_mapping.h"
+#include "region_settling.h"
 #include "region_transfer.h"
-#include "scores.h"
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -28,46 +27,6 @@ namespace ostraka {
 namespace {
 
 using Places = std::vector<SurfacePlace>;
-
-double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
-
-double typical_edge(const Mesh& mesh) {
-    return std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / std::max<double>(1, static_cast<double>(mesh.number_of_faces())));
-}
-
-/// The vertex normals, interpolated.
-Vector normal_at(const Mesh& mesh, const SurfaceNode& node) {
-    switch (node.kind) {
-        case SurfaceNode::Kind::vertex:
-            return vertex_normal(mesh, Vertex(node.element));
-        case SurfaceNode::Kind::edge: {
-            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
-            return (1 - node.parameter) * vertex_normal(mesh, mesh.source(h)) +
-                   node.parameter * vertex_normal(mesh, mesh.target(h));
-        }
-        default: {
-            const auto corner = corners(mesh, Face(node.element));
-            Vector sum(0, 0, 0);
-            for (std::size_t k = 0; k < 3; ++k) sum = sum + node.barycentric[k] * vertex_normal(mesh, corner[k]);
-            return sum;
-        }
-    }
-}
-
-Vector unit(const Vector& v) {
-    const double length = std::sqrt(v.squared_length());
-    return length > 0 ? v / length : Vector(0, 0, 0);
-}
-
-/// A place of the source and where it is on the target.
-struct Mapped {
-    SurfaceNode from;
-    Vector normal{0, 0, 0};  ///< of the source there
-    CorrespondenceKind kind = CorrespondenceKind::none;
-    SurfaceNode to;
-    Vector up{0, 0, 0};   ///< of the target there
-    bool mutual = false;  ///< from there the same line meets the place first: there is one way back
-};
 
 /// A strand of the source and what it became. What curves share of it they share on the target.
 struct LaidStrand {
@@ -84,13 +43,9 @@ public:
         : source_(source),
           search_(target),
           target_(target.mesh()),
-          options_(options),
-          edge_(target.typical_edge()),
-          far_(options.max_distance * target.diagonal()),
-          min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)),
-          by_target_normals_(edge_ > (1 + 1e-9) * typical_edge(source)) {
-        if (by_target_normals_) on_source_.emplace(source_);
-    }
+          settling_(source, target, options),
+          mapping_(source, target, options),
+          edge_(mapping_.edge()) {}
 
     std::vector<Laid> run(const std::vector<const Annotation*>& annotations) {
         std::vector<Laid> laid(annotations.size());
@@ -114,9 +69,9 @@ public:
                     laid[i].annotation.curves.push_back(std::move(on_target));
             }
         }
-        simplify(laid);
+        thin_out(target_, 1e-4 * edge_, laid);
         parallel_for(
-            laid.size(), [&](std::size_t i) { settle(*annotations[i], drawn[i].size(), laid[i]); }, 1);
+            laid.size(), [&](std::size_t i) { settling_.settle(*annotations[i], drawn[i].size(), laid[i]); }, 1);
         keep_partition(source_, annotations, target_, laid);
         for (std::size_t i = 0; i < annotations.size(); ++i) note_change(*annotations[i], drawn[i].size(), laid[i]);
         return laid;
@@ -153,7 +108,7 @@ private:
         for (std::size_t i = 0; i < curve.size(); ++i) {
             if (i > 0) {
                 const SurfaceNode a = node_at(source_, curve[i - 1]), b = node_at(source_, curve[i]);
-                const double length = distance(a.point, b.point);
+                const double length = gap_between(a.point, b.point);
                 const int parts = std::clamp(static_cast<int>(std::ceil(length / edge_)), 1, 1000);
                 for (int k = 1; k < parts; ++k) places.push_back(between(curve[i - 1], curve[i], k, parts));
             }
@@ -182,131 +137,16 @@ private:
             for (const Places& curve : curves) all.insert(all.end(), curve.begin(), curve.end());
         std::sort(all.begin(), all.end());
         all.erase(std::unique(all.begin(), all.end()), all.end());
-        std::vector<Mapped> found(all.size());
+        std::vector<MappedPlace> found(all.size());
         parallel_for(
-            all.size(), [&](std::size_t i) { found[i] = mapped(all[i]); }, 64);
+            all.size(), [&](std::size_t i) { found[i] = mapping_(all[i]); }, 64);
         for (std::size_t i = 0; i < all.size(); ++i) mapped_.emplace_hint(mapped_.end(), all[i], std::move(found[i]));
     }
 
-    const Mapped& at(const SurfacePlace& place) {
+    const MappedPlace& at(const SurfacePlace& place) {
         const auto [entry, fresh] = mapped_.try_emplace(place);
-        if (fresh) entry->second = mapped(place);
+        if (fresh) entry->second = mapping_(place);
         return entry->second;
-    }
-
-    Mapped mapped(const SurfacePlace& place) const {
-        Mapped result;
-        result.from = node_at(source_, place);
-        result.normal = unit(normal_at(source_, result.from));
-        const Point& p = result.from.point;
-        const auto take = [&](CorrespondenceKind kind, Index face, const std::array<double, 3>& weights) {
-            result.kind = kind;
-            result.to = surface_node(target_, face, on_longest_edge(face, weights));
-            result.up = unit(normal_at(target_, result.to));
-        };
-        if (result.normal.squared_length() > 0) {
-            if (by_target_normals_) {
-                if (const auto hit = along_target_normal(p, result.normal)) {
-                    take(CorrespondenceKind::ray, hit->face, hit->barycentric);
-                    result.mutual = is_mutual(result);
-                    return result;
-                }
-            } else {
-                for (const double length : {std::min(far_, 2 * edge_), far_})
-                    for (const SurfaceHit& hit : search_.line_hits(p, result.normal, length))
-                        if (search_.normal(hit.face) * result.normal >= min_cosine_) {
-                            take(CorrespondenceKind::ray, hit.face, hit.barycentric);
-                            result.mutual = true;
-                            return result;
-                        }
-            }
-        }
-        const bool oriented = result.normal.squared_length() > 0;
-        if (const auto hit = search_.closest_compatible(p, result.normal, oriented ? min_cosine_ : -1, far_))
-            take(CorrespondenceKind::closest, hit->face, hit->barycentric);
-        return result;
-    }
-
-    /// In a face as good as without height, which cannot be cut inside, the place beside it on its longest edge.
-    std::array<double, 3> on_longest_edge(Index face, std::array<double, 3> weights) const {
-        const auto corner = corners(target_, Face(face));
-        std::size_t apex = 0;
-        double longest = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            if (const double length = distance(target_.point(corner[(k + 1) % 3]), target_.point(corner[(k + 2) % 3]));
-                length > longest)
-                longest = length, apex = k;
-        if (weights[apex] == 1 || 2 * face_area(target_, Face(face)) > 1e-6 * longest * longest) return weights;
-        const double rest = 1 - weights[apex];
-        for (std::size_t k = 0; k < 3; ++k) weights[k] = k == apex ? 0 : weights[k] / rest;
-        return weights;
-    }
-
-    /// Whether the line along the normal of the (coarser) target meets the source at this place first. What lies in a fold of the
-    /// source that this line meets elsewhere before was not laid there from the target, and has no way back.
-    bool is_mutual(const Mapped& one) const {
-        const std::vector<Face> own = faces_of(source_, one.from);
-        const auto faces_up = [&](Index f) { return on_source_->normal(f) * one.up >= min_cosine_; };
-        if (std::none_of(own.begin(), own.end(), faces_up)) return false;
-        const double at = std::abs((one.from.point - one.to.point) * one.up), tolerance = 1e-4 * edge_;
-        for (const SurfaceHit& hit : on_source_->line_hits(one.to.point, one.up, at))
-            if (std::abs(hit.distance) < at - tolerance && faces_up(hit.face)) return false;
-        return true;
-    }
-
-    /// The place of the target whose interpolated normal runs through p: x(b) + d n(b) = p for the weights b and the distance d,
-    /// by Newton's method, from the nearest place on and over the edges that the weights lead across.
-    std::optional<SurfaceHit> along_target_normal(const Point& p, const Vector& normal) const {
-        const auto start = search_.closest_compatible(p, normal, min_cosine_, far_);
-        if (!start) return std::nullopt;
-        Index face = start->face, came_from = no_index;
-        double d = start->distance * ((p - start->point) * search_.normal(face) < 0 ? -1 : 1);
-        for (int step = 0; step < 24; ++step) {
-            const auto corner = corners(target_, Face(face));
-            std::array<Eigen::Vector3d, 3> x, n;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vector at = target_.point(corner[k]) - p, up = vertex_normal(target_, corner[k]);
-                x[k] = {at.x(), at.y(), at.z()};
-                n[k] = {up.x(), up.y(), up.z()};
-            }
-            Eigen::Vector3d unknown(1.0 / 3, 1.0 / 3, d);  // weights of corners 1 and 2, distance
-            const double size = std::max((x[1] - x[0]).norm(), (x[2] - x[0]).norm());
-            bool solved = false;
-            for (int round = 0; round < 20 && !solved; ++round) {
-                const double u = unknown[0], v = unknown[1], w = unknown[2];
-                const Eigen::Vector3d up = (1 - u - v) * n[0] + u * n[1] + v * n[2];
-                const Eigen::Vector3d off = (1 - u - v) * x[0] + u * x[1] + v * x[2] + w * up;
-                Eigen::Matrix3d slopes;
-                slopes << x[1] - x[0] + w * (n[1] - n[0]), x[2] - x[0] + w * (n[2] - n[0]), up;
-                if (!(std::abs(slopes.determinant()) > 1e-12 * size * size)) return std::nullopt;
-                const Eigen::Vector3d change = slopes.partialPivLu().solve(-off);
-                unknown += change;
-                if (!(std::abs(unknown[0]) + std::abs(unknown[1]) + std::abs(unknown[2]) / size < 1e6)) return std::nullopt;
-                solved = std::abs(change[0]) + std::abs(change[1]) < 1e-14 && std::abs(change[2]) <= 1e-14 * size;
-            }
-            const std::array<double, 3> weights{1 - unknown[0] - unknown[1], unknown[0], unknown[1]};
-            const auto lowest = static_cast<std::size_t>(std::min_element(weights.begin(), weights.end()) - weights.begin());
-            const Halfedge across = find_halfedge(target_, corner[(lowest + 1) % 3], corner[(lowest + 2) % 3]);
-            const Halfedge beyond = target_.opposite(across);
-            if (weights[lowest] >= -1e-9 ||
-                (!target_.is_border(beyond) && static_cast<Index>(target_.face(beyond)) == came_from)) {
-                if (weights[lowest] < -1e-3) return std::nullopt;
-                SurfaceHit hit;
-                hit.face = face;
-                double sum = 0;
-                for (std::size_t k = 0; k < 3; ++k) sum += hit.barycentric[k] = std::max(0.0, weights[k]);
-                for (double& weight : hit.barycentric) weight /= sum;
-                hit.point = point_at(target_, face, hit.barycentric);
-                hit.distance = distance(hit.point, p);
-                if (hit.distance > far_ || search_.normal(face) * normal < min_cosine_) return std::nullopt;
-                return hit;
-            }
-            if (target_.is_border(beyond)) return std::nullopt;
-            came_from = face;
-            face = target_.face(beyond);
-            d = unknown[2];
-        }
-        return std::nullopt;
     }
 
     // Traces.
@@ -350,7 +190,7 @@ private:
     }
 
     Places lay_point(const SurfacePlace& place, Laid& laid) {
-        const Mapped& one = at(place);
+        const MappedPlace& one = at(place);
         ++laid.places;
         if (one.kind == CorrespondenceKind::none) {
             ++laid.without_place;
@@ -400,17 +240,17 @@ private:
         const Places& curve = strand.from.places;
         const bool closed = strand.from.closed;
         const std::size_t n = closed ? curve.size() - 1 : curve.size();
-        std::vector<const Mapped*> places;
+        std::vector<const MappedPlace*> places;
         for (std::size_t i = 0; i < n; ++i) places.push_back(&at(curve[i]));
         strand.count = n;
         double nearest = std::numeric_limits<double>::infinity();
         std::size_t best = n;
         for (std::size_t i = 0; i < n; ++i) {
-            const Mapped& one = *places[i];
+            const MappedPlace& one = *places[i];
             if (one.kind == CorrespondenceKind::ray) ++strand.by_ray;
             else if (one.kind == CorrespondenceKind::closest) ++strand.by_closest_point;
             if (one.kind == CorrespondenceKind::none) continue;
-            const double off = distance(one.from.point, one.to.point) + (one.mutual ? 0 : far_);
+            const double off = gap_between(one.from.point, one.to.point) + (one.mutual ? 0 : mapping_.far());
             if (off < nearest - 1e-9 * edge_) nearest = off, best = i;
         }
         if (best == n) {
@@ -436,26 +276,26 @@ private:
     }
 
     /// Marks the places to use among the next `steps` from `start` on, along the strand or against it.
-    void spread(const std::vector<const Mapped*>& places, std::size_t start, int sense, std::size_t steps,
+    void spread(const std::vector<const MappedPlace*>& places, std::size_t start, int sense, std::size_t steps,
                 std::vector<bool>& use) const {
         const std::size_t n = places.size();
         const auto at_step = [&](std::size_t k) { return sense > 0 ? (start + k) % n : (start + n - k % n) % n; };
         std::vector<double> along(steps + 1, 0);
         std::vector<std::size_t> next_mutual(steps + 2, steps + 1);  // from each step on
         for (std::size_t k = 1; k <= steps; ++k)
-            along[k] = along[k - 1] + distance(places[at_step(k)]->from.point, places[at_step(k - 1)]->from.point);
+            along[k] = along[k - 1] + gap_between(places[at_step(k)]->from.point, places[at_step(k - 1)]->from.point);
         for (std::size_t k = steps; k >= 1; --k) next_mutual[k] = places[at_step(k)]->mutual ? k : next_mutual[k + 1];
         const auto follows = [&](std::size_t k, std::size_t last) {
-            const Mapped &one = *places[at_step(k)], &before = *places[at_step(last)];
+            const MappedPlace &one = *places[at_step(k)], &before = *places[at_step(last)];
             return one.kind != CorrespondenceKind::none &&
-                   distance(one.to.point, before.to.point) <= 3 * (along[k] - along[last]) + 0.5 * edge_;
+                   gap_between(one.to.point, before.to.point) <= 3 * (along[k] - along[last]) + 0.5 * edge_;
         };
         std::size_t last = 0;
         for (std::size_t k = 1; k <= steps; ++k) {
             if (!places[at_step(k)]->mutual) {
                 const std::size_t m = next_mutual[k];
                 if (m <= steps && follows(m, last) &&
-                    distance(places[at_step(m)]->to.point, places[at_step(last)]->to.point) <= 2 * edge_)
+                    gap_between(places[at_step(m)]->to.point, places[at_step(last)]->to.point) <= 2 * edge_)
                     k = m;
             }
             if (!follows(k, last)) continue;
@@ -487,22 +327,24 @@ private:
     };
 
     /// Adds the way from the place of a to that of b: a straight trace, across the normals that places correspond along; where
-    /// none arrives, by halves; over folds by the shortest curve.
+    /// none arrives, by halves, unless the middle has no way back; over folds by the shortest curve.
     void join(const SurfacePlace& a, const SurfacePlace& b, int depth, Trace& trace) {
-        const Mapped from = at(a), to = at(b);
-        const double apart = distance(from.to.point, to.to.point), least = 1e-9 * search_.diagonal();
-        const Vector across = by_target_normals_ ? from.up + to.up : from.normal + to.normal;
+        const MappedPlace from = at(a), to = at(b);
+        const double apart = gap_between(from.to.point, to.to.point), least = 1e-9 * search_.diagonal();
+        const Vector across = mapping_.by_target_normals() ? from.up + to.up : from.normal + to.normal;
         const auto add = [&](const SurfaceCurve& line) {
             for (std::size_t k = 1; k < line.nodes.size(); ++k) trace.places.push_back(place_of(target_, line.nodes[k]));
         };
-        if (const auto line = trace_line(target_, from.to, to.to, unit(across), 2 * apart + least)) return add(*line);
-        if (const auto line = trace_line(target_, from.to, to.to, unit(from.up + to.up), 2 * apart + least)) return add(*line);
+        if (const auto line = trace_line(target_, from.to, to.to, unit_vector(across), 2 * apart + least)) return add(*line);
+        if (const auto line = trace_line(target_, from.to, to.to, unit_vector(from.up + to.up), 2 * apart + least))
+            return add(*line);
         if (depth < 6 && common_face(source_, from.from, to.from) != no_index) {
             const SurfacePlace middle = between(a, b, 1, 2);
-            const Mapped& half = at(middle);
+            const MappedPlace& half = at(middle);
             const double reach = 2 * apart + 0.1 * edge_;
-            if (middle != a && middle != b && half.kind != CorrespondenceKind::none &&
-                distance(half.to.point, from.to.point) < reach && distance(half.to.point, to.to.point) < reach) {
+            const bool there = mapping_.by_target_normals() ? half.mutual : half.kind != CorrespondenceKind::none;
+            if (middle != a && middle != b && there && gap_between(half.to.point, from.to.point) < reach &&
+                gap_between(half.to.point, to.to.point) < reach) {
                 join(a, middle, depth + 1, trace);
                 join(middle, b, depth + 1, trace);
                 return;
@@ -563,70 +405,10 @@ private:
             }
             goal = node_at(target_, place);
         }
-        const Vector up = unit(normal_at(target_, from) + normal_at(target_, goal));
+        const Vector up = unit_vector(smooth_normal(target_, from) + smooth_normal(target_, goal));
         if (const auto line = trace_line(target_, from, goal, up, 4 * std::sqrt(best) + 1e-9 * search_.diagonal()))
             for (std::size_t k = 1; k < line->nodes.size(); ++k) way.push_back(place_of(target_, line->nodes[k]));
         else along_edges(from, goal, way);
-    }
-
-    // What is kept.
-
-    /// Leaves out places inside faces that say next to nothing, the same ones for all curves that share them.
-    void simplify(std::vector<Laid>& laid) const {
-        std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
-        for (const Laid& one : laid)
-            for (const Places& curve : one.annotation.curves) {
-                for (std::size_t i = 1; i < curve.size(); ++i) {
-                    if (curve[i].kind == SurfaceNode::Kind::face) neighbours[curve[i]].insert(curve[i - 1]);
-                    if (curve[i - 1].kind == SurfaceNode::Kind::face) neighbours[curve[i - 1]].insert(curve[i]);
-                }
-            }
-        const auto may_go = [&](const SurfacePlace& place) {
-            return place.kind == SurfaceNode::Kind::face && neighbours.at(place).size() == 2;
-        };
-        for (Laid& one : laid)
-            for (Places& curve : one.annotation.curves) {
-                Places kept;
-                for (std::size_t i = 0; i < curve.size();) {
-                    kept.push_back(curve[i]);
-                    std::size_t end = i + 1;
-                    while (end + 1 < curve.size() && may_go(curve[end])) ++end;
-                    if (end < curve.size() && end > i + 1) keep_needed(curve, i, end, kept);
-                    i = end;
-                }
-                if (kept.size() >= 4 || kept.size() == curve.size() || kept.front() != kept.back()) curve = std::move(kept);
-            }
-    }
-
-    /// Of the places strictly between two of a curve, those that the line needs (Ramer 1972, Douglas and Peucker 1973).
-    void keep_needed(const Places& curve, std::size_t first, std::size_t last, Places& kept) const {
-        Places run(curve.begin() + static_cast<std::ptrdiff_t>(first), curve.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-        const bool turned = run.back() < run.front();
-        if (turned) std::reverse(run.begin(), run.end());
-        std::vector<Point> points;
-        for (const SurfacePlace& place : run) points.push_back(node_at(target_, place).point);
-        std::vector<bool> keep(run.size(), false);
-        std::vector<std::pair<std::size_t, std::size_t>> stack{{0, run.size() - 1}};
-        const double tolerance = 1e-4 * edge_;
-        CancelCheck check;
-        while (!stack.empty()) {
-            check();
-            const auto [a, b] = stack.back();
-            stack.pop_back();
-            std::size_t farthest = a;
-            double most = tolerance;
-            for (std::size_t k = a + 1; k < b; ++k)
-                if (const double off = distance_to_segment(points[k], points[a], points[b]); off > most) most = off, farthest = k;
-            if (farthest == a) continue;
-            keep[farthest] = true;
-            stack.emplace_back(a, farthest);
-            stack.emplace_back(farthest, b);
-        }
-        Places between;
-        for (std::size_t k = 1; k + 1 < run.size(); ++k)
-            if (keep[k]) between.push_back(run[k]);
-        if (turned) std::reverse(between.begin(), between.end());
-        kept.insert(kept.end(), between.begin(), between.end());
     }
 
     static void begin(const Annotation& from, Laid& laid) {
@@ -639,28 +421,6 @@ private:
         laid.annotation.all = from.all;
     }
 
-    void settle(const Annotation& from, std::size_t outlines, Laid& laid) const {
-        Annotation& to = laid.annotation;
-        if (from.all) {
-            to.faces.resize(target_.number_of_faces());
-            for (Index f = 0; f < to.faces.size(); ++f) to.faces[f] = f;
-            return;
-        }
-        if (from.type == AnnotationType::region) {
-            to.faces = whole_components(from);
-            if (to.curves.empty() && to.faces.empty()) laid.lost = true;
-            if (to.curves.empty()) return;
-            const CurveFilling filling = fill_curves(target_, curves_on(target_, to));
-            const double expected = area_of(source_, from);
-            if (filling.conflicts > 0 || std::abs(filling.area(target_) - expected) > 0.5 * expected + 0.1 * edge_ * edge_) {
-                untangle(from, expected, outlines, laid);
-                return;
-            }
-        }
-        if (to.curves.empty()) laid.lost = true;
-        else settle_elements(target_, to);
-    }
-
     /// Says where a region or line has other outlines than on the source.
     static void note_change(const Annotation& from, std::size_t before, Laid& laid) {
         const std::size_t after = laid.annotation.curves.size();
@@ -671,78 +431,14 @@ private:
                     " became " + std::to_string(after);
     }
 
-    /// Components of the source that the region covers whole have no outline: a place of each tells the component here.
-    std::vector<Index> whole_components(const Annotation& from) const {
-        if (is_free(from) && from.faces.empty()) return {};
-        std::vector<bool> selected = face_flags(source_, from.faces), seen(source_.number_of_faces(), false);
-        if (is_free(from)) {
-            std::vector<bool> curved(source_.number_of_faces(), false);
-            for (const SurfaceCurve& curve : curves_on(source_, from))
-                for (const Index f : curve.faces) curved[f] = true;
-            for (std::size_t f = 0; f < curved.size(); ++f)
-                if (curved[f]) selected[f] = false;
-        }
-        std::vector<Index> faces;
-        for (const Index first : from.faces) {
-            if (seen[first] || !selected[first]) continue;
-            const std::vector<Face> component = flood_faces(source_, Face(first), seen);
-            const bool whole = std::all_of(component.begin(), component.end(), [&](Face f) -> bool { return selected[f]; });
-            if (!whole) continue;
-            const Face middle = component.front();
-            const auto hit = search_.closest_compatible(centroid(source_, middle), search_normal(middle), min_cosine_, far_);
-            if (!hit) continue;
-            std::vector<bool> flooded(target_.number_of_faces(), false);
-            for (const Face f : flood_faces(target_, Face(hit->face), flooded)) faces.push_back(f);
-        }
-        std::sort(faces.begin(), faces.end());
-        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-        return faces;
-    }
-    Vector search_normal(Face f) const { return unit(area_vector(source_, f)); }
-
-    /// Outlines that cross: the region by winding numbers on the target cut along them, its outline read off anew.
-    void untangle(const Annotation& from, double expected, std::size_t outlines, Laid& laid) const {
-        Annotation& to = laid.annotation;
-        laid.untangled = true;
-        const std::vector<Index> components = to.faces;
-        InsertedCurves inserted = insert_curves(target_, curves_on(target_, to));
-        std::vector<Halfedge> edges;
-        for (const auto& path : inserted.paths)
-            for (std::size_t i = 0; i + 1 < path.size(); ++i)
-                if (const Halfedge h = find_halfedge(inserted.mesh, Vertex(path[i]), Vertex(path[i + 1])); h.is_valid())
-                    edges.push_back(h);
-        CutMesh cut;
-        cut.mesh = std::move(inserted.mesh);
-        cut.face_origin = std::move(inserted.face_origin);
-        cut.nodes = std::move(inserted.new_nodes);
-        cut.old_vertices = target_.number_of_vertices();
-        auto wound = fill_by_winding(cut.mesh, edges, expected);
-        if (wound) dissolve_small_parts(cut.mesh, edge_ * edge_, outlines, *wound);
-        const auto plausible = [&](const std::vector<Index>& faces) {
-            return !faces.empty() && std::abs(area_of(cut.mesh, faces) - expected) <= 0.5 * expected + 0.1 * edge_ * edge_;
-        };
-        if (wound && plausible(flagged(*wound))) {
-            to.faces = flagged(*wound);
-            bring_back(target_, cut, to);
-            return;
-        }
-        // Face by face, from where their places are on the source.
-        to.curves.clear();
-        const SurfaceSearch back(source_);
-        to.faces = flagged(region_by_vote(source_, back, from.faces, target_, options_));
-        laid.lost = to.faces.empty();
-        to.note += std::string(to.note.empty() ? "" : "; ") + "its outline could not be followed: it runs along edges now";
-    }
-
     const Mesh& source_;
     const SurfaceSearch& search_;
     const Mesh& target_;
-    const CorrespondenceOptions& options_;
-    double edge_, far_, min_cosine_;
-    bool by_target_normals_;
-    std::optional<SurfaceSearch> on_source_;  ///< where the target is the coarser
+    RegionSettling settling_;
+    PlaceMapping mapping_;
+    double edge_;  ///< of the target
     std::vector<LaidStrand> strands_;
-    std::map<SurfacePlace, Mapped> mapped_;
+    std::map<SurfacePlace, MappedPlace> mapped_;
     std::map<std::pair<SurfacePlace, SurfacePlace>, Trace> traces_;
     std::optional<PathSearch> paths_;
     std::vector<Halfedge> border_;

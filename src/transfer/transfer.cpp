@@ -1,20 +1,20 @@
 #include "ostraka/transfer/transfer.h"
 
 #include "attribute_carrier.h"
+#include "curve_partition.h"
 #include "disjoint_regions.h"
+#include "free_transfer.h"
 #include "ostraka/annotation/curves.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/polyline_distance.h"
 #include "ostraka/measure/measure.h"
-#include "ostraka/transfer/lay_curves.h"
 #include "outline_rounding.h"
 #include "path_tracer.h"
 #include "region_transfer.h"
 #include "scores.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -22,19 +22,6 @@
 namespace ostraka {
 
 namespace {
-
-class Clock {
-public:
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const double seconds = std::chrono::duration<double>(now - last_).count();
-        last_ = now;
-        return seconds;
-    }
-
-private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void add_note(std::string& note, const std::string& text) { note += (note.empty() ? "" : "; ") + text; }
 
@@ -374,95 +361,24 @@ std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Ann
     return question;
 }
 
-/// The free annotations among others, whose result is there: laid by their curves, scored, and put in their places in the set.
-void transfer_free(const Mesh& source, const AnnotationSet& set, const std::vector<bool>& free, const SurfaceSearch& target,
-                   const TransferOptions& options, Clock& clock, TransferResult& result) {
-    const Mesh& mesh = target.mesh();
-    std::vector<const Annotation*> given;
-    std::vector<Index> pins;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        if (!free[i]) continue;
-        given.push_back(&set.annotations[i]);
-        for (const Attribute& attribute : set.annotations[i].attributes) {
-            const std::vector<Index> own = pins_of(attribute.measure);
-            pins.insert(pins.end(), own.begin(), own.end());
-        }
-    }
-    PathTracer tracer(source, target, options);
-    tracer.match(std::move(pins));
-    result.times.correspondence += clock.lap();
-    std::vector<Laid> laid = lay_curves(source, given, target, options.correspondence);
-    result.times.paths += clock.lap();
-    AttributeCarrier attributes(tracer, false);
-    AnnotationSet carried;
-    carried.unit = set.unit;
-    std::vector<TransferScore> scores(given.size());
-    std::vector<std::optional<OverlapQuestion>> questions(given.size());
-    for (std::size_t i = 0; i < given.size(); ++i) {
-        Annotation& to = laid[i].annotation;
-        TransferScore& score = scores[i];
-        score.id = to.id;
-        score.tag = to.tag;
-        score.source_type = score.target_type = to.type;
-        score.vertices = laid[i].places;
-        score.by_ray = laid[i].by_ray;
-        score.by_closest_point = laid[i].by_closest_point;
-        score.without_place = laid[i].without_place;
-        score.detours = laid[i].detours;
-        score.crossings_resolved = laid[i].untangled;
-        score.note = laid[i].note;
-        if (laid[i].lost) score.outcome = TransferOutcome::lost;
-        attributes.carry(*given[i], to);
-    }
-    parallel_for(
-        given.size(),
-        [&](std::size_t i) {
-            const Annotation &from = *given[i], &to = laid[i].annotation;
-            TransferScore& score = scores[i];
-            const Segments a = segments_of(source, from), b = segments_of(mesh, to);
-            score.source_length = length_of(a);
-            score.target_length = length_of(b);
-            if (a.empty() == b.empty()) score.hausdorff = hausdorff_distance(a, b);
-            if (from.type != AnnotationType::region) return;
-            score.source_area = area_of(source, from);
-            score.target_area = area_of(mesh, to);
-            if (!options.overlap || score.outcome == TransferOutcome::lost) return;
-            questions[i] = OverlapQuestion{region_area(source, from), region_area(mesh, to), {}, &score};
-            const RegionArea& there = questions[i]->target;
-            if (there.free)
-                questions[i]->in_target = [free = there.free](const SurfaceHit& hit) {
-                    return free->contains(hit.face, hit.point);
-                };
-            else
-                questions[i]->in_target = [flags = face_flags(mesh, to.faces)](const SurfaceHit& hit) {
-                    return static_cast<bool>(flags[hit.face]);
-                };
-        },
-        1);
-    std::vector<OverlapQuestion> asked;
-    for (auto& question : questions)
-        if (question) asked.push_back(std::move(*question));
-    if (!asked.empty()) {
-        const SurfaceSearch back(source);
-        score_overlaps({source, back}, {mesh, target}, asked, options.correspondence);
-    }
-    for (Laid& one : laid)
-        if (!one.lost) carried.annotations.push_back(one.annotation);
-    refresh_measures(mesh, carried);
-    attributes.keep_old_values(carried);
-    result.times.scores += clock.lap();
-    // Together, in the order of the set.
-    std::vector<Annotation> plain = std::move(result.annotations.annotations);
-    std::vector<TransferScore> plain_scores = std::move(result.scores);
-    result.annotations.annotations.clear();
-    result.scores.clear();
-    std::size_t next_plain = 0, next_free = 0;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i)
-        result.scores.push_back(free[i] ? std::move(scores[next_free++]) : std::move(plain_scores[next_plain++]));
+}  // namespace
+
+namespace {
+
+/// Which annotations are laid by their curves: free ones, all where that is asked for, and regions that part the surface, which
+/// only curves part again without a saw.
+std::vector<bool> laid_by_curves(const Mesh& source, const AnnotationSet& set, const TransferOptions& options) {
+    using Outlines = TransferOptions::Outlines;
+    const bool along_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;
+    std::vector<const Annotation*> all;
+    for (const Annotation& annotation : set.annotations) all.push_back(&annotation);
+    const bool parted = options.outlines == Outlines::partitions && !along_edges && part_surface(source, all);
+    std::vector<bool> free;
     for (const Annotation& annotation : set.annotations)
-        for (std::vector<Annotation>* list : {&plain, &carried.annotations})
-            for (Annotation& one : *list)
-                if (one.id == annotation.id) result.annotations.annotations.push_back(std::move(one));
+        free.push_back(
+            !annotation.all && options.outlines != Outlines::edges &&
+            (is_free(annotation) || options.outlines == Outlines::free || (parted && annotation.type == AnnotationType::region)));
+    return free;
 }
 
 }  // namespace
@@ -478,10 +394,7 @@ TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, co
     }
     if (options.refine && options.cover != TransferOptions::Cover::overlapping)
         fail_usage("a refined target follows the outline exactly", "leave out --cover with --refine");
-    std::vector<bool> free;
-    for (const Annotation& annotation : annotations.annotations)
-        free.push_back(!annotation.all && options.outlines != TransferOptions::Outlines::edges &&
-                       (is_free(annotation) || options.outlines == TransferOptions::Outlines::free));
+    const std::vector<bool> free = laid_by_curves(source, annotations, options);
     AnnotationSet along_edges = annotations;
     for (Annotation& annotation : along_edges.annotations)
         if (options.outlines == TransferOptions::Outlines::edges) annotation.curves.clear();
@@ -506,10 +419,12 @@ void TransferOptions::describe(OptionList& visit) {
     visit("metric", metric, "what paths between corresponding vertices minimise", Choices{"euclidean", "segment", "combined"});
     visit("spikes", spikes, "prune spikes of an outline, avoid used vertices while tracing it, or keep them",
           Choices{"prune", "avoid", "keep"});
-    visit(
-        "outlines", outlines,
-        "outlines and lines stay what they are; all become free, through the triangles of the target; or all run along its edges",
-        Choices{"kept", "free", "edges"});
+    visit("outlines", outlines,
+          "outlines and lines stay what they are, but regions that part the whole surface, such as labels, become free, through "
+          "the "
+          "triangles of the target (partitions); all stay what they are (kept); all become free; or all run along the target's "
+          "edges",
+          Choices{"partitions", "kept", "free", "edges"});
     visit("rounding", rounding,
           "faces that the true outline crosses: as the edge paths leave them (path), to the side that holds most of them "
           "(area), or so that area and perimeter are met as well (balanced)",

@@ -278,7 +278,9 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
     Json recipe = json_document("recipe");
     auto& r = recipe.GetAllocator();
     add_members(recipe, r, "annotations",
-                json_list_of(json_object(r, "id", 0, "tag", "selection", "type", asked, "select", JsonValue(*expression, r)), r));
+                json_list_of(json_object(r, "id", 0, "tag", "selection", "type", asked, "outline", "edges", "select",
+                                         JsonValue(*expression, r)),
+                             r));
     if (shape->set && shape->set->up) add_members(recipe, r, "up", *shape->set->up);
     RecipeStart start;
     start.face_labels = shape->mesh->extras.face_labels;

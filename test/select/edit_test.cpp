@@ -146,7 +146,7 @@ TEST(Edit, AddingAndRemovingUndoEachOther) {
     EXPECT_EQ(all.find(1)->faces.size(), mesh.number_of_faces());
     RecipeStart from;
     from.annotations = std::move(all);
-    EXPECT_EQ(edited("remove from", right, std::move(from)).find(1)->faces, faces_of(left, mesh));
+    EXPECT_EQ(edited("remove from", right, std::move(from)).find(1)->faces, follow(made, mesh).find(1)->faces);
 }
 
 TEST(Edit, ErrorsNameTheStep) {

@@ -19,8 +19,11 @@ inline Annotation select(const std::string& type, const std::string& expression,
         .annotations.at(0);
 }
 
+/// The faces that are taken whole.
 inline std::vector<Index> faces_of(const std::string& expression, const Mesh& mesh, const std::string& head = "") {
-    return select("region", expression, mesh, head).faces;
+    return follow(R"({"id": 0, "tag": "t", "type": "region", "outline": "edges", "select": )" + expression + "}", mesh, head)
+        .annotations.at(0)
+        .faces;
 }
 
 inline double area_of(const std::string& expression, const Mesh& mesh) {

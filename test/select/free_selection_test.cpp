@@ -210,3 +210,117 @@ TEST(FreeSelection, WhatIsChosenFaceByFaceEndsAtIsolines) {
     labels[11] = 7;
     EXPECT_NEAR(region("free", R"({"labels": [7]})").area, face_area(mesh, Face(11)), 1e-12);
 }
+
+namespace {
+
+/// A region by a recipe that says nothing of its outline, after a first annotation of the label 7.
+AnnotationSet by_default(const Mesh& mesh, const std::vector<std::int32_t>& labels, const std::string& select,
+                         const std::string& more = "") {
+    const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [
+        {"id": 1, "tag": "labelled", "type": "region", "select": {"labels": [7]}},
+        {"id": 2, "tag": "part", "type": "region", "select": )" +
+                             select + "}" + more + "]}";
+    AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, labels, "test");
+    check_annotations(set, mesh, "by default");
+    return set;
+}
+
+std::vector<std::int32_t> labels_by_plane(const Mesh& mesh) {
+    std::vector<std::int32_t> labels;
+    for (const Face f : mesh.faces()) labels.push_back(centroid(mesh, f).x() + 0.3 * centroid(mesh, f).y() > 0.1 ? 7 : 3);
+    return labels;
+}
+
+}  // namespace
+
+TEST(FreeSelection, LevelsAreFreeAndSetsOfFacesKeepTheirEdges) {
+    const Mesh mesh = build_mesh(octahedron_sphere(3));
+    const std::vector<std::int32_t> labels = labels_by_plane(mesh);
+    const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})";
+    const std::string around =
+        R"("points": [[0.9, 0.1, 0.3], [0.1, 0.9, 0.3], [-0.9, 0.1, 0.3], [0.1, -0.9, 0.3]], "seed": [0, 0, 1])";
+    for (const std::string& level : std::vector<std::string>{
+             ball, R"({"box": {"min": [-2, -2, 0.3], "max": [2, 2, 2]}})",
+             R"({"halfspace": {"point": [0, 0, 0.31], "normal": [0.1, 0, 1]}})",
+             R"({"rectangle": {"camera": {"view": "front", "picture": [400, 300]}, "from": [150, 100], "to": [220, 190]}})",
+             R"({"threshold": {"coordinate": [0.1, 0.2, 1], "above": 0.37}})", R"({"brush": {"points": [0], "radius": 0.6}})",
+             "{\"lasso\": {" + around + "}}", R"({"grow": {"of": {"labels": [7]}, "distance": 0.2}})",
+             "{\"invert\": " + ball + "}", "{\"component\": {\"seed\": [0.36, 0.48, 0.8], \"of\": " + ball + "}}",
+             "{\"difference\": [{\"labels\": [7]}, " + ball + "]}"})
+        EXPECT_TRUE(is_free(*by_default(mesh, labels, level).find(2))) << level;
+    for (const std::string& faces : std::vector<std::string>{
+             R"({"labels": [7]})", R"({"faces": [1, 2, 3]})", R"({"all": true})", R"({"component": {"seed": 5}})",
+             R"({"threshold": {"thickness": true, "above": 0}})", "{\"grow\": {\"of\": " + ball + ", \"rings\": 1}}",
+             "{\"lasso\": {" + around + ", \"metric\": \"combined\"}}", R"({"annotation": 1})", R"({"invert": {"labels": [7]}})"})
+        EXPECT_FALSE(is_free(*by_default(mesh, labels, faces).find(2))) << faces;
+    // As asked, whatever it is.
+    EXPECT_FALSE(is_free(*by_default(mesh, labels, ball + R"(, "outline": "edges")").find(2)));
+    EXPECT_TRUE(is_free(*by_default(mesh, labels, R"({"labels": [7]}, "outline": "free")").find(2)));
+}
+
+TEST(FreeSelection, WhatIsMixedKeepsTheEdgesOfSetsOfFaces) {
+    const Mesh mesh = build_mesh(octahedron_sphere(4));
+    const std::vector<std::int32_t> labels = labels_by_plane(mesh);
+    const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})", of_label = R"({"labels": [7]})";
+    const auto area = [&](const std::string& select) { return area_of(mesh, *by_default(mesh, labels, select).find(2)); };
+    double labelled = 0;
+    for (const Face f : mesh.faces())
+        if (labels[f] == 7) labelled += face_area(mesh, f);
+    const std::string both = "[" + of_label + ", " + ball + "]";
+    EXPECT_NEAR(area("{\"union\": " + both + "}"), labelled + area(ball) - area("{\"intersection\": " + both + "}"), 1e-12);
+    EXPECT_NEAR(area("{\"difference\": " + both + "}"), labelled - area("{\"intersection\": " + both + "}"), 1e-12);
+}
+
+TEST(FreeSelection, EditsLeaveAnOutlineWhatItIsAndReplacementsAreNew) {
+    const Mesh mesh = build_mesh(octahedron_sphere(3));
+    const std::vector<std::int32_t> labels = labels_by_plane(mesh);
+    const std::string ball = R"({"sphere": {"centre": [0.36, 0.48, 0.8], "radius": 0.7}})";
+    const auto after = [&](const std::string& select, const std::string& step) {
+        return *by_default(mesh, labels, select, ", {\"id\": 2, " + step + "}").find(2);
+    };
+    EXPECT_FALSE(is_free(after(R"({"faces": [1, 2, 3]})", R"("action": "add to", "select": )" + ball)));
+    EXPECT_TRUE(is_free(after(ball, R"("action": "add to", "select": {"faces": [1, 2, 3]})")));
+    EXPECT_TRUE(is_free(after(R"({"faces": [1, 2, 3]})", R"("action": "replace", "select": )" + ball)));
+    EXPECT_FALSE(is_free(after(ball, R"("action": "replace", "select": {"faces": [1, 2, 3]})")));
+    // Along the edges from now on, with what there was.
+    const Annotation both = after(ball, R"("action": "add to", "outline": "edges", "select": {"faces": [1, 2, 3]})");
+    EXPECT_FALSE(is_free(both));
+    EXPECT_GT(both.faces.size(), by_default(mesh, labels, ball).find(2)->faces.size());
+}
+
+TEST(FreeSelection, WhereNoFreeOutlineCanBeMadeItRunsAlongTheEdges) {
+    // A plate of 8 by 8 squares; some of its triangles have a neighbour without area along one side, which cannot be cut inside.
+    constexpr Index n = 8;
+    TriangleSoup soup;
+    for (Index y = 0; y <= n; ++y)
+        for (Index x = 0; x <= n; ++x) soup.points.push_back({static_cast<double>(x), static_cast<double>(y), 0});
+    for (Index i = 0; i < 2 * n * n; ++i) {
+        const Index low = i / 2 / n * (n + 1) + i / 2 % n, high = low + n + 2;
+        const Index a = low, b = i % 2 == 0 ? low + 1 : high, c = i % 2 == 0 ? high : high - 1;
+        if (i % 2 == 0 && ((i >= 36 && i <= 38) || (i >= 50 && i <= 54) || (i >= 66 && i <= 70))) {
+            const Index middle = static_cast<Index>(soup.points.size());
+            soup.points.push_back({soup.points[a][0] + 0.4 * (soup.points[b][0] - soup.points[a][0]),
+                                   soup.points[a][1] + 0.4 * (soup.points[b][1] - soup.points[a][1]), 0});
+            soup.triangles.insert(soup.triangles.end(), {{a, middle, c}, {middle, b, c}, {a, b, middle}});
+        } else {
+            soup.triangles.push_back({a, b, c});
+        }
+    }
+    const Mesh mesh = build_mesh(soup);
+    std::size_t along_edges = 0;
+    for (const double x : {3.6, 4.0, 4.4})
+        for (const double radius : {0.9, 1.3, 1.7, 2.1}) {
+            const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 1, "tag": "disc",
+                "type": "region", "select": {"sphere": {"centre": [)" +
+                                     std::to_string(x) + ", 3, 0], \"radius\": " + std::to_string(radius) + "}}}]}";
+            const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
+            check_annotations(set, mesh, "plate");
+            const bool free = is_free(*set.find(1));
+            EXPECT_EQ(set.notes.empty(), free) << x << ' ' << radius;
+            if (free || set.notes.empty()) continue;
+            ++along_edges;
+            EXPECT_NE(set.notes.front().find("runs along the edges"), std::string::npos) << set.notes.front();
+        }
+    EXPECT_GT(along_edges, 0U);
+    EXPECT_LT(along_edges, 12U);
+}

@@ -92,16 +92,18 @@ TEST(DisjointRegions, PartitionsOfBustsStayPartitions) {
     RemeshOptions anew;
     anew.vertices = 1291;
     const Mesh remeshed = remesh(source, anew).mesh;
+    TransferOptions along_edges;
+    along_edges.outlines = TransferOptions::Outlines::kept;
     for (const Mesh* target : {static_cast<const Mesh*>(&simplified), &remeshed}) {
         const SurfaceSearch search(*target);
         for (const int number : {1, 3, 5}) {
             const Path labels = scratch / ("seg/bust/309/309_" + std::to_string(number) + ".seg");
             const AnnotationSet set = regions_from_labels(source, read_labels(labels, source.number_of_faces()));
             ASSERT_EQ(claimed(source, set, 1), source.number_of_faces());
-            const AnnotationSet there = transfer(source, set, search).annotations;
+            const AnnotationSet there = transfer(source, set, search, along_edges).annotations;
             EXPECT_EQ(claimed(*target, there, 1), target->number_of_faces()) << number;
             set_threads(1);
-            const AnnotationSet alone = transfer(source, set, search).annotations;
+            const AnnotationSet alone = transfer(source, set, search, along_edges).annotations;
             set_threads(0);
             for (std::size_t i = 0; i < there.annotations.size(); ++i)
                 EXPECT_EQ(there.annotations[i].faces, alone.annotations[i].faces);

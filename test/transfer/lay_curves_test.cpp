@@ -52,6 +52,26 @@ double area_sum(const Mesh& mesh, const AnnotationSet& set) {
     return sum;
 }
 
+/// Each face to the nearest of some places, spread over the mesh by a fixed rule: a partition with junctions.
+AnnotationSet cells(const Mesh& mesh, std::size_t count) {
+    AnnotationSet set;
+    set.annotations.resize(count);
+    std::vector<Point> seeds;
+    for (std::size_t k = 0; k < count; ++k) {
+        set.annotations[k].id = static_cast<int>(k);
+        set.annotations[k].tag = "cell " + std::to_string(k);
+        seeds.push_back(mesh.point(Vertex(static_cast<Index>((7919 * (k + 1)) % mesh.number_of_vertices()))));
+    }
+    for (const Face f : mesh.faces()) {
+        const Point at = centroid(mesh, f);
+        std::size_t best = 0;
+        for (std::size_t k = 1; k < count; ++k)
+            if (CGAL::squared_distance(at, seeds[k]) < CGAL::squared_distance(at, seeds[best])) best = k;
+        set.annotations[best].faces.push_back(f);
+    }
+    return set;
+}
+
 }  // namespace
 
 TEST(LayCurves, ThereAndBackIsTheSameCurve) {
@@ -115,6 +135,36 @@ TEST(LayCurves, OutlinesAlongEdgesBecomeFreeIfAsked) {
     EXPECT_NEAR(free.scores.at(0).target_length / free.scores.at(0).source_length, 1, 0.03);
     options.outlines = TransferOptions::Outlines::edges;
     EXPECT_FALSE(is_free(transfer(fine, free.annotations, on_fine, options).annotations.annotations.at(0)));
+}
+
+TEST(LayCurves, LabelsOfAPartitionBecomeFree) {
+    const Mesh fine = made("teapot", 6000, 1), coarse = made("teapot", 1500, 7);
+    AnnotationSet set = cells(fine, 6);
+    const SurfaceSearch on_coarse(coarse);
+    TransferOptions options;
+    options.overlap = false;
+    const auto worst_perimeter = [&] {
+        const TransferResult moved = transfer(fine, set, on_coarse, options);
+        double worst = 0;
+        for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+            const double before = measure_region(fine, set.annotations[i]).perimeter;
+            worst = std::max(worst, std::abs(measure_region(coarse, moved.annotations.annotations.at(i)).perimeter / before - 1));
+        }
+        return worst;
+    };
+    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_TRUE(is_free(one));
+    const double free = worst_perimeter();
+    EXPECT_LT(free, 0.03);  // of the two meshes, which share no vertex
+    // Others stay as they are: what is asked for, and what leaves a gap.
+    options.outlines = TransferOptions::Outlines::kept;
+    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    EXPECT_GT(worst_perimeter(), 5 * free);
+    options.outlines = TransferOptions::Outlines::partitions;
+    options.cover = TransferOptions::Cover::enclosing;
+    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
+    options.cover = TransferOptions::Cover::overlapping;
+    set.annotations.pop_back();
+    for (const Annotation& one : transfer(fine, set, on_coarse, options).annotations.annotations) EXPECT_FALSE(is_free(one));
 }
 
 TEST(LayCurves, FollowsSimplificationAndRefinement) {
@@ -199,26 +249,6 @@ Annotation disc_on(const Mesh& mesh, double x, double y, double radius) {
     }
     settle_elements(mesh, disc);
     return disc;
-}
-
-/// Each face to the nearest of some places, spread over the mesh by a fixed rule: a partition with junctions.
-AnnotationSet cells(const Mesh& mesh, std::size_t count) {
-    AnnotationSet set;
-    set.annotations.resize(count);
-    std::vector<Point> seeds;
-    for (std::size_t k = 0; k < count; ++k) {
-        set.annotations[k].id = static_cast<int>(k);
-        set.annotations[k].tag = "cell " + std::to_string(k);
-        seeds.push_back(mesh.point(Vertex(static_cast<Index>((7919 * (k + 1)) % mesh.number_of_vertices()))));
-    }
-    for (const Face f : mesh.faces()) {
-        const Point at = centroid(mesh, f);
-        std::size_t best = 0;
-        for (std::size_t k = 1; k < count; ++k)
-            if (CGAL::squared_distance(at, seeds[k]) < CGAL::squared_distance(at, seeds[best])) best = k;
-        set.annotations[best].faces.push_back(f);
-    }
-    return set;
 }
 
 Mesh moved_and_scaled(const Mesh& mesh, double scale, const Vector& by, double noise) {

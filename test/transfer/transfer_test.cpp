@@ -330,6 +330,7 @@ TEST(Transfer, RoundingKeepsThePartitionOfThreeRegions) {
     for (const char* rounding : {"path", "area", "balanced"}) {
         TransferOptions options;
         set_option(options, "rounding", rounding);
+        options.outlines = TransferOptions::Outlines::kept;
         std::vector<int> owners(target.number_of_faces(), 0);
         for (const Annotation& annotation : transfer_to(source, set, target, options).annotations.annotations)
             for (const Index f : annotation.faces) ++owners[f];

@@ -221,7 +221,7 @@ def transfer(
     vertex: Literal["projection", "source"] | None = 'projection',
     metric: Literal["euclidean", "segment", "combined"] | None = 'euclidean',
     spikes: Literal["prune", "avoid", "keep"] | None = 'prune',
-    outlines: Literal["kept", "free", "edges"] | None = 'kept',
+    outlines: Literal["partitions", "kept", "free", "edges"] | None = 'partitions',
     rounding: Literal["path", "area", "balanced"] | None = 'balanced',
     cover: Literal["overlapping", "enclosing", "enclosed"] | None = 'overlapping',
     refine: bool | None = False,

@@ -29,6 +29,9 @@ void settle_elements(const Mesh& mesh, Annotation& annotation);
 RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation);
 /// Area of a region, 0 of others.
 double area_of(const Mesh& mesh, const Annotation& annotation);
+
+/// The faces of a region, ascending, each with the share of its area that is inside: 1, or less where a free outline cuts it.
+std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region);
 /// Length of a line: of its curves if it is free.
 double length_of(const Mesh& mesh, const Annotation& annotation);
 /// The outlines of a region, the poly-lines of a line, the points of points, as coordinates; closed ones repeat their first.

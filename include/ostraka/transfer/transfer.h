@@ -19,7 +19,7 @@ struct TransferOptions {
     enum class Spikes { prune, avoid, keep } spikes = Spikes::prune;
     enum class Rounding { path, area, balanced } rounding = Rounding::balanced;
     enum class Cover { overlapping, enclosing, enclosed } cover = Cover::overlapping;
-    enum class Outlines { kept, free, edges } outlines = Outlines::kept;
+    enum class Outlines { partitions, kept, free, edges } outlines = Outlines::partitions;
     bool refine = false;
     bool overlap = true;
     bool force = false;
@@ -68,9 +68,10 @@ struct TransferResult {
 
 /// Transfers every annotation. Points go to the corresponding vertices; poly-lines and outlines become edge paths between
 /// corresponding vertices; regions are what lies to the left of their outlines; measures move with their pins and are
-/// evaluated anew. A region too small for the target becomes a line or a point and says so. Free annotations, and with
-/// `outlines` free all, are laid by their curves (lay_curves.h) and keep their type, however small.
-/// Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
+/// evaluated anew. A region too small for the target becomes a line or a point and says so. Free annotations, with `outlines`
+/// free all, and with `partitions` those regions which part the whole surface (unless `refine` or `cover` ask for edges), are
+/// laid by their curves (lay_curves.h) and keep their type, however small. Throws Error (input) if the meshes differ in unit,
+/// position or orientation, unless options.force.
 TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
                         const TransferOptions& options = {});
 

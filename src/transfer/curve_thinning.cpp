@@ -1,0 +1,75 @@
+#include "curve_thinning.h"
+
+#include "ostraka/core/progress.h"
+#include "ostraka/geom/shortest_path.h"
+#include "ostraka/geom/surface_trace.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace ostraka {
+
+namespace {
+
+using Places = std::vector<SurfacePlace>;
+
+/// Of the places strictly between two of a curve, those that the line needs (Ramer 1972, Douglas and Peucker 1973).
+void keep_needed(const Mesh& mesh, double tolerance, const Places& curve, std::size_t first, std::size_t last, Places& kept) {
+    Places run(curve.begin() + static_cast<std::ptrdiff_t>(first), curve.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    const bool turned = run.back() < run.front();
+    if (turned) std::reverse(run.begin(), run.end());
+    std::vector<Point> points;
+    for (const SurfacePlace& place : run) points.push_back(node_at(mesh, place).point);
+    std::vector<bool> keep(run.size(), false);
+    std::vector<std::pair<std::size_t, std::size_t>> stack{{0, run.size() - 1}};
+    CancelCheck check;
+    while (!stack.empty()) {
+        check();
+        const auto [a, b] = stack.back();
+        stack.pop_back();
+        std::size_t farthest = a;
+        double most = tolerance;
+        for (std::size_t k = a + 1; k < b; ++k)
+            if (const double off = distance_to_segment(points[k], points[a], points[b]); off > most) most = off, farthest = k;
+        if (farthest == a) continue;
+        keep[farthest] = true;
+        stack.emplace_back(a, farthest);
+        stack.emplace_back(farthest, b);
+    }
+    Places between;
+    for (std::size_t k = 1; k + 1 < run.size(); ++k)
+        if (keep[k]) between.push_back(run[k]);
+    if (turned) std::reverse(between.begin(), between.end());
+    kept.insert(kept.end(), between.begin(), between.end());
+}
+
+}  // namespace
+
+void thin_out(const Mesh& mesh, double tolerance, std::vector<Laid>& laid) {
+    std::map<SurfacePlace, std::set<SurfacePlace>> neighbours;
+    for (const Laid& one : laid)
+        for (const Places& curve : one.annotation.curves) {
+            for (std::size_t i = 1; i < curve.size(); ++i) {
+                if (curve[i].kind == SurfaceNode::Kind::face) neighbours[curve[i]].insert(curve[i - 1]);
+                if (curve[i - 1].kind == SurfaceNode::Kind::face) neighbours[curve[i - 1]].insert(curve[i]);
+            }
+        }
+    const auto may_go = [&](const SurfacePlace& place) {
+        return place.kind == SurfaceNode::Kind::face && neighbours.at(place).size() == 2;
+    };
+    for (Laid& one : laid)
+        for (Places& curve : one.annotation.curves) {
+            Places kept;
+            for (std::size_t i = 0; i < curve.size();) {
+                kept.push_back(curve[i]);
+                std::size_t end = i + 1;
+                while (end + 1 < curve.size() && may_go(curve[end])) ++end;
+                if (end < curve.size() && end > i + 1) keep_needed(mesh, tolerance, curve, i, end, kept);
+                i = end;
+            }
+            if (kept.size() >= 4 || kept.size() == curve.size() || kept.front() != kept.back()) curve = std::move(kept);
+        }
+}
+
+}  // namespace ostraka

@@ -1,0 +1,177 @@
+#include "place_mapping.h"
+
+#include "ostraka/core/limits.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+
+namespace ostraka {
+
+namespace {
+
+/// The edge of equilateral triangles of the mesh's mean area.
+double mean_triangle_edge(const Mesh& mesh) {
+    return std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / std::max<double>(1, static_cast<double>(mesh.number_of_faces())));
+}
+
+/// The weights of corners 1 and 2 of a face, and the distance d, with x(b) + d n(b) = p, by Newton's method from its middle and a
+/// first distance; nothing where it does not converge.
+std::optional<Eigen::Vector3d> meet_along_normals(const Mesh& mesh, Index face, const Point& p, double first_distance) {
+    const auto corner = corners(mesh, Face(face));
+    std::array<Eigen::Vector3d, 3> x, n;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vector at = mesh.point(corner[k]) - p, up = vertex_normal(mesh, corner[k]);
+        x[k] = {at.x(), at.y(), at.z()};
+        n[k] = {up.x(), up.y(), up.z()};
+    }
+    Eigen::Vector3d unknown(1.0 / 3, 1.0 / 3, first_distance);
+    const double size = std::max((x[1] - x[0]).norm(), (x[2] - x[0]).norm());
+    // Where normals nearly meet the root is double, and each round halves the error only.
+    for (int round = 0; round < 60; ++round) {
+        const double u = unknown[0], v = unknown[1], w = unknown[2];
+        const Eigen::Vector3d up = (1 - u - v) * n[0] + u * n[1] + v * n[2];
+        const Eigen::Vector3d off = (1 - u - v) * x[0] + u * x[1] + v * x[2] + w * up;
+        Eigen::Matrix3d slopes;
+        slopes << x[1] - x[0] + w * (n[1] - n[0]), x[2] - x[0] + w * (n[2] - n[0]), up;
+        if (!(std::abs(slopes.determinant()) > 1e-12 * size * size)) return std::nullopt;
+        const Eigen::Vector3d change = slopes.partialPivLu().solve(-off);
+        unknown += change;
+        if (!(std::abs(unknown[0]) + std::abs(unknown[1]) + std::abs(unknown[2]) / size < 1e6)) return std::nullopt;
+        if (std::abs(change[0]) + std::abs(change[1]) < 1e-14 && std::abs(change[2]) <= 1e-14 * size) return unknown;
+        // Rounding may keep the last digits moving.
+        if (round > 20 && off.norm() <= 1e-11 * size) return unknown;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Vector smooth_normal(const Mesh& mesh, const SurfaceNode& node) {
+    switch (node.kind) {
+        case SurfaceNode::Kind::vertex:
+            return vertex_normal(mesh, Vertex(node.element));
+        case SurfaceNode::Kind::edge: {
+            const Halfedge h = mesh.halfedge(Edge(node.element), 0);
+            return (1 - node.parameter) * vertex_normal(mesh, mesh.source(h)) +
+                   node.parameter * vertex_normal(mesh, mesh.target(h));
+        }
+        default: {
+            const auto corner = corners(mesh, Face(node.element));
+            Vector sum(0, 0, 0);
+            for (std::size_t k = 0; k < 3; ++k) sum = sum + node.barycentric[k] * vertex_normal(mesh, corner[k]);
+            return sum;
+        }
+    }
+}
+
+PlaceMapping::PlaceMapping(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options)
+    : source_(source),
+      search_(target),
+      target_(target.mesh()),
+      edge_(target.typical_edge()),
+      far_(options.max_distance * target.diagonal()),
+      min_cosine_(std::cos(options.max_angle * CGAL_PI / 180)) {
+    if (edge_ > (1 + 1e-9) * mean_triangle_edge(source)) on_source_.emplace(source_);
+}
+
+MappedPlace PlaceMapping::operator()(const SurfacePlace& place) const {
+    MappedPlace result;
+    result.from = node_at(source_, place);
+    result.normal = unit_vector(smooth_normal(source_, result.from));
+    const Point& p = result.from.point;
+    const auto take = [&](CorrespondenceKind kind, Index face, const std::array<double, 3>& weights) {
+        result.kind = kind;
+        result.to = surface_node(target_, face, on_longest_edge(face, weights));
+        result.up = unit_vector(smooth_normal(target_, result.to));
+    };
+    if (result.normal.squared_length() > 0) {
+        if (on_source_) {
+            if (const auto hit = along_target_normal(p, result.normal)) {
+                take(CorrespondenceKind::ray, hit->face, hit->barycentric);
+                result.mutual = is_mutual(result);
+                return result;
+            }
+        } else {
+            for (const double length : {std::min(far_, 2 * edge_), far_})
+                for (const SurfaceHit& hit : search_.line_hits(p, result.normal, length))
+                    if (search_.normal(hit.face) * result.normal >= min_cosine_) {
+                        take(CorrespondenceKind::ray, hit.face, hit.barycentric);
+                        result.mutual = true;
+                        return result;
+                    }
+        }
+    }
+    const bool oriented = result.normal.squared_length() > 0;
+    if (const auto hit = search_.closest_compatible(p, result.normal, oriented ? min_cosine_ : -1, far_))
+        take(CorrespondenceKind::closest, hit->face, hit->barycentric);
+    return result;
+}
+
+/// In a face as good as without height, which cannot be cut inside, the place beside it on its longest edge.
+std::array<double, 3> PlaceMapping::on_longest_edge(Index face, std::array<double, 3> weights) const {
+    const auto corner = corners(target_, Face(face));
+    std::size_t apex = 0;
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (const double length = gap_between(target_.point(corner[(k + 1) % 3]), target_.point(corner[(k + 2) % 3]));
+            length > longest)
+            longest = length, apex = k;
+    if (weights[apex] == 1 || 2 * face_area(target_, Face(face)) > 1e-6 * longest * longest) return weights;
+    const double rest = 1 - weights[apex];
+    for (std::size_t k = 0; k < 3; ++k) weights[k] = k == apex ? 0 : weights[k] / rest;
+    return weights;
+}
+
+/// Whether the line along the normal of the (coarser) target meets the source at this place first. What lies in a fold of the
+/// source that this line meets elsewhere before was not laid there from the target, and has no way back.
+bool PlaceMapping::is_mutual(const MappedPlace& one) const {
+    const std::vector<Face> own = faces_of(source_, one.from);
+    const auto faces_up = [&](Index f) { return on_source_->normal(f) * one.up >= min_cosine_; };
+    // On the rim of a fold the line may as well pass by.
+    if (!std::all_of(own.begin(), own.end(), faces_up)) return false;
+    const double at = std::abs((one.from.point - one.to.point) * one.up), tolerance = 1e-4 * edge_;
+    for (const SurfaceHit& hit : on_source_->line_hits(one.to.point, one.up, at))
+        if (std::abs(hit.distance) < at - tolerance && faces_up(hit.face)) return false;
+    return true;
+}
+
+/// The place of the target whose interpolated normal runs through p, from the nearest place on and over the edges that the
+/// weights lead across.
+std::optional<SurfaceHit> PlaceMapping::along_target_normal(const Point& p, const Vector& normal) const {
+    const auto start = search_.closest_compatible(p, normal, min_cosine_, far_);
+    if (!start) return std::nullopt;
+    Index face = start->face, came_from = no_index;
+    double d = start->distance * ((p - start->point) * search_.normal(face) < 0 ? -1 : 1);
+    for (int step = 0; step < 24; ++step) {
+        const auto found = meet_along_normals(target_, face, p, d);
+        if (!found) return std::nullopt;
+        const std::array<double, 3> weights{1 - (*found)[0] - (*found)[1], (*found)[0], (*found)[1]};
+        const auto lowest = static_cast<std::size_t>(std::min_element(weights.begin(), weights.end()) - weights.begin());
+        const auto corner = corners(target_, Face(face));
+        const Halfedge beyond = target_.opposite(find_halfedge(target_, corner[(lowest + 1) % 3], corner[(lowest + 2) % 3]));
+        const bool returns = !target_.is_border(beyond) && static_cast<Index>(target_.face(beyond)) == came_from;
+        if (weights[lowest] >= -1e-9 || returns) return weights[lowest] < -1e-3 ? std::nullopt : hit_in(face, weights, p, normal);
+        if (target_.is_border(beyond)) return std::nullopt;
+        came_from = face;
+        face = target_.face(beyond);
+        d = (*found)[2];
+    }
+    return std::nullopt;
+}
+
+/// The place of a face with these weights, none below zero, unless it is too far or faces away.
+std::optional<SurfaceHit> PlaceMapping::hit_in(Index face, const std::array<double, 3>& weights, const Point& p,
+                                               const Vector& normal) const {
+    SurfaceHit hit;
+    hit.face = face;
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += hit.barycentric[k] = std::max(0.0, weights[k]);
+    for (double& weight : hit.barycentric) weight /= sum;
+    hit.point = point_at(target_, face, hit.barycentric);
+    hit.distance = gap_between(hit.point, p);
+    if (hit.distance > far_ || search_.normal(face) * normal < min_cosine_) return std::nullopt;
+    return hit;
+}
+
+}  // namespace ostraka
