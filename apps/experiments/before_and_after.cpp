@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Figure 5.19.
-std::vector<Problem> hand(const Path& folder, std::uint64_t vertices) {
-    const auto subject = std::make_shared<Subject>(synthetic_subject("hand", vertices));
+std::vector<Problem> hand(const Path& folder, const Path& data, std::uint64_t vertices) {
+    const auto subject = std::make_shared<Subject>(synthetic_subject(data, "hand", vertices));
     for (Annotation& annotation : subject->set.annotations) {
         if (annotation.tag != "ring finger" && annotation.tag != "little finger") continue;
         Attribute attribute;
@@ -77,8 +77,8 @@ std::vector<Problem> hand(const Path& folder, std::uint64_t vertices) {
 }
 
 /// Figure 5.18: the axis of a slanting patch of the support's surface is no axis of the support.
-std::vector<Problem> patch(const Path& folder, std::uint64_t vertices) {
-    const auto chair = std::make_shared<Chair>(make_chair(vertices));
+std::vector<Problem> patch(const Path& folder, const Path& data, std::uint64_t vertices) {
+    const auto chair = std::make_shared<Chair>(make_chair(data, vertices));
     const Subject& subject = chair->subject;
     const std::vector<Point> rest = points_of(subject.mesh);
     // A strip of the segment that winds about the leg's axis by half a turn from its foot to its head.
@@ -152,9 +152,9 @@ std::vector<Problem> patch(const Path& folder, std::uint64_t vertices) {
 void before_and_after(const SemanticOptions& options) {
     const Path folder(options.output);
     const std::uint64_t vertices = options.vertices == 0 ? 25000 : options.vertices;
-    std::vector<Problem> problems = patch(folder, vertices);
-    for (Problem& problem : hand(folder, vertices)) problems.push_back(std::move(problem));
-    compare_convergence(folder, problems, options.iterations);
+    std::vector<Problem> problems = patch(folder, options.data, vertices);
+    for (Problem& problem : hand(folder, options.data, vertices)) problems.push_back(std::move(problem));
+    compare_convergence(folder, problems, options.convergence);
 }
 
 }  // namespace ostraka::experiments

@@ -103,9 +103,9 @@ void stretch_arm(Chair& chair) {
 
 }  // namespace
 
-Chair make_chair(std::uint64_t vertices) {
+Chair make_chair(const Path& data, std::uint64_t vertices) {
     Chair chair;
-    chair.subject = synthetic_subject("chair", vertices, bent);
+    chair.subject = synthetic_subject(data, "chair", vertices, bent);
     find_segment(chair);
     stretch_arm(chair);
     return chair;

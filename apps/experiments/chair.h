@@ -15,7 +15,7 @@ struct Chair {
     Eigen::Vector3d point, direction;  ///< the leg's axis at rest
 };
 /// The synthetic chair with supports that are bent backwards at their upper half: only their feet continue the legs.
-Chair make_chair(std::uint64_t vertices);
+Chair make_chair(const Path& data, std::uint64_t vertices);
 
 struct AxisDeviation {
     double angle = 0, distance = 0;  ///< degrees, mm

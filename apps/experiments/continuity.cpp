@@ -1,5 +1,6 @@
 // Figure 5.7 of the thesis: the arm of a chair becomes longer, and the foot of its support continues the leg.
 #include "chair.h"
+#include "coloured_mesh.h"
 #include "experiments.h"
 
 #include "ostraka/geom/eigen.h"
@@ -10,10 +11,15 @@ namespace ostraka::experiments {
 
 void structural_continuity(const SemanticOptions& options) {
     const Path folder(options.output);
-    const Chair chair = make_chair(options.vertices == 0 ? 90000 : options.vertices);
+    const Chair chair = make_chair(options.data, options.vertices == 0 ? 90000 : options.vertices);
     const Subject& subject = chair.subject;
     std::vector<Outcome> outcomes;
     outcomes.push_back({"rest", "rest", points_of(subject.mesh), {}, 0, 0, {}});
+    std::vector<double> marked(subject.mesh.number_of_vertices(), 0);
+    for (const Index v : vertices_of(subject.mesh, subject.part("left support"))) marked[v] = 0.5;
+    for (const Index v : vertices_of(subject.mesh, subject.part("front left leg"))) marked[v] = 0.25;
+    for (const Index v : chair.segment) marked[v] = 1;
+    write_coloured(folder / "segment.ply", subject.mesh, marked);
     Outcome arm{"arm longer", "arm", chair.edited, {}, 0, 0, {}};
     for (const Index v : vertices_of(subject.mesh, subject.part("left support"))) arm.points[v] = outcomes[0].points[v];
     for (const Index v : joint_of(subject.mesh, subject.part("left support"), &subject.part("left arm")))
@@ -64,7 +70,7 @@ void structural_continuity(const SemanticOptions& options) {
               return deformed_from(subject, chair.edited, continuity_graph(chair, false), continuity_options(solve), "", "")
                   .summary;
           }}},
-        options.iterations);
+        options.convergence);
 }
 
 }  // namespace ostraka::experiments

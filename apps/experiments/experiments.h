@@ -41,6 +41,7 @@ struct Table41Options {
     double share = 0.025;                     ///< of the surface
     std::uint64_t cage_vertices = 200;
     int iterations = 50;
+    int convergence = 0;  ///< iterations, plain and accelerated, that are compared; 0: none
 };
 void table_4_1(const Table41Options& options);
 
@@ -62,10 +63,18 @@ void control_points(const ControlPointOptions& options);
 /// How far each annotation moves from one shape to others.
 struct MovedOptions {
     std::string mesh, annotations, output;
-    std::string fit;  ///< folder of a fit of a fragment in the frame of `mesh`, in place of shapes
+    std::string fit;       ///< folder of a fit of a fragment of `mesh`, in place of shapes
+    std::string pose;      ///< of 'ostraka mesh break --pose-out', where the fragment is not in the frame of `mesh`
+    std::string fragment;  ///< mesh file of the fragment, for the picture of where it was laid
     std::vector<std::string> shapes;
 };
 void moved(const MovedOptions& options);
+
+/// Figure 3.7: points of several forms and the clusters that DBSCAN finds among them.
+struct ClusterPictureOptions {
+    std::string output;  ///< folder
+};
+void cluster_picture(const ClusterPictureOptions& options);
 
 /// Figures 6.1 and 6.2: edits and constraints through cages.
 struct CageReachOptions {
@@ -100,9 +109,10 @@ void repairs(const RepairExperiment& options);
 /// Of the experiments on semantic constraints.
 struct SemanticOptions {
     std::string output;          ///< folder
+    std::string data;            ///< folder of the recipes of synthetic objects
     std::string mesh, recipe;    ///< of the face
     std::uint64_t vertices = 0;  ///< 0: as in the thesis
-    int iterations = 150;        ///< of the comparison of plain and accelerated iterations
+    int convergence = 0;         ///< iterations of the comparison of plain and accelerated ones; 0: none
 };
 void same_level(const SemanticOptions& options);
 void structural_continuity(const SemanticOptions& options);

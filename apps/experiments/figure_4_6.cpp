@@ -69,6 +69,33 @@ SolveOptions solving(const Case& one) {
     return options;
 }
 
+using OtherParts = std::vector<std::pair<const Annotation*, std::vector<Index>>>;
+
+std::pair<double, double> mean_and_most(const std::vector<double>& moved, const std::vector<Index>& vertices) {
+    double sum = 0, maximum = 0;
+    for (const Index v : vertices) sum += moved[v], maximum = std::max(maximum, moved[v]);
+    return {sum / static_cast<double>(vertices.size()), maximum};
+}
+
+/// The part itself, all others, and the one of them that moves most in the mean; ways as shares of the diagonal.
+std::string summary_row(const std::string& name, const Solved& one, double flatness, double diagonal,
+                        const std::vector<Index>& region, const OtherParts& others) {
+    const auto [mean, most] = mean_and_most(one.moved, region);
+    std::vector<Index> all;
+    std::string other;
+    double other_mean = -1, other_most = 0;
+    for (const auto& [annotation, vertices] : others) {
+        all.insert(all.end(), vertices.begin(), vertices.end());
+        const auto [its_mean, its_most] = mean_and_most(one.moved, vertices);
+        if (its_mean > other_mean) other = annotation->tag, other_mean = its_mean, other_most = its_most;
+    }
+    return '"' + name +
+           format("\",%d,%.6g,%.6g,%.6g,%.6g,\"", one.summary.iterations, flatness, mean / diagonal, most / diagonal,
+                  all.empty() ? 0 : mean_and_most(one.moved, all).first / diagonal) +
+           (other_mean > 0 ? other : "none") +
+           format("\",%.6g,%.6g\n", std::max(other_mean, 0.0) / diagonal, other_most / diagonal);
+}
+
 const Annotation& region_of(const AnnotationSet& set, const std::string& tag, const std::string& file) {
     for (const Annotation& annotation : set.annotations)
         if (annotation.tag == tag && !annotation.faces.empty()) return annotation;
@@ -128,9 +155,10 @@ void figure_4_6(const Figure46Options& options) {
         if (cases[i].problem.rest_kind != "nothing")
             farthest = std::max(farthest, *std::max_element(solved[i].moved.begin(), solved[i].moved.end()));
     std::string text = "| case | iterations | not flat, rms, % of the diagonal | % of rest | ", rule = "|---|---|---|---|---|",
-                rows = "case,iterations,regularised,flatness,flatness_of_rest,part,mean_moved,max_moved\n", body;
+                rows = "case,iterations,regularised,flatness,flatness_of_rest,part,mean_moved,max_moved\n", body,
+                summary = "case,iterations,flatness_of_rest,mean,most,others_mean,other,other_mean,other_most\n";
     text += "part itself |";
-    std::vector<std::pair<const Annotation*, std::vector<Index>>> others;
+    OtherParts others;
     std::vector<bool> inside(mesh.number_of_vertices(), false);
     for (const Index v : region) inside[v] = true;
     for (const Annotation& annotation : set.annotations) {
@@ -148,9 +176,7 @@ void figure_4_6(const Figure46Options& options) {
         body += "| " + cases[i].about +
                 format(" | %d | %.4f | %.2f |", one.summary.iterations, 100 * after / diagonal, 100 * after / flat);
         const auto column = [&](const std::string& tag, const std::vector<Index>& vertices) {
-            double sum = 0, maximum = 0;
-            for (const Index v : vertices) sum += one.moved[v], maximum = std::max(maximum, one.moved[v]);
-            const double mean = sum / static_cast<double>(vertices.size());
+            const auto [mean, maximum] = mean_and_most(one.moved, vertices);
             body += format(" %.3f (%.3f) |", 100 * mean / diagonal, 100 * maximum / diagonal);
             rows += cases[i].name +
                     format(",%d,%d,%.6g,%.6g,\"", one.summary.iterations, int(one.summary.regularised), after, after / flat) +
@@ -159,6 +185,7 @@ void figure_4_6(const Figure46Options& options) {
         column(options.region, region);
         for (const auto& [annotation, vertices] : others) column(annotation->tag, vertices);
         body += '\n';
+        summary += summary_row(cases[i].about, one, after / flat, diagonal, region, others);
         write_coloured(folder / (cases[i].name + ".ply"), with_points(mesh, mesh_points(one.points)), one.moved, farthest);
     }
     text =
@@ -170,6 +197,7 @@ void figure_4_6(const Figure46Options& options) {
         format("%.4g", farthest) + ".\n\n" + text + '\n' + rule + '\n' + body;
     write_file(folder / "table.md", text);
     write_file(folder / "table.csv", rows);
+    write_file(folder / "summary.csv", summary);
     std::cout << text;
 }
 

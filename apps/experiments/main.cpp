@@ -50,6 +50,8 @@ void declare_table_4_1(CLI::App& command, Table41Options& options) {
     command.add_option("--share", options.share, "of the surface, of the region")->capture_default_str();
     command.add_option("--cage-vertices", options.cage_vertices, "of the cage")->capture_default_str();
     command.add_option("--iterations", options.iterations, "plain iterations that are timed")->capture_default_str();
+    ranged(command, "--convergence", options.convergence,
+           "iterations, plain and accelerated, that are compared at the first resolution; 0: none", 0, 100000);
     command.add_option("--output", options.output, "folder to write to")->capture_default_str();
 }
 
@@ -91,7 +93,13 @@ void declare_moved(CLI::App& command, MovedOptions& options) {
                                    "folder of 'ostraka fit --no-join': its completed.ply is the shape, and the shape at rest, in "
                                    "the frame of the fragment, goes where the fragment was laid");
     shapes->excludes(fit);
+    command.add_option("--pose", options.pose, "of 'ostraka mesh break --pose-out', if the fragment was moved")->needs(fit);
+    command.add_option("--fragment", options.fragment, "mesh file of the fragment: laid.ply shows where it was laid")->needs(fit);
     command.add_option("--output", options.output, "folder to write to")->required();
+}
+
+void declare_cluster_picture(CLI::App& command, ClusterPictureOptions& options) {
+    command.add_option("output", options.output, "folder for the plot and its table")->required();
 }
 
 void declare_cage_reach(CLI::App& command, CageReachOptions& options) {
@@ -207,7 +215,7 @@ void declare_moulds(CLI::App& command, MouldExperimentOptions& options) {
         ->check(CLI::IsMember({"choices", "wear", "runs", "scans"}));
     command.add_option("--face", options.faces, "mesh files of faces with the same vertices, for scans");
     ranged(command, "--objects", options.objects, "casts of four moulds", 8, 10000);
-    ranged(command, "--casts", options.casts, "in the thesis's runs: casts; heads formed by hand are 24 to 43 of them", 8, 10000);
+    ranged(command, "--casts", options.casts, "in the thesis's runs: casts; heads formed by hand are 60 to 43 of them", 8, 10000);
     ranged(command, "--seeds", options.seeds, "populations", 1, 1000);
     ranged(command, "--vertices", options.vertices, "of a whole head", 1500, 1000000);
 }
@@ -258,8 +266,13 @@ void declare_class_correspondence(CLI::App& command, ClassCorrespondenceOptions&
 void declare_semantic(CLI::App& command, SemanticOptions& options) {
     command.add_option("output", options.output, "folder for tables, plots and meshes")->required();
     command.add_option("--vertices", options.vertices, "of made objects; 0: as in the thesis");
-    command.add_option("--iterations", options.iterations, "of the comparison of plain and accelerated iterations")
-        ->check(CLI::Range(1, 100000));
+    command.add_option("--convergence", options.convergence, "iterations, plain and accelerated, that are compared; 0: none")
+        ->check(CLI::Range(0, 100000));
+}
+
+void declare_annotated(CLI::App& command, SemanticOptions& options) {
+    declare_semantic(command, options);
+    command.add_option("--data", options.data, "folder of the project's recipes, such as teapot.recipe.json")->required();
 }
 
 void declare_face(CLI::App& command, SemanticOptions& options) {
@@ -306,6 +319,8 @@ constexpr Experiment list[] = {
     {"counterparts", "templates fitted to other members: how far vertices end from their true places",
      declared<declare_counterparts, counterparts>},
     {"moved", "how far each annotation moves from one shape of a mesh to others", declared<declare_moved, moved>},
+    {"dbscan", "points of several forms and the clusters found among them (figure 3.7)",
+     declared<declare_cluster_picture, cluster_picture>},
     {"cage-reach", "how near cages come to what constraints ask for (figures 6.1, 6.2)",
      declared<declare_cage_reach, cage_reach>},
     {"labels", "part labels carried to a remeshed version and back", declared<declare_label_transfer, label_transfer>},
@@ -331,12 +346,12 @@ constexpr Experiment list[] = {
     {"class-size", "how many members a class needs, of made ones", declared<declare_class_size, class_size>},
     {"class-correspondence", "modes and fits of faces and bodies in correspondence",
      declared<declare_class_correspondence, class_correspondence>},
-    {"same-level", "flowers of a stretched teapot (thesis, figures 5.3 and 5.4)", declared<declare_semantic, same_level>},
+    {"same-level", "flowers of a stretched teapot (thesis, figures 5.3 and 5.4)", declared<declare_annotated, same_level>},
     {"structural-continuity", "a chair's longer arm and its support (figure 5.7)",
-     declared<declare_semantic, structural_continuity>},
+     declared<declare_annotated, structural_continuity>},
     {"face-proportions", "nose and eyes of a face (figure 5.17)", declared<declare_face, face_proportions>},
     {"before-and-after", "a patch's axis, a finger's stretch (figures 5.18 and 5.19)",
-     declared<declare_semantic, before_and_after>},
+     declared<declare_annotated, before_and_after>},
     {"technique", "wheel-made or hand-made: F1 on generated statuettes by level of difficulty (section 3.2.1)",
      declared<declare_technique, technique>}};
 

@@ -266,7 +266,7 @@ void draw_groups(const Path& file, const std::string& title, const MouldGroups& 
 void run_experiment(const MouldExperimentOptions& options) {
     MouldPopulationOptions population;
     population.objects = options.casts;
-    population.hand_made = (options.casts * 24 + 21) / 43;
+    population.hand_made = (options.casts * 60 + 21) / 43;
     population.seed = 5;
     CastOptions cast = cast_of(options, 0.01);
     cast.beard = 0.4;

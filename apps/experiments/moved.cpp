@@ -20,17 +20,32 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// Carries points of the first fragment's frame to where the fit laid it.
-void lay(const std::string& file, std::vector<Point>& points) {
+Motion motion_of(const JsonValue& matrix) {
+    Motion motion;
+    for (rapidjson::SizeType i = 0; i < 3; ++i)
+        for (rapidjson::SizeType j = 0; j < 4; ++j)
+            (j < 3 ? motion.rotation(i, j) : motion.translation(i)) = matrix[i][j].GetDouble();
+    return motion;
+}
+
+/// Where a fit laid its one fragment, from the fragment's frame.
+Motion laid(const std::string& file) {
     const Json assembly = read_json(file);
     const auto fragments = list_in(assembly, "fragments");
     const JsonValue* pose = fragments.Size() == 1 ? find_member(fragments[0], "pose") : nullptr;
     if (pose == nullptr) fail_input(file, "is no assembly of one fragment that has a pose");
-    Motion motion;
-    for (rapidjson::SizeType i = 0; i < 3; ++i)
-        for (rapidjson::SizeType j = 0; j < 4; ++j)
-            (j < 3 ? motion.rotation(i, j) : motion.translation(i)) = (*pose)[i][j].GetDouble();
-    for (Point& p : points) p = point_of(motion(eigen(p)));
+    return motion_of(*pose);
+}
+
+/// The fitted shape with the fragment where it was laid, one coloured mesh.
+void write_laid(const Path& file, const Mesh& shape, Mesh fragment, const Motion& motion) {
+    for (const Vertex v : fragment.vertices()) fragment.point(v) = point_of(motion(eigen(fragment.point(v))));
+    Mesh both = shape;
+    both.join(fragment);
+    MeshExtras extras;
+    extras.vertex_colours.assign(both.number_of_vertices(), Colour{150, 175, 205, 255});
+    std::fill(extras.vertex_colours.begin() + shape.number_of_vertices(), extras.vertex_colours.end(), Colour{205, 90, 60, 255});
+    write_mesh(file, both, extras);
 }
 
 }  // namespace
@@ -43,8 +58,13 @@ void moved(const MovedOptions& options) {
     std::vector<Point> rest = ostraka::points_of(mesh);
     std::vector<std::string> shapes = options.shapes;
     if (!options.fit.empty()) {
-        lay((Path(options.fit) / "fit.assembly.json").string(), rest);
+        const Motion motion = laid((Path(options.fit) / "fit.assembly.json").string());
+        const Motion broken = options.pose.empty() ? Motion() : motion_of(read_json(options.pose));
+        const Motion from_rest = motion.after(broken.inverse());
+        for (Point& p : rest) p = point_of(from_rest(eigen(p)));
         shapes = {(Path(options.fit) / "completed.ply").string()};
+        if (!options.fragment.empty())
+            write_laid(folder / "laid.ply", read_mesh(shapes[0]).mesh, read_mesh(options.fragment).mesh, motion);
     }
     if (shapes.empty()) fail_usage("no shapes are given", "give mesh files, or --fit");
     const double diagonal = box_diagonal(mesh);

@@ -98,10 +98,11 @@ struct Measures {
 class Teapot {
 public:
     explicit Teapot(const SemanticOptions& options)
-        : options_(options), pot_(synthetic_subject("teapot", options.vertices == 0 ? 60000 : options.vertices)) {
+        : options_(options), pot_(synthetic_subject(options.data, "teapot", options.vertices == 0 ? 60000 : options.vertices)) {
         for (const Annotation& annotation : pot_.set.annotations)
             if (annotation.tag.rfind("flower ", 0) == 0) flowers_.push_back(annotation.id);
-        if (flowers_.size() != 5) fail_input("data/teapot.recipe.json", "has not five flowers", "use the project's own");
+        if (flowers_.size() != 5)
+            fail_input((Path(options.data) / "teapot.recipe.json").string(), "has not five flowers", "use the project's own");
         edited_ = points_of(pot_.mesh);
         for (const int id : flowers_) references_[id] = reference_vertex(edited_, vertices_of(pot_.mesh, *pot_.set.find(id)));
         for (Point& p : edited_) p = {p.x(), p.y(), factor * p.z()};
@@ -156,7 +157,7 @@ public:
         compare_convergence(folder,
                             {problem("thesis", "Same level on the teapot, thesis mode, 4 against 4", list.front()),
                              problem("defaults", "Same level on the teapot, defaults, soft", list[list.size() - 3])},
-                            options_.iterations);
+                            options_.convergence);
     }
 
 private:

@@ -3,7 +3,6 @@
 #include "convergence.h"
 
 #include "ostraka/annotation/colouring.h"
-#include "ostraka/core/child_process.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/npy.h"
 #include "ostraka/geom/eigen.h"
@@ -60,12 +59,12 @@ int Subject::id(const std::string& tag) const {
     fail_input(tag, "no annotation has this tag", "see the recipe that the experiment names");
 }
 
-Subject synthetic_subject(const std::string& object, std::uint64_t vertices, const std::function<Point(const Point&)>& warp) {
+Subject synthetic_subject(const Path& data, const std::string& object, std::uint64_t vertices,
+                          const std::function<Point(const Point&)>& warp) {
     SyntheticMesh made = make_mesh(synthetic_object(object), {.vertices = vertices});
     if (warp)
         for (const Vertex v : made.mesh.vertices()) made.mesh.point(v) = warp(made.mesh.point(v));
-    AnnotationSet set =
-        apply_recipe(own_program_folder() / "../../data" / (object + ".recipe.json"), made.mesh, made.face_labels);
+    AnnotationSet set = apply_recipe(data / (object + ".recipe.json"), made.mesh, made.face_labels);
     return {std::move(made.mesh), std::move(set)};
 }
 
@@ -218,6 +217,7 @@ void write_outcome(const Path& folder, const Subject& subject, const Outcome& ou
 }
 
 void compare_convergence(const Path& folder, const std::vector<Problem>& problems, int iterations) {
+    if (iterations == 0) return;
     std::string markdown, csv = convergence_csv_header();
     for (const Problem& problem : problems) {
         const auto with_window = [&](int window, int count) { return problem.solve({count, 1e-10, 0, window}); };

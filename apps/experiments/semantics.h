@@ -23,7 +23,8 @@ struct Subject {
 };
 
 /// A synthetic object, its points moved before it is annotated if `warp` is given.
-Subject synthetic_subject(const std::string& object, std::uint64_t vertices, const std::function<Point(const Point&)>& warp = {});
+Subject synthetic_subject(const Path& data, const std::string& object, std::uint64_t vertices,
+                          const std::function<Point(const Point&)>& warp = {});
 
 /// One result of an experiment.
 struct Outcome {

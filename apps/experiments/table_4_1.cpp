@@ -169,19 +169,19 @@ std::string csv_row(const std::string& kind, const char* space, const Measured& 
 }
 
 /// Plain and accelerated runs at one resolution, beside a long one.
-std::string convergence_tables(const Mesh& mesh, const std::vector<Index>& region, const Mesh& cage, const Path& folder,
-                               std::string& csv) {
+std::string convergence_tables(const Mesh& mesh, const std::vector<Index>& region, const Mesh& cage, int iterations,
+                               const Path& folder, std::string& csv) {
     std::string text;
     for (const char* kind : {"closeness", "laplacian"})
         for (const Mesh* around : {static_cast<const Mesh*>(nullptr), &cage}) {
             const std::string name = std::string(kind) + (around == nullptr ? ", mesh" : ", cage");
-            const auto solve = [&](int iterations, int window) {
-                return Problem(mesh, region, kind, around).run(solving(iterations, window)).summary;
+            const auto solve = [&](int count, int window) {
+                return Problem(mesh, region, kind, around).run(solving(count, window)).summary;
             };
-            const double known = solve(2000, 10).objective.back();
+            const double known = solve(7 * iterations, 10).objective.back();
             std::vector<SolveRun> runs;
             for (const int window : {0, 2, 5, 10})
-                runs.push_back({window == 0 ? "plain" : format("accelerated, window %d", window), solve(300, window)});
+                runs.push_back({window == 0 ? "plain" : format("accelerated, window %d", window), solve(iterations, window)});
             const double best = best_objective(runs, known);
             text += "\n" + name + "\n\n" + convergence_header();
             for (const SolveRun& run : runs) {
@@ -214,7 +214,9 @@ void table_4_1(const Table41Options& options) {
         const std::vector<Index> region = region_of(mesh, solver_points(mesh), options.direction, options.share);
         if (cage.is_empty()) {
             cage = make_cage(mesh, {.vertices = options.cage_vertices}).cage;
-            convergence_text = convergence_tables(mesh, region, cage, folder, convergence_rows);
+            if (options.convergence > 0)
+                convergence_text = "\nConvergence at the first resolution\n" +
+                                   convergence_tables(mesh, region, cage, options.convergence, folder, convergence_rows);
         }
         for (const std::string kind : {"closeness", "laplacian"}) {
             std::vector<Measured> both;
@@ -258,11 +260,10 @@ void table_4_1(const Table41Options& options) {
                              " thesis: ShapeOp, cage, s | prototype: mesh set-up / 50, cage set-up / 50, s "
                              "|\n|---|---|---|---|---|---|---|---|---|---|\n" +
                              tables["closeness"] + "\nLaplacian displacement on every vertex\n" + head +
-                             "\n|---|---|---|---|---|---|---|---|\n" + tables["laplacian"] +
-                             "\nConvergence at the first resolution\n" + convergence_text;
+                             "\n|---|---|---|---|---|---|---|---|\n" + tables["laplacian"] + convergence_text;
     write_file(folder / "table.md", text);
     write_file(folder / "table.csv", rows);
-    write_file(folder / "convergence.csv", convergence_rows);
+    if (options.convergence > 0) write_file(folder / "convergence.csv", convergence_rows);
     std::cout << text;
 }
 

@@ -75,6 +75,8 @@ ObjectPointer make_vase();
 ObjectPointer make_statuette();
 ObjectPointer make_chair();
 ObjectPointer make_hand();
+ObjectPointer make_elephant();
+ObjectPointer make_bird();
 ObjectPointer make_sphere();
 ObjectPointer make_torus_object();
 ObjectPointer make_box_object();

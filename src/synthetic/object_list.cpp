@@ -11,12 +11,18 @@ namespace ostraka {
 namespace {
 using Maker = shapes::ObjectPointer (*)();
 const std::map<std::string, Maker>& makers() {
-    static const std::map<std::string, Maker> list{
-        {"box", shapes::make_box_object},      {"capsule", shapes::make_capsule},
-        {"chair", shapes::make_chair},         {"cylinder", shapes::make_cylinder_object},
-        {"hand", shapes::make_hand},           {"sphere", shapes::make_sphere},
-        {"statuette", shapes::make_statuette}, {"teapot", shapes::make_teapot},
-        {"torus", shapes::make_torus_object},  {"vase", shapes::make_vase}};
+    static const std::map<std::string, Maker> list{{"bird", shapes::make_bird},
+                                                   {"box", shapes::make_box_object},
+                                                   {"capsule", shapes::make_capsule},
+                                                   {"chair", shapes::make_chair},
+                                                   {"cylinder", shapes::make_cylinder_object},
+                                                   {"elephant", shapes::make_elephant},
+                                                   {"hand", shapes::make_hand},
+                                                   {"sphere", shapes::make_sphere},
+                                                   {"statuette", shapes::make_statuette},
+                                                   {"teapot", shapes::make_teapot},
+                                                   {"torus", shapes::make_torus_object},
+                                                   {"vase", shapes::make_vase}};
     return list;
 }
 
