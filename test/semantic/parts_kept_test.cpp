@@ -345,26 +345,27 @@ TEST(PartsKept, OnOneLevelTheyGrowWithTheOneThatTheyFollow) {
     for (const int id : {foot, top})
         EXPECT_NEAR(area_of(there, column.set.find(id)->faces) / area_of(column.mesh, column.set.find(id)->faces), 1.44, 1e-3)
             << id;
+}
 
-    TEST(PartsKept, AreasOfFreePartsAreThoseOfTheirCurves) {
-        // Caps of the same size on a coarse sphere: the triangles nearest to them differ by far more than they do.
-        const Mesh mesh = build_mesh(octahedron_sphere(3));
-        const auto deviation = [&](const std::string& outline) {
-            const std::string head = R"(", "type": "region", "outline": ")" + outline + R"(", "select": {"sphere": {"centre": )";
-            const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 1, "tag": "a)" + head +
-                                     R"([0, 0, 1], "radius": 0.3}}}, {"id": 2, "tag": "b)" + head +
-                                     R"([0.36, 0.48, 0.8], "radius": 0.3}}}]})";
-            const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
-            RelationGraph graph;
-            graph.relationships.push_back(constraint(0, "part similarity", {1, 2}, "{}"));
-            const ConstraintReport judged = judge_constraints(mesh, set, graph).at(0);
-            EXPECT_FALSE(judged.deviations.empty()) << judged.text;
-            for (const Deviation& one : judged.deviations)
-                if (one.quantity == "area") return one.value.value();
-            return -1.0;
-        };
-        const double free = deviation("free"), edges = deviation("edges");
-        EXPECT_GE(free, 0);
-        EXPECT_LT(free, 1);  // of second order in the edges' length
-        EXPECT_GT(edges, 2 * free + 1);
-    }
+TEST(PartsKept, AreasOfFreePartsAreThoseOfTheirCurves) {
+    // Caps of the same size on a coarse sphere: the triangles nearest to them differ by far more than they do.
+    const Mesh mesh = build_mesh(octahedron_sphere(3));
+    const auto deviation = [&](const std::string& outline) {
+        const std::string head = R"(", "type": "region", "outline": ")" + outline + R"(", "select": {"sphere": {"centre": )";
+        const std::string text = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 1, "tag": "a)" + head +
+                                 R"([0, 0, 1], "radius": 0.3}}}, {"id": 2, "tag": "b)" + head +
+                                 R"([0.36, 0.48, 0.8], "radius": 0.3}}}]})";
+        const AnnotationSet set = apply_recipe(parse_json(text, "test"), mesh, {}, "test");
+        RelationGraph graph;
+        graph.relationships.push_back(constraint(0, "part similarity", {1, 2}, "{}"));
+        const ConstraintReport judged = judge_constraints(mesh, set, graph).at(0);
+        EXPECT_FALSE(judged.deviations.empty()) << judged.text;
+        for (const Deviation& one : judged.deviations)
+            if (one.quantity == "area") return one.value.value();
+        return -1.0;
+    };
+    const double free = deviation("free"), edges = deviation("edges");
+    EXPECT_GE(free, 0);
+    EXPECT_LT(free, 1);  // of second order in the edges' length
+    EXPECT_GT(edges, 2 * free + 1);
+}
