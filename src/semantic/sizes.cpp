@@ -40,6 +40,9 @@ Sizes::Sizes(std::vector<const Sized*> parts, const Shape& shape, const State& e
         // A part that only gave way to its neighbours is as it was.
         start_.push_back(2 * asked >= parts_[i]->vertices.size() ? edited.points : shape.rest);
         led_.push_back(parts_[i]->led ? parts_[i]->led(edited) : std::nullopt);
+        const auto [low, high] = led_[i] ? *led_[i] : parts_[i]->range(edited);
+        const double value = parts_[i]->value(edited);
+        side_.push_back(value < low ? -1 : value > high ? 1 : 0);
     }
     factors_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
     renew_maps();
@@ -63,8 +66,8 @@ Eigen::VectorXd Sizes::errors(const State& now) const {
         const double value = parts_[i]->value(now);
         const auto [low, high] = led_[i] ? *led_[i] : parts_[i]->range(now);
         constexpr double far = 5;  // of what has vanished
-        list[static_cast<Eigen::Index>(i)] =
-            value > 0 ? std::clamp(std::log(value / std::clamp(value, low, high)), -far, far) : -far;
+        const double goal = side_[i] < 0 ? low : side_[i] > 0 ? high : std::clamp(value, low, high);
+        list[static_cast<Eigen::Index>(i)] = value > 0 ? std::clamp(std::log(value / goal), -far, far) : -far;
     }
     return list;
 }

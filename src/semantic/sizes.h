@@ -42,8 +42,10 @@ private:
     std::vector<int> owner_;                    ///< of each vertex, -1 for none
     std::vector<Eigen::Matrix3d> maps_;
     std::vector<std::optional<std::pair<double, double>>> led_;  ///< ranges that a part gives that the edit leads
-    Eigen::VectorXd factors_, errors_, step_;                    ///< logarithms
-    Eigen::MatrixXd slopes_;                                     ///< of measures by factors
+    /// Whether the edit leaves the measure below its range (-1), above (1), or in it (0): it comes to the nearer end, no farther.
+    std::vector<int> side_;
+    Eigen::VectorXd factors_, errors_, step_;  ///< logarithms
+    Eigen::MatrixXd slopes_;                   ///< of measures by factors
 };
 
 /// Whether no shape can have both: all of the part's vertices are the whole's, along the same axis, and more is asked of the part

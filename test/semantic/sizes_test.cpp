@@ -158,3 +158,17 @@ TEST(Sizes, PartsThatMovedAreListedForAnEditWithoutSteps) {
     }
     EXPECT_GT(listed, 1U);
 }
+
+TEST(Sizes, AMeasureComesToTheNearerEndOfItsRangeAndNoFarther) {
+    for (const double share : {0.7, 1.4}) {
+        Object object("vase");
+        RelationGraph graph = object.ask({{"lip", z, share}});
+        const double rest = object.extent("lip", z, points_of(object.made.mesh));
+        Json parameters = parse_json(graph.relationships[0].constraint, "test");
+        parameters["minValue"].SetDouble(share < 1 ? 0.5 * rest : share * rest);
+        parameters["maxValue"].SetDouble(share < 1 ? share * rest : 2 * rest);
+        graph.relationships[0].constraint = to_compact_text(parameters);
+        const DeformResult result = deform({object.made.mesh, object.set}, graph, edit(""), "e");
+        EXPECT_NEAR(object.extent("lip", z, result.points) / rest, share, 2e-4);
+    }
+}

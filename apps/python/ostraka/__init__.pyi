@@ -115,7 +115,7 @@ def deform(
     rotate: Text | Sequence[Text] | None = None,
     keep: Text | Sequence[Text] | None = None,
     level: Text | Sequence[Text] | None = None,
-    space: Literal["mesh", "cage"] | None = 'mesh',
+    space: Literal["mesh", "cage", "auto"] | None = 'mesh',
     details: Literal["edited", "rest"] | None = 'edited',
     spread: float | None = 0.1,
     laplacian: float | None = 2.0,

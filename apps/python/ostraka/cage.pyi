@@ -15,6 +15,7 @@ def make(
     *,
     annotations: AnnotationsLike | None = None,
     graph: Input | None = None,
+    for_: Input | None = None,
     vocabulary: Input | None = None,
     force_mesh: bool | None = False,
     vertices: int | None = 200,
@@ -46,6 +47,11 @@ def check(
     mesh: MeshLike,
     cage: MeshLike,
     *,
+    annotations: AnnotationsLike | None = None,
+    graph: Input | None = None,
+    weights: Input | None = None,
+    edit: Input | None = None,
+    force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
     """Is a mesh a sound cage of another? (exit code 3: no)."""
