@@ -163,6 +163,64 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
     return statement;
 }
 
+namespace {
+
+/// Means of the lines in which planes across a direction cut a part, from a tenth to nine tenths of the way of some of its
+/// vertices.
+std::vector<Vector3d> section_means(const State& shape, const Annotation& part, const std::vector<int>& vertices,
+                                    const Vector3d& direction) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const int v : vertices) {
+        const double t = direction.dot(shape.points.col(v));
+        low = std::min(low, t), high = std::max(high, t);
+    }
+    constexpr int count = 6;
+    std::vector<Vector3d> means;
+    for (int k = 0; k < count; ++k) {
+        const double level = low + (high - low) * (0.1 + 0.8 * k / (count - 1));
+        Vector3d sum = Vector3d::Zero();
+        double length = 0;
+        for (const Index f : part.faces) {
+            std::vector<Vector3d> ends;
+            const auto corner = corners(shape.mesh, Face(f));
+            for (std::size_t i = 0; i < 3; ++i) {
+                const Vector3d a = shape.points.col(corner[i]), b = shape.points.col(corner[(i + 1) % 3]);
+                const double at = direction.dot(a) - level, to = direction.dot(b) - level;
+                if ((at < 0) != (to < 0)) ends.push_back(a + (b - a) * (at / (at - to)));
+            }
+            if (ends.size() != 2) continue;
+            const double own = (ends[1] - ends[0]).norm();
+            sum += own * (ends[0] + ends[1]) / 2;
+            length += own;
+        }
+        if (length > 0) means.push_back(sum / length);
+    }
+    return means;
+}
+
+/// On a coarse mesh the means of few vertices may lie on an axis that the surface does not have: where sections of the part say
+/// otherwise, what holds at its stations is not known to hold.
+void doubt_stations(const Reader& read, const State& deformed, const AxisSegment& segment, const Axis& reference,
+                    Measured& measured) {
+    if (measured.verdict != Verdict::holds) return;
+    const Vector3d direction = eigen(reference.direction).normalized(), point = eigen(reference.point);
+    const std::vector<Vector3d> means = section_means(deformed, read.member(0), segment.vertices, direction);
+    if (means.size() < 3) return;
+    Vector3d along = Vector3d::Zero(), middle = Vector3d::Zero();
+    for (const Vector3d& mean : means) middle += mean / static_cast<double>(means.size());
+    for (const Vector3d& mean : means) along += (mean - middle) * direction.dot(mean - middle);  // regression on the way
+    const double angle = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
+    const double distance = direction.cross(middle - point).norm();  // single ones are drawn aside by joints
+    if (angle <= *measured.deviations[0].tolerance && distance <= *measured.deviations[1].tolerance) return;
+    const std::string& unit = read.shape().set.unit;
+    measured.verdict = Verdict::unknown;
+    measured.text += (measured.text.empty() ? "" : "; ") + std::string("plane sections of '") +
+                     printable(read.member(0).tag, 60) + "' are " + digits(angle, 2) + " degrees and " + digits(distance, 3) +
+                     (unit.empty() ? "" : " " + unit) + " off the axis: refine the mesh, it is too coarse to tell";
+}
+
+}  // namespace
+
 Statement structural_continuity(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 2);
     read->need_region(0);
@@ -249,7 +307,9 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         turned.value = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) * 180 / pi;
         for (const Vector3d& place : places)
             off.value = std::max(*off.value, direction.cross(place - eigen(reference.point)).norm());
-        return verdict_of({turned, off});
+        Measured measured = verdict_of({turned, off});
+        doubt_stations(*read, deformed, *segment, reference, measured);
+        return measured;
     };
     return statement;
 }

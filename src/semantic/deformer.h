@@ -311,14 +311,14 @@ private:
         const semantic::State edited(edited_mesh_);
         std::vector<bool> solved = active;
         for (std::size_t i = 0; i < statements_.size(); ++i)
-            solved[i] = active[i] && !(statements_[i].left_alone && statements_[i].measure(edited).verdict == Verdict::holds);
+            solved[i] = active[i] && !(statements_[i].left_alone && semantic::is_within(statements_[i].measure(edited)));
         for (;;) {
             Outcome outcome = solve_for(solved);
             bool lost = false;
             for (std::size_t i = 0; i < statements_.size(); ++i) {
                 if (!active[i] || solved[i]) continue;
                 outcome.texts[i] = "left alone, since it holds where the edit leaves it";
-                solved[i] = outcome.measured[i].verdict != Verdict::holds;
+                solved[i] = !semantic::is_within(outcome.measured[i]);
                 lost = lost || solved[i];
             }
             if (!lost) return outcome;

@@ -102,7 +102,10 @@ std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const Annotatio
     // What is left out as a constraint may be a relation that can be measured all the same.
     RelationGraph relations;
     relations.relationships = graph.relationships;
-    for (Relationship& one : relations.relationships) one.is_constraint = false;
+    for (Relationship& one : relations.relationships) {
+        one.is_constraint = false;
+        one.constraint.clear();
+    }
     std::vector<RelationCheck> checks = check_relations(mesh, set, relations, tolerances);
     const std::vector<ConstraintReport> constraints = judge_constraints(mesh, set, graph, rest, tolerances, graph_name);
     std::size_t next = 0;

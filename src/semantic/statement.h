@@ -9,6 +9,8 @@
 #include "ostraka/semantic/edit.h"
 #include "ostraka/solver/constraint.h"
 
+#include <algorithm>
+
 namespace ostraka::semantic {
 
 /// What constraints are stated on. `rest` are the mesh's points before the edit, a column each.
@@ -34,6 +36,14 @@ struct Measured {
     std::vector<Deviation> deviations;
     std::string text;
 };
+
+/// Whether all that was measured is within its tolerance, be it certain or not.
+inline bool is_within(const Measured& measured) {
+    return measured.verdict == Verdict::holds ||
+           (measured.verdict == Verdict::unknown && !measured.deviations.empty() &&
+            std::all_of(measured.deviations.begin(), measured.deviations.end(),
+                        [](const Deviation& one) { return one.value && one.tolerance && *one.value <= *one.tolerance; }));
+}
 
 /// A part, a measure of it, and the range that this is to be in.
 struct Sized {

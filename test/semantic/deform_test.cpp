@@ -248,7 +248,7 @@ TEST(Deform, AxesFollowTheirReference) {
     ASSERT_EQ(result.constraints[0].deviations.size(), 2U);
     EXPECT_EQ(result.constraints[0].before, Verdict::fails);
     EXPECT_LT(*result.constraints[0].deviations[0].value, 1);
-    EXPECT_EQ(result.constraints[0].verdict, Verdict::holds);
+    EXPECT_EQ(result.constraints[0].verdict, Verdict::holds) << result.constraints[0].text;
     EXPECT_GT(result.passes, 1);
 }
 
