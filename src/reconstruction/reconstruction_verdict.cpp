@@ -118,17 +118,25 @@ private:
         double sum = 0, rigid_sum = 0, weights = 0;
         for (std::size_t j = 0; j < pairs_.size(); ++j) {
             const FragmentPlacement& other = result_.placement.fragments[j];
-            if (j == k || !other.problem.empty() || !(other.own_scale > 0)) continue;
+            if (j == k || !other.problem.empty() || !has_size(j)) continue;
             const double weight = weight_of(pairs_[j], other, false);
             sum += weight * other.own_scale;
             rigid_sum += weight * rigid_scale_of(pairs_[j], other);
             weights += weight;
         }
-        if (weights > 0 && one.own_scale > 0) judge_size(k, sum / weights, rigid_scale_of(pairs_[k], one), rigid_sum / weights);
+        if (weights > 0 && has_size(k)) judge_size(k, sum / weights, rigid_scale_of(pairs_[k], one), rigid_sum / weights);
         const double count = static_cast<double>(
             std::count_if(one.landmarks.begin(), one.landmarks.end(), [](const LandmarkResidual& mark) { return mark.used; }));
         const double spread = count > 0 ? std::sqrt(weight_of(pairs_[k], one, true) / count) : 0;
         if (spread > 0) judge_landmarks(k, one.residual / spread);
+    }
+
+    /// Whether its own landmarks tell a fragment's size. One that was found by its shape lies at the size that the others gave
+    /// it.
+    [[nodiscard]] bool has_size(std::size_t k) const {
+        const FragmentPlacement& one = result_.placement.fragments[k];
+        return one.own_scale > 0 && std::count_if(one.landmarks.begin(), one.landmarks.end(),
+                                                  [](const LandmarkResidual& mark) { return mark.used; }) >= 3;
     }
 
     /// How far landmarks are off the template's. Where distances between those that move rigidly together, which posture does not

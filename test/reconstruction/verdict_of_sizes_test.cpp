@@ -45,6 +45,23 @@ TEST(VerdictOfSizes, PostureIsNoOtherSize) {
     EXPECT_NE(posture.undecided.find("posture"), std::string::npos) << posture.undecided;
 }
 
+TEST(VerdictOfSizes, AFragmentFoundByItsShapeHasTheSizeThatTheOthersGaveIt) {
+    // Its two landmarks are a fifth farther apart than the template's: one distance says nothing of a size.
+    auto two = bent(0, 1.2);
+    two.resize(2);
+    const std::vector<std::vector<LandmarkPair>> pairs{bent(0, 1), two};
+    Reconstruction result;
+    result.placement = place_by_landmarks(pairs);
+    FragmentPlacement& found = result.placement.fragments[1];
+    ASSERT_FALSE(found.problem.empty()) << "two landmarks place nothing";
+    found.problem.clear();
+    found.own_scale = result.placement.scale;
+    ReconstructOptions options;
+    options.residual = 10;
+    judge_reconstruction(result, pairs, {}, options);
+    EXPECT_EQ(result.verdict, Compatibility::compatible) << result.undecided;
+}
+
 TEST(VerdictOfSizes, AnotherSizeStaysOne) {
     for (const double angle : {0.0, 0.2}) {
         const Reconstruction other = judged({bent(0, 1), bent(angle, 1.4)});
