@@ -3,6 +3,7 @@
 #include "report.h"
 
 #include "ostraka/collection/moulds.h"
+#include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/diffusion.h"
 #include "ostraka/geom/eigen.h"
@@ -34,14 +35,36 @@ struct Heads {
     std::vector<bool> beard, long_hair, hand_made;
 };
 
+/// A planned head as it comes to us. One whose features touch, so that its surface has a handle, is drawn again: of a mould
+/// another cast, of those formed by hand another head with such a hat.
+HeadCast cast_planned(PlannedHead& head, const MouldPopulationOptions& population) {
+    constexpr int attempts = 10;
+    const HeadShape::Hat hat = head.shape.hat;
+    for (int attempt = 1;; ++attempt) {
+        try {
+            return cast_head(head.shape, head.cast);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::failure || attempt == attempts) throw;
+        }
+        ++head.cast.seed;
+        if (hat == HeadShape::Hat::none) continue;
+        ArchetypeOptions archetype;
+        archetype.hand_made = true;
+        archetype.difference = population.difference;
+        archetype.seed = head.cast.seed;
+        do head.shape = head_archetype(archetype), ++archetype.seed;
+        while (head.shape.hat != hat);
+    }
+}
+
 Heads synthetic_heads(const MouldPopulationOptions& population, const CastOptions& cast) {
-    const auto plan = plan_heads(population, cast);
+    auto plan = plan_heads(population, cast);
     Heads heads;
     heads.meshes.resize(plan.size());
     heads.labels.resize(plan.size());
     std::vector<HeadCast> casts(plan.size());
     parallel_for(
-        plan.size(), [&](std::size_t i) { casts[i] = cast_head(plan[i].shape, plan[i].cast); }, 1);
+        plan.size(), [&](std::size_t i) { casts[i] = cast_planned(plan[i], population); }, 1);
     for (std::size_t i = 0; i < plan.size(); ++i) {
         heads.meshes[i] = std::move(casts[i].mesh);
         heads.labels[i] = std::move(casts[i].face_labels);

@@ -77,7 +77,7 @@ private:
 
 /// Where two features all but touch, one lattice in a few sees a handle between them: then another one is taken.
 SyntheticMesh meshed(const SyntheticObject& head, MakeOptions options) {
-    constexpr int attempts = 16;
+    constexpr int attempts = 4;
     for (int attempt = 1;; ++attempt, options.seed += 1000003) {
         try {
             return make_mesh(head, options);
