@@ -99,15 +99,17 @@ std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const Annotati
 std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                                const Mesh* rest, const RelationOptions& tolerances,
                                                const std::string& graph_name) {
+    const std::vector<ConstraintReport> constraints = judge_constraints(mesh, set, graph, rest, tolerances, graph_name);
     // What is left out as a constraint may be a relation that can be measured all the same.
     RelationGraph relations;
     relations.relationships = graph.relationships;
+    std::size_t place = 0;
     for (Relationship& one : relations.relationships) {
+        if (!one.is_constraint || constraints.at(place++).used) continue;
         one.is_constraint = false;
         one.constraint.clear();
     }
     std::vector<RelationCheck> checks = check_relations(mesh, set, relations, tolerances);
-    const std::vector<ConstraintReport> constraints = judge_constraints(mesh, set, graph, rest, tolerances, graph_name);
     std::size_t next = 0;
     for (std::size_t i = 0; i < checks.size(); ++i) {
         if (!graph.relationships[i].is_constraint) continue;
