@@ -5,6 +5,7 @@
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
+#include "ostraka/core/npy.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
@@ -178,25 +179,82 @@ void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::st
     places::check_set(set, mesh, where, false);
 }
 
-std::vector<Finding> check_information(const AnnotationSet& set, const Path& folder) {
-    std::vector<Finding> findings;
-    for (std::size_t i = 0; i < set.annotations.size(); ++i)
-        for (std::size_t k = 0; k < set.annotations[i].information.size(); ++k) {
-            const Information& one = set.annotations[i].information[k];
-            if (!one.is_local()) continue;
-            const std::string at = "/annotations/" + std::to_string(i) + "/information/" + std::to_string(k);
-            const Path given(one.value), file = folder / given;
-            const auto add = [&](bool defect, const std::string& what) {
-                findings.push_back({defect, at,
-                                    name_of(set.annotations[i]) + " refers to the " + to_string(one.kind) + " '" +
-                                        printable(one.value, 60) + "', " + what});
-            };
-            // What a received file names outside of its folder is not read.
-            if (given.is_absolute() || !is_inside(file, folder)) add(true, "which leads out of the folder of the annotations");
-            else if (!file_exists(file)) add(true, "which is not there");
-            else if (one.sha256.empty()) add(false, "whose checksum is not known");
-            else if (sha256_of_file(file) != one.sha256) add(true, "which has changed since (its checksum differs)");
+namespace {
+
+/// A local file that an annotation refers to.
+struct ReferredFile {
+    std::string pointer;   ///< the place in the annotation file
+    std::string referrer;  ///< with its verb: "annotation 3 ('spout') refers to the image"
+    std::string name;
+    std::string sha256;
+};
+
+std::vector<ReferredFile> referred_files(const AnnotationSet& set) {
+    std::vector<ReferredFile> files;
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) {
+        const Annotation& annotation = set.annotations[i];
+        const std::string at = "/annotations/" + to_string(i);
+        for (std::size_t k = 0; k < annotation.information.size(); ++k) {
+            const Information& information = annotation.information[k];
+            if (!information.is_local()) continue;
+            files.push_back({at + "/information/" + to_string(k),
+                             name_of(annotation) + " refers to the " + to_string(information.kind), information.value,
+                             information.sha256});
         }
+        for (std::size_t k = 0; k < annotation.attributes.size(); ++k) {
+            const Attribute& attribute = annotation.attributes[k];
+            if (attribute.type != AttributeType::descriptor || attribute.descriptor.file.empty()) continue;
+            files.push_back({at + "/attributes/" + to_string(k),
+                             name_of(annotation) + " has the attribute '" + printable(attribute.name, 60) + "' in the file",
+                             attribute.descriptor.file, attribute.descriptor.sha256});
+        }
+    }
+    return files;
+}
+
+/// What is wrong with the content of an attribute's file; empty: nothing.
+std::string defect_of_content(const Path& file, const Mesh& mesh) {
+    const std::string bytes = read_file(file);
+    if (extension(file) == ".npy") {
+        const NpyView array = view_npy(bytes, file.string());
+        const std::size_t count = array.count();
+        if (array.columns() == 1 && (count == mesh.number_of_vertices() || count == mesh.number_of_faces())) return {};
+        return "which has " + to_string(count) + " numbers, neither one for each of the " + to_string(mesh.number_of_vertices()) +
+               " vertices nor one for each of the " + to_string(mesh.number_of_faces()) + " faces";
+    }
+    if (extension(file) != ".json") return {};
+    const Json document = parse_json(bytes, file.string());
+    const JsonValue* format = document.IsObject() ? find_member(document, "format") : nullptr;
+    if (format == nullptr || !format->IsString() || std::string(format->GetString()) != "ostraka-axis") return {};
+    const JsonValue* axis = find_member(document, "axis");
+    const JsonValue* found = axis != nullptr && axis->IsObject() ? find_member(*axis, "found") : nullptr;
+    return found != nullptr && found->IsTrue() ? "" : "which holds no axis that was found";
+}
+
+}  // namespace
+
+std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, const Path& folder) {
+    std::vector<Finding> findings;
+    for (const ReferredFile& referred : referred_files(set)) {
+        const Path given(referred.name), file = folder / given;
+        const auto add = [&](bool defect, const std::string& what) {
+            findings.push_back(
+                {defect, referred.pointer, referred.referrer + " '" + printable(referred.name, 60) + "', " + what});
+        };
+        // What a received file names outside of its folder is not read.
+        if (given.is_absolute() || !is_inside(file, folder)) add(true, "which leads out of the folder of the annotations");
+        else if (!file_exists(file)) add(true, "which is not there");
+        else if (referred.sha256.empty()) add(false, "whose checksum is not known");
+        else if (sha256_of_file(file) != referred.sha256) add(true, "which has changed since (its checksum differs)");
+        else if (referred.pointer.find("/attributes/") != std::string::npos) {
+            try {
+                if (const std::string defect = defect_of_content(file, mesh); !defect.empty()) add(true, defect);
+            } catch (const Error& error) {
+                if (error.kind() != ErrorKind::input) throw;
+                add(true, "which cannot be read: " + error.problem());
+            }
+        }
+    }
     return findings;
 }
 

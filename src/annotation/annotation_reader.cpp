@@ -79,7 +79,7 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
                      at + "/measure", notes);
         attribute.measure = measure_of(*measure);
     } else {
-        note_unknown(object, {"id", "name", "type", "value", "file", "unit", "stale"}, at, notes);
+        note_unknown(object, {"id", "name", "type", "value", "file", "sha256", "unit", "stale"}, at, notes);
         attribute.type = AttributeType::descriptor;
         Descriptor& descriptor = attribute.descriptor;
         if (const JsonValue* value = find_member(object, "value")) {
@@ -90,8 +90,11 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
         descriptor.file = text_in(object, "file");
         descriptor.unit = text_in(object, "unit");
         descriptor.stale = flag_in(object, "stale");
+        descriptor.sha256 = text_in(object, "sha256");
         if (find_member(object, "value") != nullptr && !descriptor.file.empty())
             fail(where, at, "a descriptor with a value and a file", "keep one of them");
+        if (descriptor.file.empty() && !descriptor.sha256.empty())
+            fail(where, at, "a checksum without a file", "remove sha256, or name the file");
     }
     return attribute;
 }

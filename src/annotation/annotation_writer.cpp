@@ -45,7 +45,8 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
             add_member(object, "type", "descriptor", allocator);
             if (descriptor.is_list) add_member(object, "value", numbers_of(descriptor.values, allocator), allocator);
             else if (!descriptor.values.empty()) add_member(object, "value", json_number(descriptor.values.front()), allocator);
-            add_given(object, allocator, "file", descriptor.file, "unit", descriptor.unit, "stale", descriptor.stale);
+            add_given(object, allocator, "file", descriptor.file, "sha256", descriptor.sha256, "unit", descriptor.unit, "stale",
+                      descriptor.stale);
             break;
         }
     }

@@ -51,6 +51,7 @@ MeasureDefinitions measure_definitions_from_text(const std::string& text, const 
         definition.annotation = word("annotation");
         definition.attribute = word("attribute");
         definition.descriptor = word("descriptor");
+        definition.clay = word("clay");
         definition.exact = word("geodesic") == "exact";
         if (const JsonValue* number = find_member(entry, "entry")) definition.entry = number->GetInt();
         if (const JsonValue* direction = find_member(entry, "direction"))

@@ -7,6 +7,7 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/descriptors.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/slicing/clay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,7 @@ public:
     Taken take(const MeasureDefinition& definition) {
         if (!definition.attribute.empty()) return attribute(definition);
         if (!definition.descriptor.empty()) return descriptor(definition);
+        if (!definition.clay.empty()) return clay(definition);
         if (definition.tool == "bounding") return bounding(definition);
         return definition.tool == "ruler" ? ruler(definition) : tape(definition);
     }
@@ -154,6 +156,18 @@ private:
             throw Missing{"'" + definition.descriptor + "' has " + std::to_string(found->values.size()) + " numbers"};
         return {found->values[static_cast<std::size_t>(definition.entry - 1)], found->power, found->unit};
     }
+    /// Across the object's upward direction; across z where the annotations do not say.
+    Taken clay(const MeasureDefinition& definition) {
+        if (!clay_) {
+            const std::array<double, 3> up = set_ != nullptr && set_->up ? *set_->up : std::array<double, 3>{0, 0, 1};
+            clay_ = clay_volume(mesh(), slice_frame(Point(0, 0, 0), Vector(up[0], up[1], up[2])));
+        }
+        const double value = definition.clay == "max" ? clay_->maximum : clay_->minimum;
+        if (std::isnan(value))
+            throw Missing{definition.clay == "max" || std::isnan(clay_->maximum) ? "no slice has a closed outline"
+                                                                                 : "no wall is seen, so there is no least"};
+        return {value, 3, ""};
+    }
     Taken attribute(const MeasureDefinition& definition) const {
         const Annotation& annotation = require(definition.annotation);
         const Attribute* found = nullptr;
@@ -199,6 +213,7 @@ private:
     const AnnotationSet* set_;
     const LandmarkSet* landmarks_;
     const TagWords* words_;
+    std::optional<ClayVolume> clay_;
 };
 
 ObjectMeasures take(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks,

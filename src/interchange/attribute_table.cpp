@@ -15,9 +15,10 @@ using namespace interchange;
 using std::to_string;
 
 const std::vector<std::string>& column_names() {
-    static const std::vector<std::string> names{
-        "annotation", "tag",    "type",      "colour",    "attribute", "name",  "kind",     "value",   "unit",        "note",
-        "tool",       "points", "direction", "locations", "file",      "stale", "geodesic", "repeats", "uncertainty", "origin"};
+    static const std::vector<std::string> names{"annotation",  "tag",       "type",  "colour", "attribute", "name",
+                                                "kind",        "value",     "unit",  "note",   "tool",      "points",
+                                                "direction",   "locations", "file",  "stale",  "geodesic",  "repeats",
+                                                "uncertainty", "origin",    "sha256"};
     return names;
 }
 
@@ -172,7 +173,7 @@ private:
             attribute.measure.stale = is_stale;
         } else if (kind == "descriptor" || kind == "list") {
             attribute.type = AttributeType::descriptor;
-            attribute.descriptor = {numbers("value"), kind == "list", cell("file"), cell("unit"), is_stale};
+            attribute.descriptor = {numbers("value"), kind == "list", cell("file"), cell("unit"), is_stale, cell("sha256")};
             if (kind == "descriptor" && attribute.descriptor.values.size() > 1)
                 fail("value", "more than one number", "write 'list' as the kind");
         } else {
@@ -244,7 +245,7 @@ std::string attribute_table(const AnnotationSet& set) {
                     break;
                 case AttributeType::descriptor:
                     add({id, attribute.name, d.is_list ? "list" : "descriptor", joined_numbers(d.values), d.unit, "", "", "", "",
-                         "", d.file, d.stale ? "true" : ""});
+                         "", d.file, d.stale ? "true" : "", "", "", "", "", d.sha256});
                     break;
             }
         }

@@ -384,7 +384,10 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
                     descriptor.stale = false;
                     ++result.computed;
                 } else if (descriptor.stale) {
-                    stays_stale(descriptor.stale, annotation, attribute, "is not a descriptor that can be computed here");
+                    stays_stale(descriptor.stale, annotation, attribute,
+                                descriptor.file.empty() ? "is not a descriptor that can be computed here"
+                                                        : "is in the file '" + descriptor.file +
+                                                              "' of another mesh: write it again ('measure map', 'axis')");
                 }
             }
         }

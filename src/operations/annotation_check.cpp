@@ -48,7 +48,7 @@ struct AnnotationCheck final : Operation {
             for (const auto& note : set->notes) findings.push_back({false, "", note});
             const auto add = [&](std::vector<Finding> more) { findings.insert(findings.end(), more.begin(), more.end()); };
             add(examine(on, *set));
-            if (!given) add(check_information(*set, Path(annotations.file()).parent_path()));
+            if (!given) add(check_files(*set, on, Path(annotations.file()).parent_path()));
             if (known_words != nullptr) add(check_against_vocabulary(*set, *known_words, words));
             if (known_words != nullptr) add(check_parts(on, *set, *known_words));
             if (kept_rules != nullptr) hold_against(*kept_rules, known_words, on, *set, findings);

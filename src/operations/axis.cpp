@@ -1,7 +1,7 @@
 // axis
 #include "ostraka/axis/axis.h"
 
-#include "operations.h"
+#include "file_attribute.h"
 
 #include <algorithm>
 #include <numeric>
@@ -17,6 +17,7 @@ struct FindAxis final : Operation {
         p.output_option("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)");
         p.options("annotation", names, "id or tag of the part; more than one: all together; a line or points: its circle")
             .words();
+        attribute.describe(p, "axis");
         options.describe(p.options);
 
         p.report.values(boolean("found", "axis"), text("reason"), numbers("point", "through"), numbers("direction", "direction"),
@@ -30,6 +31,9 @@ struct FindAxis final : Operation {
         const std::string kind = extension(output.file());
         if (!output.file().empty() && kind != ".json" && kind != ".obj")
             fail_usage("'" + output.file() + "' is not a file of axes", "end its name in .json or .obj");
+        attribute.check(output, ".json");
+        if (attribute && names.size() > 1)
+            fail_usage("--annotations-out with several parts", "name the one part whose attribute the axis is");
     }
 
     void run(Context& context, Report& report) override {
@@ -41,7 +45,18 @@ struct FindAxis final : Operation {
         Json document = json_document("axis");
         auto& allocator = document.GetAllocator();
         add_members(document, allocator, "axis", report.result(), "provenance", context.provenance().to_json(allocator));
-        output.write(to_text(document));
+        const std::string bytes = to_text(document);
+        if (attribute) write_attribute(axis, sha256(bytes), report);
+        output.write(bytes);
+    }
+
+    void write_attribute(const Axis& axis, const std::string& checksum, Report& report) const {
+        if (!axis.found) return report.note("there is no axis, so " + attribute.file() + " is not written");
+        AnnotationSet set;
+        if (annotations) set = annotations.on(mesh->mesh);
+        const int holder =
+            names.empty() ? ensure_root(set, mesh->mesh).id : find_annotation(set, names.front(), annotations.file()).id;
+        attribute.write(std::move(set), holder, output, {"axis", "", checksum}, mesh, report);
     }
 
     [[nodiscard]] Axis find(const Mesh& whole, std::string& unit) const {
@@ -98,6 +113,7 @@ struct FindAxis final : Operation {
     MeshInput mesh;
     AnnotationsInput annotations;
     FileOutput output{".json"};
+    FileAttribute attribute;
     std::vector<std::string> names;
     AxisOptions options;
 };

@@ -1,8 +1,9 @@
 // measure map: curvature, thickness or distance, everywhere.
-#include "operations.h"
+#include "file_attribute.h"
 
 #include "ostraka/geom/geodesic.h"
 #include "ostraka/measure/descriptors.h"
+#include "ostraka/render/values.h"
 
 #include <cmath>
 #include <limits>
@@ -19,6 +20,11 @@ struct MeasureMap final : Operation {
         p.options("on", on, "one value a vertex or a face", Choices{"vertex", "face"});
         p.options("from", from, "vertices that geodesic distances are measured from, like 12,88",
                   Range{0, std::numeric_limits<int>::max()});
+        p.input_option("annotations", Kind::annotations, annotations,
+                       "annotations of the mesh (.ant.json), one of which gets the map as an attribute");
+        attribute.describe(p, "NAME of --of");
+        p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
+        p.options("unit", unit, "unit of the coordinates, where the annotations do not say (any text, such as mm)");
         options.curvature_options.describe(p.options);
         options.thickness_options.describe(p.options);
         what = p.options.find("of");
@@ -32,6 +38,11 @@ struct MeasureMap final : Operation {
                        "--from names the vertices that geodesic distances are measured from");
         if (on == On::face && of != Of::thickness)
             fail_usage("a map of " + what->text() + " on faces", "faces have a thickness only");
+        if (!attribute && (annotations || !annotation.empty()))
+            fail_usage("annotations are given, but none are written", "add --annotations-out FILE, or leave them out");
+        if (!annotations && !annotation.empty())
+            fail_usage("--annotation names a part, but no annotation file is given", "add --annotations FILE");
+        attribute.check(output, ".npy");
     }
 
     void run(Context&, Report& report) override {
@@ -46,7 +57,20 @@ struct MeasureMap final : Operation {
         report.people(what->text(), std::to_string(finite.size()) + " of " + std::to_string(values.size()) + " values");
         report("values", values.size())("without", values.size() - finite.size())("min", s.min)("5 %", s.percentile_5)(
             "median", s.median)("mean", s.mean)("95 %", s.percentile_95)("max", s.max);
+        if (attribute) write_attribute(values, report);
         output.write(std::move(values));
+    }
+
+    void write_attribute(const std::vector<double>& values, Report& report) const {
+        AnnotationSet set;
+        if (annotations) set = annotations.on(mesh->mesh);
+        if (set.unit.empty()) set.unit = unit;
+        const int holder =
+            annotation.empty() ? ensure_root(set, mesh->mesh).id : find_annotation(set, annotation, annotations.file()).id;
+        std::string in = set.unit;
+        if (!in.empty() && of == Of::mean_curvature) in = "1/" + in;
+        if (!in.empty() && of == Of::gaussian_curvature) in = "1/" + in + "^2";
+        attribute.write(std::move(set), holder, output, {what->text(), in, checksum(values)}, mesh, report);
     }
 
     enum class Of { mean_curvature, gaussian_curvature, thickness, geodesic };
@@ -74,11 +98,22 @@ struct MeasureMap final : Operation {
         return geodesic_distances(on_mesh, sources);
     }
 
+    /// Of the file of the values; empty in memory, where no file is written yet.
+    [[nodiscard]] std::string checksum(const std::vector<double>& values) const {
+        if (output.sources.front().file.empty()) return {};
+        Object file = Object::of(values, output.file_name());
+        file.write = [&values](const Path& path) { write_values(path, values); };
+        return file.checksums().sha256;
+    }
+
     MeshInput mesh;
     ValuesOutput output;
     Of of = Of::mean_curvature;
     On on = On::vertex;
     std::vector<int> from;
+    AnnotationsInput annotations;
+    FileAttribute attribute;
+    std::string annotation, unit;
     DescriptorOptions options;
     const Option* what = nullptr;
 };

@@ -5,6 +5,8 @@ namespace ostraka {
 void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
     for (const Attribute& attribute : from.attributes) {
         Attribute moved = attribute;
+        // A file speaks of the elements and the place of the old mesh.
+        if (!moved.descriptor.file.empty()) moved.descriptor.stale = true;
         if (attribute.type == AttributeType::measure) {
             moved.measure.points.clear();
             moved.measure.locations.clear();

@@ -44,7 +44,8 @@ TEST(Information, OfLocalFilesIsChecked) {
     const Scratch scratch;
     write_file(scratch / "note.txt", "broken");
     const std::string sum = sha256_of_file(scratch / "note.txt");
-    const auto said = [&](const Information& one) { return check_information(with({one}), scratch.path()); };
+    const Mesh mesh = build_mesh(octahedron_sphere(1));
+    const auto said = [&](const Information& one) { return check_files(with({one}), mesh, scratch.path()); };
     EXPECT_TRUE(said({Kind::file, "note.txt", "", sum}).empty());
     EXPECT_TRUE(said({Kind::link, "nowhere", "", ""}).empty());
     EXPECT_TRUE(said({Kind::image, "https://example.org/a.png", "", ""}).empty());

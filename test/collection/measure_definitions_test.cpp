@@ -8,6 +8,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/measure.h"
+#include "ostraka/measure/solid.h"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +72,21 @@ const char* const all_kinds = R"(
     {"name": "stored", "annotation": "cap", "attribute": "height"},
     {"name": "area", "descriptor": "area"},
     {"name": "longest side", "annotation": "cap", "descriptor": "box sides", "entry": 1})";
+
+TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
+    const Ball ball(10);
+    const auto taken =
+        take_measures(ball.mesh, ball.set, definitions(R"({"name": "most", "clay": "max"}, {"name": "least", "clay": "min"},
+                                                                         {"name": "height", "tool": "bounding", "direction": "up"})"));
+    ASSERT_TRUE(taken.values[0].has_value());
+    EXPECT_EQ(taken.powers[0], 3);
+    EXPECT_NEAR(*taken.values[0], closed_volume(ball.mesh), 1e-4 * closed_volume(ball.mesh));
+    EXPECT_FALSE(taken.values[1].has_value());  // no wall is seen
+    ASSERT_EQ(taken.notes.size(), 1U);
+    EXPECT_NE(taken.notes[0].find("no wall is seen"), std::string::npos) << taken.notes[0];
+    EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "most"})"), Error);
+    EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "max", "annotation": "cap"})"), Error);
+}
 
 TEST(MeasureDefinitions, AreTakenOnABall) {
     for (const double r : {1.0, 1e-6, 1e6}) {

@@ -152,6 +152,79 @@ TEST_F(MeasureCommand, MapsAreWrittenForPicturesAndOthers) {
     EXPECT_GT(std::filesystem::file_size(png), 0U);
 }
 
+TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
+    const Path pot = scratch / "pot.ply", set_file = scratch / "pot.ant.json", map = scratch / "bumps.npy";
+    TriangleSoup soup = test::octahedron_sphere(3);
+    for (auto& p : soup.points) p[2] *= 3;
+    write_mesh(pot, build_mesh(soup));
+    const Mesh body = read_mesh(pot).mesh;
+    const auto check = [&] { return run_command("annotation check " + pot.string() + " " + set_file.string()); };
+
+    const auto mapped = run("map " + pot.string() + " " + map.string() + " --of mean-curvature --unit mm --name bumpiness" +
+                            " --annotations-out " + set_file.string());
+    ASSERT_EQ(mapped.code, 0) << mapped.err;
+    const auto axis = run_command("axis " + pot.string() + " --output " + (scratch / "pot.axis.json").string() +
+                                  " --annotations-out " + (scratch / "axis.ant.json").string());
+    ASSERT_EQ(axis.code, 0) << axis.err;
+    EXPECT_EQ(read_annotations(scratch / "axis.ant.json", body).annotations.at(0).attributes.at(0).descriptor.file,
+              "pot.axis.json");
+
+    const AnnotationSet set = read_annotations(set_file, body);
+    ASSERT_EQ(set.annotations.size(), 1U);
+    ASSERT_EQ(set.annotations[0].attributes.size(), 1U);
+    const Attribute& bumps = set.annotations[0].attributes[0];
+    EXPECT_EQ(bumps.name, "bumpiness");
+    EXPECT_EQ(bumps.descriptor.file, "bumps.npy");
+    EXPECT_EQ(bumps.descriptor.unit, "1/mm");
+    EXPECT_EQ(bumps.descriptor.sha256, sha256_of_file(map));
+    EXPECT_EQ(check().code, 0) << check().out;
+
+    // Written again, the attribute is replaced.
+    const Path before = scratch / "before.ant.json";
+    std::filesystem::rename(set_file, before);
+    const auto again_mapped = run("map " + pot.string() + " " + map.string() + " --of thickness --on face --name bumpiness" +
+                                  " --annotations " + before.string() + " --annotations-out " + set_file.string());
+    ASSERT_EQ(again_mapped.code, 0) << again_mapped.err;
+    const AnnotationSet again = read_annotations(set_file, body);
+    ASSERT_EQ(again.annotations[0].attributes.size(), 1U);
+    EXPECT_EQ(again.annotations[0].attributes[0].descriptor.unit, "mm");
+    EXPECT_EQ(check().code, 0) << check().out;
+
+    // A changed file, one of another mesh, and none at all are defects.
+    write_values(map, std::vector<double>(body.number_of_faces(), 1));
+    EXPECT_EQ(check().code, 3);
+    EXPECT_NE(check().out.find("has changed since"), std::string::npos) << check().out;
+    write_values(map, {1, 2, 3});
+    AnnotationSet other = again;
+    other.annotations[0].attributes[0].descriptor.sha256 = sha256_of_file(map);
+    write_annotations(set_file, other, body, pot.string(), {});
+    EXPECT_EQ(check().code, 3);
+    EXPECT_NE(check().out.find("which has 3 numbers"), std::string::npos) << check().out;
+    std::filesystem::remove(map);
+    EXPECT_EQ(check().code, 3);
+    EXPECT_NE(check().out.find("is not there"), std::string::npos) << check().out;
+
+    // On another resolution the map is of the old one.
+    write_annotations(set_file, set, body, pot.string(), {});
+    const Path finer = scratch / "finer.ply", carried = scratch / "finer.ant.json";
+    const auto refined = run_command("mesh refine " + pot.string() + " " + finer.string() + " --vertices 500 --annotations " +
+                                     set_file.string() + " --annotations-out " + carried.string());
+    ASSERT_EQ(refined.code, 0) << refined.err;
+    EXPECT_TRUE(read_annotations(carried, read_mesh(finer).mesh).annotations.at(0).attributes.at(0).descriptor.stale);
+}
+
+TEST_F(MeasureCommand, AMapThatIsNoAttributeIsRefused) {
+    const std::string map = "map " + cube.string() + " ";
+    const std::string here = (scratch / "a.npy").string(), out = " --annotations-out " + (scratch / "a.ant.json").string();
+    refused(map + (scratch / "a.txt").string() + " --of thickness" + out, 2, "end its name in .npy");
+    refused(map + "/tmp/a.npy --of thickness" + out, 2, "outside of the folder");
+    refused(map + here + " --of thickness --name bumps", 2, "--annotations-out");
+    refused(map + here + " --of thickness --annotations " + annotated.string(), 2, "none are written");
+    refused(map + here + " --of thickness --annotation side" + out, 2, "add --annotations");
+    refused(map + here + " --of thickness --annotation nose --annotations " + annotated.string() + out, 1, "nose");
+    EXPECT_FALSE(file_exists(scratch / "a.ant.json"));
+}
+
 TEST_F(MeasureCommand, BadInputIsRefusedAndEarlierOutputsStay) {
     const Path out = scratch.file("out.ant.json", "earlier");
     const std::string c = cube.string(), o = " --output " + out.string();

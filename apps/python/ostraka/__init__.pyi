@@ -39,13 +39,16 @@ def set_memory_limit(gigabytes: float) -> None: ...
 
 class _AxisResult(Result):
     output: Document | Bytes | Path | None
+    annotations_out: Annotations | Path | None
 def axis(
     mesh: MeshLike,
     annotations: AnnotationsLike | None = None,
     *,
     output: FileName | bool | None = None,
+    annotations_out: FileName | bool | None = None,
     force_mesh: bool | None = False,
     annotation: Text | Sequence[Text] | None = None,
+    name: Text | None = None,
     method: Literal["rotation", "slices", "skeleton", "principal"] | None = 'rotation',
     tolerance: float | None = 0.02,
     least_quality: float | None = 0.7,

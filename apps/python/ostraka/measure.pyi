@@ -65,13 +65,20 @@ def refresh(
 
 class _MapResult(Result):
     output: Array | Path | None
+    annotations_out: Annotations | Path | None
 def map(
     mesh: MeshLike,
     output: FileName | bool | None = None,
     *,
+    annotations: AnnotationsLike | None = None,
+    annotations_out: FileName | bool | None = None,
     of: Literal["mean-curvature", "gaussian-curvature", "thickness", "geodesic"],
     on: Literal["vertex", "face"] | None = 'vertex',
     from_: int | Sequence[int] | None = None,
+    force_mesh: bool | None = False,
+    name: Text | None = None,
+    annotation: Text | None = None,
+    unit: Text | None = None,
     scale: float | None = 0.0,
     rays: int | None = 30,
     cone: float | None = 60.0,

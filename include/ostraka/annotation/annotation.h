@@ -38,9 +38,10 @@ struct Measure {
 struct Descriptor {
     std::vector<double> values;
     bool is_list = false;  ///< a list in the file, even if of one value
-    std::string file;      ///< a .npy array instead of values
+    std::string file;      ///< instead of values: an array (.npy, .txt) of a map, or an axis (.json), relative to the annotations
     std::string unit;
     bool stale = false;
+    std::string sha256 = {};  ///< of the bytes of `file`; empty where it is not known
     bool operator==(const Descriptor&) const = default;
 };
 

@@ -40,8 +40,9 @@ void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::st
 /// As an annotation file holds it. Throws Error (input) for a checksum of what is no local file.
 std::vector<Information> information_from_json(JsonValue::ConstArray list, const std::string& where, const std::string& pointer);
 
-/// Local files that annotations refer to, relative to `folder`: defects where one is missing or its bytes are not those that the
-/// checksum is of; remarks where none is known.
-std::vector<Finding> check_information(const AnnotationSet& set, const Path& folder);
+/// Local files that annotations and their attributes refer to, relative to `folder`: defects where one is missing, lies outside
+/// of the folder, or its bytes are not those that the checksum is of; remarks where none is known. An array (.npy) of an
+/// attribute must have a number for each vertex or for each face of `mesh`, an axis (.json) must be one that was found.
+std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, const Path& folder);
 
 }  // namespace ostraka

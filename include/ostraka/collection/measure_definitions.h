@@ -35,6 +35,7 @@ struct MeasureDefinition {
     bool exact = false;              ///< of a tape: over the faces instead of along edges
     std::string attribute;           ///< of the annotation: a measure or descriptor that it carries
     std::string descriptor;          ///< computed of the annotation (measure/descriptors.h)
+    std::string clay;                ///< "max" or "min": volume of clay of the whole object (slicing/clay.h)
     int entry = 1;                   ///< which number of a list, from 1
 };
 
