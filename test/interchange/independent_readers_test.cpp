@@ -45,7 +45,7 @@ text = open(sys.argv[1], newline='', encoding='utf-8').read().replace('\0', '')
 rows = list(csv.reader(io.StringIO(text, newline='')))
 assert len(rows) == int(sys.argv[2]), len(rows)
 for row in rows:
-    assert len(row) == 20, row
+    assert len(row) == 21, row
     for cell in row:
         try:
             float(cell)
