@@ -2,6 +2,7 @@
 #include "registered.h"
 
 #include "ostraka/annotation/colouring.h"
+#include "ostraka/annotation/curves.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/fracture/fragment.h"
 #include "ostraka/measure/measure.h"
@@ -10,6 +11,7 @@
 #include "ostraka/transfer/moved_annotations.h"
 #include "ostraka/transfer/transfer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ostraka {
@@ -89,6 +91,7 @@ struct AnnotationTransfer final : Operation {
         const Misalignment apart = find_misalignment(from, *search);
         report("meanDistance", apart.distance);
         if (apart.stands_out) report.note(in_words(apart, search->diagonal(), printable(set.unit, 20)));
+        note_unused_options(there.annotations, report);
         const Mesh& on = there.refined ? there.refined->mesh : onto;
         std::optional<TransferResult> again;
         if (back) {
@@ -190,6 +193,20 @@ struct AnnotationTransfer final : Operation {
                 .shown("remarks", remarks_on(score));
             if (score.outcome == TransferOutcome::lost && table == "annotations") report.answer_no();
         }
+    }
+
+    /// --metric, --spikes and --rounding concern outlines along edges alone.
+    void note_unused_options(const AnnotationSet& carried, Report& report) const {
+        const TransferOptions defaults;
+        std::vector<std::string> unused;
+        if (options.metric != defaults.metric) unused.emplace_back("--metric");
+        if (options.spikes != defaults.spikes) unused.emplace_back("--spikes");
+        if (options.rounding != defaults.rounding) unused.emplace_back("--rounding");
+        const auto free = std::count_if(carried.annotations.begin(), carried.annotations.end(), is_free);
+        if (free == 0 || unused.empty()) return;
+        report.note(std::to_string(free) + " of " + std::to_string(carried.annotations.size()) +
+                    " annotations have free outlines, which do not depend on " + joined(unused, ", ") +
+                    ": add --outlines kept or --outlines edges for outlines along edges");
     }
 
     MeshInput source, target;

@@ -51,6 +51,13 @@ TEST_F(TransferCommand, ThereAndBack) {
     EXPECT_EQ(read_annotations(at("b.ant.json"), source).annotations.size(), 1U);
 }
 
+TEST_F(TransferCommand, OptionsThatFreeOutlinesDoNotUseAreReported) {
+    const std::string note = "free outlines, which do not depend on --rounding";
+    EXPECT_NE(transfer("--outlines free --rounding area").err.find(note), std::string::npos);
+    EXPECT_EQ(transfer("--outlines edges --rounding area", "t.ply", "e.ant.json").err.find(note), std::string::npos);
+    EXPECT_EQ(transfer("--outlines free", "t.ply", "f.ant.json").err.find("do not depend on"), std::string::npos);
+}
+
 TEST_F(TransferCommand, RegistersMeshesInOtherUnitsAndPlaces) {
     MakeOptions options;
     options.vertices = 3000;
