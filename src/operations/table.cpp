@@ -94,7 +94,7 @@ constexpr OperationEntry entries[]{
     {"axis", "the axis of an object or of an annotated part; exit code 3 if it has none", make_axis},
     {"slice", "cut an object into slices, describe and draw them; exit code 3 if no plane meets it", make_slice},
     {"deform", "edit a shape so that its meaning survives (exit code 3: a constraint does not hold)", make_deform},
-    {"fit", "complete an object from fragments by a template of its class, and say whether they go together (exit code 3: they do not, or it cannot be told)", make_fit, 2},
+    {"fit", "complete an object from fragments by a template of its class, and say whether they go together (exit code 3: they do not, or it cannot be told)", make_fit, 3},
     {"pair", "lay two fragments together by the break they share; exit code 3 if it cannot be told how", make_pair},
     {"assemble", "put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined", make_assemble, 2},
     {"render", "make a picture of meshes, their annotations and maps", make_render},

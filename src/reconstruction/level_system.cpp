@@ -1,13 +1,17 @@
 #include "level_system.h"
 
+#include "ostraka/core/dense.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
+
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 
 namespace ostraka {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
@@ -45,9 +49,52 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
     return rings;
 }
 
+/// The rotation nearest to a matrix: its polar factor by Newton's iteration (Higham 1986), or where it all but mirrors or is all
+/// but flat, by its singular values.
+Matrix3d nearest_rotation(const Matrix3d& matrix) {
+    constexpr double flat = 1e-8, settled = 1e-9;  // the iteration converges quadratically: what is left is rounding
+    constexpr int max_steps = 30;
+    const double size = matrix.norm();
+    Matrix3d now = size > 0 ? Matrix3d(matrix / size) : Matrix3d(matrix);
+    if (now.determinant() > flat)
+        for (int step = 0; step < max_steps; ++step) {
+            const Matrix3d inverse = now.inverse().transpose();
+            const double balance = std::sqrt(inverse.norm() / now.norm());
+            const Matrix3d next = 0.5 * (balance * now + inverse / balance);
+            const double change = (next - now).norm();
+            now = next;
+            if (change < settled) return now;
+        }
+    const Svd3 svd(matrix);
+    Vector3d signs(1, 1, 1);
+    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
+    return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
 }  // namespace
 
-std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now) {
+std::vector<Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& now) {
+    const auto n = static_cast<std::size_t>(rest.cols());
+    std::vector<Matrix3d> covariances(n), rotations(n);
+    parallel_for(n, [&](std::size_t i) {
+        const auto v = static_cast<Eigen::Index>(i);
+        Matrix3d sum = Matrix3d::Zero();
+        for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k) {
+            const int j = rings.neighbour[k];
+            sum += rings.weight[k] * (now.col(j) - now.col(v)) * (rest.col(j) - rest.col(v)).transpose();
+        }
+        covariances[i] = sum;
+    });
+    parallel_for(n, [&](std::size_t i) {
+        Matrix3d sum = covariances[i];
+        for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k)
+            sum += covariances[static_cast<std::size_t>(rings.neighbour[k])];
+        rotations[i] = nearest_rotation(sum);
+    });
+    return rotations;
+}
+
+std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now, const std::vector<bool>& observed) {
     constexpr int wider = 2;  // rings around the first
     const auto n = static_cast<std::size_t>(rest.cols());
     // Sums of squares at rest and now.
@@ -61,6 +108,12 @@ std::vector<double> local_scales(const Rings& rings, const Points& rest, const P
                        Eigen::Vector2d((rest.col(j) - rest.col(v)).squaredNorm(), (now.col(j) - now.col(v)).squaredNorm());
         }
     });
+    Eigen::Vector2d seen = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < n; ++i)
+        if (observed[i]) seen += sums[i];
+    const double as_seen = seen[0] > 0 ? seen[1] / seen[0] : 1;
+    for (std::size_t i = 0; i < n; ++i)
+        if (!observed[i]) sums[i][1] = as_seen * sums[i][0];
     for (int ring = 0; ring < wider; ++ring) {
         sums_before = sums;
         parallel_for(n, [&](std::size_t i) {

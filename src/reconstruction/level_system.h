@@ -17,9 +17,13 @@ struct Rings {
     std::vector<double> area, sum;  ///< area around each vertex; sum of its weights
 };
 
+/// How the surroundings of each vertex have rotated: the nearest rotation over two rings.
+std::vector<Eigen::Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& now);
+
 /// How many times as large the surroundings of each vertex are now as at rest: root mean square of the edges within three rings,
-/// from 0.5 to 2.
-std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now);
+/// from 0.5 to 2. Edges around vertices that were not observed count as if they had grown as all that was observed did: a size
+/// that the solution gave to them says nothing of them, and would be carried on from there.
+std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now, const std::vector<bool>& observed);
 
 /// What the three costs of equation 5.2 are made of, over the vertices of a mesh. Nothing here depends on fragments.
 class LevelSystem {

@@ -84,10 +84,10 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
         for (const auto& [label, part] : trees_.back()->parts(labels)) parts_[label].push_back({static_cast<int>(k), &part});
     }
     face_labels_ = face_labels(mesh, ours);
-    if (guides != Guides::landmarks) add_path_correspondences(set, guides);
+    if (guides == Guides::paths) add_path_correspondences(set);
 }
 
-void MatchSearch::add_path_correspondences(const AnnotationSet& set, Guides guides) {
+void MatchSearch::add_path_correspondences(const AnnotationSet& set) {
     for (std::size_t k = 0; k < fragments_.size(); ++k) {
         const PlacedFragment& fragment = fragments_[k];
         std::vector<bool> broken = not_broken(fragment.facets);
@@ -100,7 +100,6 @@ void MatchSearch::add_path_correspondences(const AnnotationSet& set, Guides guid
             const Annotation *a = set.find(match.of_template), *b = fragment.annotations->find(match.of_fragment);
             if (a == nullptr || b == nullptr || a->type != b->type || a->type == AnnotationType::point || a->all || b->all)
                 continue;
-            if (a->type == AnnotationType::region && guides == Guides::lines) continue;
             Annotation outer = *b;
             if (!broken.empty()) std::erase_if(outer.faces, [&](Index f) { return broken[f]; });
             for (const OutlineCorrespondence& correspondence :
@@ -111,8 +110,8 @@ void MatchSearch::add_path_correspondences(const AnnotationSet& set, Guides guid
                                       return face != Mesh::null_face() && face_labels_[face] == a->id;
                                   });
                 if (ours)
-                    correspondences_.push_back(
-                        {correspondence.vertex, correspondence.place / scale_, correspondence.length, static_cast<int>(k)});
+                    correspondences_.push_back({correspondence.vertex, correspondence.place / scale_, correspondence.length,
+                                                static_cast<int>(k), a->type == AnnotationType::region});
             }
         }
     }

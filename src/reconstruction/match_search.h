@@ -20,6 +20,7 @@ struct CorrespondenceConstraint {
     Eigen::Vector3d place;
     double length = 0;  ///< of the outline that it stands for; 0 for a landmark
     int fragment = 0;
+    bool outline = false;  ///< a place along the outline of a region
 };
 
 /// A place of a fragment's outer surface, each for the same area.
@@ -39,8 +40,8 @@ class MatchSearch {
 public:
     /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and answered is in the
     /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
-    /// What correspondences there are besides landmarks: places along matched lines, and along matched outlines.
-    enum class Guides { landmarks, lines, outlines };
+    /// What correspondences there are: of landmarks alone, or of places along matched lines and outlines, too.
+    enum class Guides { landmarks, paths };
     MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,
                 Guides guides = Guides::landmarks);
     ~MatchSearch();
@@ -97,7 +98,7 @@ private:
         int fragment = 0, label = 0;
         Annotation region;  ///< its faces that carry the label
     };
-    void add_path_correspondences(const AnnotationSet& set, Guides guides);
+    void add_path_correspondences(const AnnotationSet& set);
     [[nodiscard]] std::vector<VertexMatch> shared_of(const Mesh& mesh, const std::vector<Index>& vertex_map) const;
 
     const Mesh& template_;

@@ -70,6 +70,35 @@ TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
     EXPECT_EQ(result.crossings, 0U);
 }
 
+TEST(Fit, WhatWasNotSeenKeepsItsSizeWhereTheFragmentIsNarrowAtTheBreak) {
+    const Mesh mesh = body();
+    const AnnotationSet set = landmarks_of(mesh);
+    const Mesh whole = deformed_by(mesh, [](const Vector3d& p) {
+        const double waist = 1 - 0.25 * std::exp(-std::pow(p.z() / 0.6, 2));
+        return Vector3d(waist * p.x(), waist * p.y(), p.z());
+    });
+    BreakOptions options;
+    options.share = 0.5;
+    const Cut one = cut(whole, set, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
+    // Of the end that is missing: how far its places are from their mean.
+    std::vector<Vector3d> at_rest, fitted;
+    for (const Vertex v : mesh.vertices())
+        if (mesh.point(v).z() < -0.9) {
+            at_rest.push_back(result.placement.scale * eigen(mesh.point(v)));
+            fitted.push_back(eigen(result.points[v]));
+        }
+    const auto spread = [](const std::vector<Vector3d>& places) {
+        Vector3d mean = Vector3d::Zero();
+        for (const Vector3d& p : places) mean += p / static_cast<double>(places.size());
+        double squares = 0;
+        for (const Vector3d& p : places) squares += (p - mean).squaredNorm();
+        return std::sqrt(squares / static_cast<double>(places.size()));
+    };
+    EXPECT_NEAR(spread(fitted) / spread(at_rest), 1, 0.1);
+}
+
 TEST(Fit, NoiseIsNotCarriedIntoWhatWasNotSeen) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);

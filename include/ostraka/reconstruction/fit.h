@@ -31,7 +31,7 @@ struct NonRigidOptions {
                                                         ///< or in matched annotations the vertices of equation 5.1
     VertexAssignmentOptions vertices;                   ///< its weights; search radius and angle are those of the level
     double correspondences = 1;                         ///< weight of outlines and landmarks of matched annotations
-    bool outlines = true;  ///< lines, and outlines unless vertices slide, correspond by the position along them
+    bool outlines = true;                               ///< lines and outlines correspond by the position along them
 
     void describe(OptionList& visit);
 };
@@ -96,10 +96,10 @@ private:
 /// = `fade` s, so that what a level adds, and with it the noise of a fragment's edge, ends near what was observed. Matches are
 /// the closest points of the fragments' outer facets with a like normal, within the same matched annotations on either side (the
 /// smallest one that holds the vertex), never at a border. With `sliding` a vertex is drawn to the plane of its match, not to the
-/// place, where two annotations meet to the curve where their counterparts meet, and Laplacian displacements grow with their
-/// surroundings; of a fragment whose faces are the template's (a copy in another shape) each vertex goes to its own. Levels that
-/// are smooth against a mesh of 4000 vertices are solved on such a one (quadric error simplification); the template follows it,
-/// and takes up the rest. `scaled` is the template at the scale of the placement.
+/// place, where two annotations meet to the curve where their counterparts meet, and Laplacian displacements grow with what
+/// was observed around them; of a fragment whose faces are the template's (a copy in another shape) each vertex goes to its own.
+/// Levels that are smooth against a mesh of 4000 vertices are solved on such a one (quadric error simplification); the template
+/// follows it, and takes up the rest. `scaled` is the template at the scale of the placement.
 NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                          const NonRigidOptions& options = {});
 
