@@ -83,22 +83,9 @@ void doubt_axes(const Reader& read, const State& deformed, double tolerance, Mea
         const Annotation& part = read.member(i);
         const Axis axis = axis_of_part(deformed.mesh, part);
         if (!axis.found) continue;
-        Vector3d middle = Vector3d::Zero();
-        double area = 0;
-        for (const Index f : part.faces) {
-            const double own = face_area(deformed.mesh, Face(f));
-            middle += own * eigen(centroid(deformed.mesh, Face(f)));
-            area += own;
-        }
-        middle /= area;
-        Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-        for (const Index f : part.faces) {
-            const Vector3d from = eigen(centroid(deformed.mesh, Face(f))) - middle;
-            spread += face_area(deformed.mesh, Face(f)) / area * from * from.transpose();
-        }
-        const SymmetricEigen3 principal(spread);
-        if (!principal.found() || principal.eigenvalues()[2] < 4 * principal.eigenvalues()[1]) continue;
-        const Vector3d longest = principal.eigenvectors().col(2), own = eigen(axis.direction);
+        const AreaMoments moments = area_moments(deformed.mesh, part.faces);
+        if (moments.variances[0] < 4 * moments.variances[1]) continue;
+        const Vector3d longest = eigen(moments.directions[0]), own = eigen(axis.direction);
         const double apart = std::atan2(longest.cross(own).norm(), std::abs(longest.dot(own))) / degree;
         if (apart <= tolerance) continue;
         measured.verdict = Verdict::unknown;
