@@ -65,6 +65,9 @@ public:
           graph_where_(graph_where),
           rest_(columns_of(space.mesh)) {}
 
+    /// What neither the edit nor a constraint asks to move gives way over all of the spread, instead of a third of it.
+    void let_neighbours_give() { neighbours_give_ = true; }
+
     DeformResult follow(const JsonValue& edit);
     DeformResult restore(const std::vector<Point>& points, const std::vector<bool>& held);
 
@@ -110,6 +113,8 @@ private:
     Outcome solve_for(const std::vector<bool>& active);
     /// Solves until what constraints follow stands still. The points before the last pass.
     Points make_passes(const std::vector<bool>& active, Outcome& outcome);
+    /// Of the hard constraints that follow others, the greatest deviation as a multiple of its tolerance.
+    [[nodiscard]] double shortfall(const std::vector<bool>& active, const Outcome& outcome) const;
     /// Passes with other factors for the parts that must have certain sizes, until these have them; else the best of them.
     Points search_sizes(const std::vector<bool>& active, Outcome& outcome);
     /// Whether a constraint that is no measure still follows what has moved.
@@ -154,6 +159,7 @@ private:
     EditState last_;
     std::vector<bool> asked_;    ///< vertices that the edit asks to move; empty: none is told from others
     bool is_under_way_ = false;  ///< handles are being dragged
+    bool neighbours_give_ = false;
     Mesh edited_mesh_;
     Points edited_;
     std::vector<semantic::Statement> statements_;  ///< of the constraints in the report

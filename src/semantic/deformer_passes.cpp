@@ -170,15 +170,25 @@ Points Deformer::make_passes(const std::vector<bool>& active, Outcome& outcome) 
     }
     // Measures are held to a thousandth of a part.
     const double still = (gauges ? 1e-6 : 1e-4) * box_diagonal(space_.mesh);
-    Points before = outcome.points;
-    while (outcome.passes < (follows ? options_.passes : 1)) {
+    // What must hold and does not yet is followed on as long as it comes nearer; the nearest counts.
+    const int usual = follows ? options_.passes : 1, most = follows ? 4 * usual : 1;
+    constexpr int patience = 5;
+    double least = std::numeric_limits<double>::infinity();
+    int since = 0;
+    Points before = outcome.points, best, before_best;
+    while (outcome.passes < usual || (outcome.passes < most && since < patience && least > 1)) {
         if (outcome.passes > 0 && !another_pass(active, outcome)) break;
         before = outcome.points;
         if (!solve_once(active, outcome)) break;
         outcome.solved = true;
         ++outcome.passes;
         if (outcome.passes > 1 && (outcome.points - before).colwise().norm().maxCoeff() <= still) break;
+        if (!follows || outcome.passes < usual) continue;
+        const double off = shortfall(active, outcome);
+        since = off < 0.9 * least ? 0 : since + 1;
+        if (off < least) least = off, best = outcome.points, before_best = before;
     }
+    if (best.size() > 0 && least < shortfall(active, outcome)) outcome.points = best, before = before_best;
     return before;
 }
 
@@ -188,7 +198,15 @@ Points Deformer::search_sizes(const std::vector<bool>& active, Outcome& outcome)
     double least = std::numeric_limits<double>::infinity();
     int since = 0;
     Points before = outcome.points, best = outcome.points;
-    while (outcome.passes < most && since < patience) {
+    while (outcome.passes < most) {
+        if (since >= patience) {
+            if (!sizes_->allow_whole_ranges()) break;
+            outcome.points = best;
+            const Mesh reached = with_points(space_.mesh, list_of(best));
+            least = sizes_->off(semantic::State(reached));
+            since = 0;
+            if (least <= near) break;
+        }
         const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
         sizes_->follow(semantic::State(mesh));
         before = outcome.points;
@@ -203,6 +221,18 @@ Points Deformer::search_sizes(const std::vector<bool>& active, Outcome& outcome)
     }
     outcome.points = best;
     return before;
+}
+
+double Deformer::shortfall(const std::vector<bool>& active, const Outcome& outcome) const {
+    const Mesh mesh = with_points(space_.mesh, list_of(outcome.points));
+    const semantic::State now(mesh);
+    double worst = 0;
+    for (std::size_t i = 0; i < statements_.size(); ++i) {
+        if (!active[i] || !statements_[i].hard || !statements_[i].follows || contradicted(i, active)) continue;
+        for (const Deviation& one : statements_[i].measure(now).deviations)
+            if (one.value && one.tolerance && *one.tolerance > 0) worst = std::max(worst, *one.value / *one.tolerance);
+    }
+    return worst;
 }
 
 bool Deformer::others_go_on(const std::vector<bool>& active, const Outcome& outcome, const Points& before) const {

@@ -128,16 +128,29 @@ void Deformer::solve_mesh(Outcome& outcome) {
         for (const int v : constraint->ids()) constrained[static_cast<std::size_t>(v)] = true;
     for (const semantic::Sizes::Copy& copy : sizes_->copies())
         for (const int v : copy.ids) constrained[static_cast<std::size_t>(v)] = true;
+    std::vector<bool> members(constrained.size(), false);
+    for (const Relationship& relationship : graph_.relationships)
+        if (relationship.is_constraint)
+            for (const int id : relationship.annotations)
+                for (const Index v : vertices_of(space_.mesh, *space_.set.find(id))) members[v] = true;
     const std::vector<bool> handles = handles_on_mesh();
-    std::vector<int> free, held, yielding;
+    std::vector<int> free, beside, held, yielding;
     for (const Vertex v : space_.mesh.vertices()) {
         if (space_.mesh.is_isolated(v)) continue;
         const bool handle = handles[v], anchor = anchors_.count(v.idx()) > 0;
         const bool stands = handle || (referred_.count(v.idx()) > 0 && rotating_.count(v.idx()) == 0);
-        (anchor || (stands && !constrained[v]) ? held : handle ? yielding : free).push_back(static_cast<int>(v.idx()));
+        const bool asked = constrained[v] || members[v] || asked_.empty() || asked_[v];
+        (anchor || (stands && !constrained[v]) ? held
+         : handle                              ? yielding
+         : asked                               ? free
+                                               : beside)
+            .push_back(static_cast<int>(v.idx()));
     }
     const double edge = mean_edge_length(space_.mesh);
     add_closeness(free, closeness(options_, space_.mesh, edge), edited_, 0, rest_, list);
+    DeformOptions near = options_;
+    if (!neighbours_give_) near.spread /= 3;
+    add_closeness(beside, closeness(near, space_.mesh, edge), edited_, 0, rest_, list);
     add_closeness(yielding, std::min(options_.handles, 81 * closeness(options_, space_.mesh, edge)), edited_, 0, rest_, list);
     add_closeness(held, options_.handles, edited_, 0, rest_, list);
     add_displacements(space_.mesh, options_.laplacian, options_.details == DeformOptions::Details::rest ? rest_ : edited_,
