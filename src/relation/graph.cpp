@@ -115,10 +115,22 @@ void check_members(const Relationship& relationship, const AnnotationSet& set, c
 /// What a relationship says, whoever says it and with whatever tolerance.
 using Statement = std::tuple<std::string, std::vector<int>, bool, std::string, std::string>;
 
+/// Whether the order of the members says something: a relation has a direction or none; of a constraint the first member is what
+/// changes, or the last one is the reference, but where all are alike.
+bool order_counts(const Relationship& relationship) {
+    static const std::set<std::string> alike{"adjacency",     "co-linearity",     "co-planarity",   "equal attributes",
+                                             "equal lengths", "equal selections", "keep direction", "keep shape",
+                                             "same length",   "part similarity",  "same level",     "same measure",
+                                             "side contact"};
+    return relationship.directed || (relationship.is_constraint && alike.count(relationship.type) == 0);
+}
+
 Statement statement(const Relationship& relationship) {
     std::vector<int> members = relationship.annotations;
-    if (!relationship.directed) std::sort(members.begin(), members.end());
-    return {relationship.type, std::move(members), relationship.is_constraint, relationship.constraint,
+    if (!order_counts(relationship)) std::sort(members.begin(), members.end());
+    std::string constraint =
+        relationship.constraint.empty() ? std::string() : to_compact_text(parse_json(relationship.constraint, "constraint"));
+    return {relationship.type, std::move(members), relationship.is_constraint, std::move(constraint),
             relationship.parameters.attribute};
 }
 

@@ -15,7 +15,11 @@ namespace {
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))) / degree; }
 
-double off_line(const Vector3d& p, const PartAxis& line) { return (p - line.point).cross(line.direction).norm(); }
+/// How far a part's own axis, where the part is, is from a line.
+double off_line(Part& part, const PartAxis& own, const PartAxis& line) {
+    const Vector3d middle = own.point + own.direction * own.direction.dot(part.centroid() - own.point);
+    return (middle - line.point).cross(line.direction).norm();
+}
 
 const PartAxis& axis_of(Part& part) {
     const PartAxis& axis = part.axis();
@@ -54,7 +58,7 @@ void measure_axes(const std::vector<Part*>& parts, GeometricRelation kind, Findi
             if (a == b) continue;
             const double between = angle_between(axis_of(*a).direction, axis_of(*b).direction);
             angle = std::max(angle, kind == GeometricRelation::perpendicular_axes ? 90 - between : between);
-            distance = std::max(distance, off_line(b->centroid(), axis_of(*a)));
+            distance = std::max(distance, off_line(*b, axis_of(*b), axis_of(*a)));
         }
     findings.add_angle(angle);
     if (kind != GeometricRelation::co_axiality) return;

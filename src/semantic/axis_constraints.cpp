@@ -61,6 +61,31 @@ Axis axis_carried_back(const Reader& read, std::size_t i, const Axis& rest, cons
     return found;
 }
 
+Statement::Constraints stars_kept(const Reader& read, const std::vector<Index>& vertices, const Points& shape, double grown) {
+    constexpr double stiffness = 10;
+    const Mesh& mesh = read.shape().mesh;
+    Statement::Constraints list;
+    for (const Index v : vertices) {
+        const std::vector<int> star = star_of(mesh, Vertex(v));
+        ConstraintParameters parameters;
+        parameters.target.emplace(3, static_cast<Eigen::Index>(star.size()));
+        for (std::size_t i = 0; i < star.size(); ++i)
+            parameters.target->col(static_cast<Eigen::Index>(i)) = grown * shape.col(star[i]);
+        list.push_back(read.make("Rigid", star, parameters, stiffness / read.relationship().weight));
+    }
+    return list;
+}
+
+void let_turn(const ReaderPtr& read, std::size_t members, Statement& statement) {
+    std::set<Index> all;
+    for (std::size_t i = 0; i < members; ++i)
+        for (const Index v : read->vertices(i)) all.insert(v);
+    statement.rotating.assign(all.begin(), all.end());
+    statement.support = [read, rotating = statement.rotating](const State& edited, const State&) {
+        return stars_kept(*read, rotating, edited.points);
+    };
+}
+
 namespace {
 
 /// Volume between the faces and the mean of the points.
@@ -83,22 +108,9 @@ void doubt_axes(const Reader& read, const State& deformed, double tolerance, Mea
         const Annotation& part = read.member(i);
         const Axis axis = axis_of_part(deformed.mesh, part);
         if (!axis.found) continue;
-        Vector3d middle = Vector3d::Zero();
-        double area = 0;
-        for (const Index f : part.faces) {
-            const double own = face_area(deformed.mesh, Face(f));
-            middle += own * eigen(centroid(deformed.mesh, Face(f)));
-            area += own;
-        }
-        middle /= area;
-        Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-        for (const Index f : part.faces) {
-            const Vector3d from = eigen(centroid(deformed.mesh, Face(f))) - middle;
-            spread += face_area(deformed.mesh, Face(f)) / area * from * from.transpose();
-        }
-        const SymmetricEigen3 principal(spread);
-        if (!principal.found() || principal.eigenvalues()[2] < 4 * principal.eigenvalues()[1]) continue;
-        const Vector3d longest = principal.eigenvectors().col(2), own = eigen(axis.direction);
+        const AreaMoments moments = area_moments(deformed.mesh, part.faces);
+        if (moments.variances[0] < 4 * moments.variances[1]) continue;
+        const Vector3d longest = eigen(moments.directions[0]), own = eigen(axis.direction);
         const double apart = std::atan2(longest.cross(own).norm(), std::abs(longest.dot(own))) / degree;
         if (apart <= tolerance) continue;
         measured.verdict = Verdict::unknown;
@@ -113,6 +125,7 @@ Statement co_axiality(const ReaderPtr& read, const RelationOptions& tolerances) 
     const std::vector<Axis> axes = axes_of_parts(*read);
     Statement statement;
     statement.follows = true;
+    let_turn(read, axes.size() - 1, statement);
     statement.lower = [read, axes](const State&, const State& now) {
         const Axis reference = reference_now(*read, axes.back(), now, axis_of_part);
         Statement::Constraints list;
@@ -142,6 +155,7 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
         statement.directions.push_back({reference, eigen(axes[i].direction), angle, own});
     }
     statement.follows = true;
+    let_turn(read, axes.size() - 1, statement);
     statement.lower = [read, axes, angle](const State& edited, const State& now) {
         ConstraintParameters parameters;
         parameters.direction = eigen(reference_now(*read, axes.back(), now, axis_of_part).direction);
@@ -165,10 +179,10 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
 
 namespace {
 
-/// Means of the lines in which planes across a direction cut a part, from a tenth to nine tenths of the way of some of its
+/// Means of the lines in which planes across a direction cut a part, from the first to the second share of the way of some of its
 /// vertices.
 std::vector<Vector3d> section_means(const State& shape, const Annotation& part, const std::vector<int>& vertices,
-                                    const Vector3d& direction) {
+                                    const Vector3d& direction, double first, double last) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const int v : vertices) {
         const double t = direction.dot(shape.points.col(v));
@@ -177,7 +191,7 @@ std::vector<Vector3d> section_means(const State& shape, const Annotation& part, 
     constexpr int count = 6;
     std::vector<Vector3d> means;
     for (int k = 0; k < count; ++k) {
-        const double level = low + (high - low) * (0.1 + 0.8 * k / (count - 1));
+        const double level = low + (high - low) * (first + (last - first) * k / (count - 1));
         Vector3d sum = Vector3d::Zero();
         double length = 0;
         for (const Index f : part.faces) {
@@ -198,25 +212,32 @@ std::vector<Vector3d> section_means(const State& shape, const Annotation& part, 
     return means;
 }
 
-/// On a coarse mesh the means of few vertices may lie on an axis that the surface does not have: where sections of the part say
-/// otherwise, what holds at its stations is not known to hold.
+/// On a coarse mesh the means of few vertices may lie on an axis that the surface does not have: where sections of the part, or
+/// of its half next to the reference, say otherwise, what holds at its stations is not known to hold.
 void doubt_stations(const Reader& read, const State& deformed, const AxisSegment& segment, const Axis& reference,
                     Measured& measured) {
     if (measured.verdict != Verdict::holds) return;
-    const Vector3d direction = eigen(reference.direction).normalized(), point = eigen(reference.point);
-    const std::vector<Vector3d> means = section_means(deformed, read.member(0), segment.vertices, direction);
-    if (means.size() < 3) return;
-    Vector3d along = Vector3d::Zero(), middle = Vector3d::Zero();
-    for (const Vector3d& mean : means) middle += mean / static_cast<double>(means.size());
-    for (const Vector3d& mean : means) along += (mean - middle) * direction.dot(mean - middle);  // regression on the way
-    const double angle = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
-    const double distance = direction.cross(middle - point).norm();  // single ones are drawn aside by joints
-    if (angle <= *measured.deviations[0].tolerance && distance <= *measured.deviations[1].tolerance) return;
-    const std::string& unit = read.shape().set.unit;
-    measured.verdict = Verdict::unknown;
-    measured.text += (measured.text.empty() ? "" : "; ") + std::string("plane sections of '") +
-                     printable(read.member(0).tag, 60) + "' are " + digits(angle, 2) + " degrees and " + digits(distance, 3) +
-                     (unit.empty() ? "" : " " + unit) + " off the axis: refine the mesh, it is too coarse to tell";
+    const std::vector<Vector3d> stations = stations_of(segment, deformed.points);
+    const Vector3d point = eigen(reference.point);
+    Vector3d direction = eigen(reference.direction).normalized();
+    if (direction.dot(stations.back() - stations.front()) < 0) direction = -direction;  // away from the reference
+    for (const double end : {0.9, 0.5}) {
+        const std::vector<Vector3d> means = section_means(deformed, read.member(0), segment.vertices, direction, 0.1, end);
+        if (means.size() < 3) continue;
+        Vector3d along = Vector3d::Zero(), middle = Vector3d::Zero();
+        for (const Vector3d& mean : means) middle += mean / static_cast<double>(means.size());
+        for (const Vector3d& mean : means) along += (mean - middle) * direction.dot(mean - middle);  // regression on the way
+        const double angle = std::atan2(direction.cross(along).norm(), std::abs(direction.dot(along))) / degree;
+        const double distance = direction.cross(middle - point).norm();  // single ones are drawn aside by joints
+        if (angle <= *measured.deviations[0].tolerance && distance <= *measured.deviations[1].tolerance) continue;
+        const std::string& unit = read.shape().set.unit;
+        measured.verdict = Verdict::unknown;
+        measured.text += (measured.text.empty() ? "" : "; ") + std::string("plane sections of '") +
+                         printable(read.member(0).tag, 60) + (end < 0.9 ? "', in the half next to the reference," : "'") +
+                         " are " + digits(angle, 2) + " degrees and " + digits(distance, 3) + (unit.empty() ? "" : " " + unit) +
+                         " off the axis: refine the mesh, it is too coarse to tell";
+        return;
+    }
 }
 
 }  // namespace
@@ -261,17 +282,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         // As it is at rest, but where the edit makes all of the object larger or smaller.
         const double ratio = volume(mesh, edited.points) / volume(mesh, read->shape().rest);
         const double grown = ratio > 0.01 && ratio < 100 ? std::cbrt(ratio) : 1;
-        constexpr double stiffness = 10;
-        Statement::Constraints list;
-        for (const Index v : rotating) {
-            const std::vector<int> star = star_of(mesh, Vertex(v));
-            ConstraintParameters parameters;
-            parameters.target.emplace(3, static_cast<Eigen::Index>(star.size()));
-            for (std::size_t i = 0; i < star.size(); ++i)
-                parameters.target->col(static_cast<Eigen::Index>(i)) = grown * read->shape().rest.col(star[i]);
-            list.push_back(read->make("Rigid", star, parameters, stiffness / read->relationship().weight));
-        }
-        return list;
+        return stars_kept(*read, rotating, read->shape().rest, grown);
     };
     statement.prepare = [read, rest, segment, part = statement.rotating](const State& now, Points& start) {
         const Axis reference = reference_now(*read, rest, now, steadiest);

@@ -33,6 +33,14 @@ bool is_better(const DeformResult& one, const DeformResult& other) {
     return std::pair(failing(one), one.objections.size()) < std::pair(failing(other), other.objections.size());
 }
 
+/// Whether all constraints hold, but the surface crosses or folds: there may have been too little room around them.
+bool spoils_surface_alone(const DeformResult& result) {
+    const SurfaceChange& surface = result.surface;
+    return result.solved && surface.crossings_new + surface.folds + surface.kinks > 0 &&
+           std::none_of(result.constraints.begin(), result.constraints.end(),
+                        [](const ConstraintReport& report) { return report.used && report.verdict != Verdict::holds; });
+}
+
 /// The first of the ways that gives an acceptable result, or the best of them.
 DeformResult deform_automatically(const HandleSpace& space, const RelationGraph& graph, const DeformOptions& options,
                                   const std::function<DeformResult(const RelationGraph&, const DeformOptions&)>& solve) {
@@ -92,6 +100,11 @@ DeformResult deform(const HandleSpace& space, const RelationGraph& graph, const 
                     "give --cage and --weights, or use --space mesh");
     const auto solve = [&](const RelationGraph& constraints, const DeformOptions& how) {
         DeformResult result = Deformer(space, constraints, how, tolerances, edit_name, graph_name).follow(edit);
+        if (how.space == Space::mesh && spoils_surface_alone(result)) {
+            Deformer giving(space, constraints, how, tolerances, edit_name, graph_name);
+            giving.let_neighbours_give();
+            if (DeformResult other = giving.follow(edit); is_better(other, result)) result = std::move(other);
+        }
         result.space = how.space;
         return result;
     };
@@ -146,7 +159,10 @@ void DeformOptions::describe(OptionList& visit) {
         Range{0, 1}, "share of the diagonal");
     solve.describe(visit);
     visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
-    visit("passes", passes, "solutions in which constraints on axes and measures of other parts follow those", Range{1, 100});
+    visit("passes", passes,
+          "solutions in which constraints on axes and measures of other parts follow those; up to four times as many while hard "
+          "ones that fail come nearer",
+          Range{1, 100});
     visit("conflicts", conflicts,
           "where a constraint does not hold, at most so many are left out in turn, to tell which fight; 0 for none",
           Range{0, 1000});

@@ -195,6 +195,7 @@ Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerance
     if (given < 0) statement.keeps = "its direction";
     for (std::size_t i = 0; i < parts.size(); ++i) statement.directions.push_back({read->member(i).id, up, parts[i].angle});
     statement.follows = true;
+    let_turn(read, parts.size(), statement);
     statement.lower = [=](const State& edited, const State& now) {
         Statement::Constraints list;
         for (std::size_t i = 0; i < parts.size(); ++i) {

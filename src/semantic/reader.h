@@ -277,6 +277,10 @@ Motion motion_back(const Reader& read, const std::vector<Index>& vertices, const
 /// The axis of a member as it is measured on a shape, carried back to the part at rest by the best rigid motion: what a
 /// constraint carries along from there is then what is measured. Where there is none any more, that at rest.
 Axis axis_carried_back(const Reader& read, std::size_t i, const Axis& rest, const State& now);
+/// What keeps the surface around each of some vertices as `shape` has it, so many times as large, but lets it turn.
+Statement::Constraints stars_kept(const Reader& read, const std::vector<Index>& vertices, const Points& shape, double grown = 1);
+/// The first members keep their surface by stars: displacements from neighbours, which do not turn, would shear what turns far.
+void let_turn(const ReaderPtr& read, std::size_t members, Statement& statement);
 /// The points of some vertices.
 inline Points columns_at(const Points& points, const std::vector<Index>& vertices) {
     Points some(3, static_cast<Eigen::Index>(vertices.size()));

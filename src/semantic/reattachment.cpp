@@ -319,15 +319,20 @@ std::vector<Point> list_of(const Points& points) {
     return list;
 }
 
-bool has_outline(const Mesh& mesh, const Annotation& region) {
+std::vector<Halfedge> outline_of(const Mesh& mesh, const Annotation& region) {
     const std::vector<bool> inside = face_flags(mesh, region.faces);
-    return std::any_of(region.faces.begin(), region.faces.end(), [&](Index f) {
+    std::vector<Halfedge> outline;
+    for (const Index f : region.faces)
         for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(f)))) {
             const Face other = mesh.face(mesh.opposite(h));
-            if (other != Mesh::null_face() && !inside[other]) return true;
+            if (other == Mesh::null_face() || !inside[other]) outline.push_back(h);
         }
-        return false;
-    });
+    return outline;
+}
+
+bool has_outline(const Mesh& mesh, const Annotation& region) {
+    const std::vector<Halfedge> outline = outline_of(mesh, region);
+    return std::any_of(outline.begin(), outline.end(), [&](Halfedge h) { return !mesh.is_border(mesh.opposite(h)); });
 }
 
 ReattachmentReport reattach(const Mesh& mesh, const Points& rest, const std::vector<Reattachment>& reattachments,

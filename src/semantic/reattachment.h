@@ -18,6 +18,9 @@ struct Reattachment {
 /// A point a column.
 std::vector<Point> list_of(const Points& points);
 
+/// The halfedges of a region's faces along its outline, that of the mesh's border included.
+std::vector<Halfedge> outline_of(const Mesh& mesh, const Annotation& region);
+
 /// Whether other faces adjoin those of a region: the whole of a piece has no place to be re-attached at.
 bool has_outline(const Mesh& mesh, const Annotation& region);
 

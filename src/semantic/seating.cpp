@@ -1,5 +1,7 @@
 #include "seating.h"
 
+#include "reattachment.h"
+
 #include "ostraka/core/json_build.h"
 #include "ostraka/geom/eigen.h"
 
@@ -12,18 +14,6 @@ namespace ostraka::semantic {
 namespace {
 
 using Eigen::Vector3d;
-
-/// The halfedges of a region's faces along its outline.
-std::vector<Halfedge> outline_of(const Mesh& mesh, const Annotation& region) {
-    const std::vector<bool> inside = face_flags(mesh, region.faces);
-    std::vector<Halfedge> outline;
-    for (const Index f : region.faces)
-        for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(f)))) {
-            const Face other = mesh.face(mesh.opposite(h));
-            if (other == Mesh::null_face() || !inside[other]) outline.push_back(h);
-        }
-    return outline;
-}
 
 /// Whether the outline is one closed line that meets itself nowhere.
 bool is_one_loop(const Mesh& mesh, const std::vector<Halfedge>& outline) {

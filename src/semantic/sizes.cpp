@@ -91,6 +91,13 @@ void Sizes::follow(const State& now) {
     renew_maps();
 }
 
+bool Sizes::allow_whole_ranges() {
+    if (std::all_of(side_.begin(), side_.end(), [](int side) { return side == 0; })) return false;
+    std::fill(side_.begin(), side_.end(), 0);
+    errors_.resize(0);  // others than those that the slopes would be told from
+    return true;
+}
+
 std::vector<Sizes::Copy> Sizes::copies() const {
     std::vector<Copy> list;
     for (std::size_t i = 0; i < parts_.size(); ++i) {

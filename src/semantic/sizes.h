@@ -20,6 +20,9 @@ public:
     [[nodiscard]] double off(const State& now) const;
     /// Better factors from what the last ones led to (Broyden's method on their logarithms).
     void follow(const State& now);
+    /// From now on any value in a range will do, not only its nearer end, which other measures may not allow. False if it did
+    /// already.
+    bool allow_whole_ranges();
 
     struct Copy {
         std::vector<int> ids;

@@ -112,6 +112,18 @@ TEST(Graph, RefusedWithPlaceAndRemedy) {
     std::string other = good;
     other.replace(other.find("\"id\": 0"), 7, "\"id\": 1");
     expect_refused(good + "," + other, "says the same as relationship 0");
+    // Of a proportion the first part changes: the other way round it says something else. One level is one level.
+    const auto both = [&](const std::string& type) {
+        const auto one = [&](const char* id, const char* members) {
+            return std::string(R"({"id": )") + id + R"(, "isConstraint": true, "type": ")" + type +
+                   R"(", "isDirected": false, "annotations": )" + members + "}";
+        };
+        return one("0", "[2, 1]") + "," + one("1", "[1, 2]");
+    };
+    EXPECT_EQ(refused(both("proportion")), "read");
+    EXPECT_EQ(refused(both("structural continuity")), "read");
+    EXPECT_EQ(refused(both("co-axiality")), "read");
+    expect_refused(both("same level"), "says the same as relationship 0");
     EXPECT_THROW(read(R"({"relationships": [{"id": 0}]})"), Error);
     EXPECT_THROW(read(R"({"relationships": 3})"), Error);
     EXPECT_THROW(read(R"({"relationships": [], "unknown": 1})"), Error);

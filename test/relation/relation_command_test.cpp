@@ -298,3 +298,65 @@ TEST(RelationCommand, ChecksConstraintsOnTheObjectAsItIs) {
     EXPECT_STREQ(ruled["result"]["rules"][0]["rule"].GetString(), "five legs");
     EXPECT_EQ(run_command("relation check " + chair + graph + " --vocabulary v.ttl").code, 2);
 }
+
+TEST(RelationCommand, TheOrderOfPartsIsKeptEverywhere) {
+    const Scratch scratch;
+    const auto at = [&](const char* name) { return (scratch / name).string(); };
+    const std::vector<int> wanted{6, 5}, turned{5, 6};  // handle before spout, against the order of the annotations
+    const auto expect_kept = [&](const char* name, std::size_t count = 1) {
+        const Json graph = read_json(scratch / name);
+        std::size_t kept = 0;
+        for (const auto& one : graph["relationships"].GetArray()) {
+            if (!one["isConstraint"].GetBool()) continue;
+            std::vector<int> members;
+            for (const auto& id : one["annotations"].GetArray()) members.push_back(id.GetInt());
+            EXPECT_EQ(members, kept == 0 ? wanted : turned) << name;
+            ++kept;
+        }
+        EXPECT_EQ(kept, count) << name;
+    };
+    const std::string state =
+        " --constraint --parameters '{\"minValue\": 0.5, \"maxValue\": 2, \"measure1\": \"length\", "
+        "\"measure2\": \"length\"}'";
+    // Stated by options and in one.
+    ASSERT_EQ(run_command("relation add " + pot + at("a.graph.json") +
+                          " --type proportion --annotation handle --annotation spout" + state)
+                  .code,
+              0);
+    expect_kept("a.graph.json");
+    ASSERT_EQ(run_command("relation add " + pot + at("b.graph.json") + " --relation 'proportion: handle, spout'" + state).code,
+              0);
+    expect_kept("b.graph.json");
+    // The other way round is another constraint, which is neither refused nor takes the place of the first.
+    const auto other = run_command("relation add " + pot + at("c.graph.json") + " --graph " + at("b.graph.json") +
+                                   " --relation 'proportion: 5, 6'" + state);
+    ASSERT_EQ(other.code, 0) << other.err;
+    expect_kept("c.graph.json", 2);
+    EXPECT_EQ(run_command("relation add " + pot + at("d.graph.json") + " --graph " + at("c.graph.json") +
+                          " --relation 'proportion: 6, 5'" + state)
+                  .code,
+              1);
+    // Beside what is extracted, after another was removed, in a package, and as it is checked.
+    ASSERT_EQ(run_command("relation extract " + pot + at("e.graph.json") + " --graph " + at("c.graph.json")).code, 0);
+    expect_kept("e.graph.json", 2);
+    const Json extracted = read_json(scratch / "e.graph.json");
+    std::string first;
+    for (const auto& one : extracted["relationships"].GetArray())
+        if (!one["isConstraint"].GetBool()) first = std::to_string(one["id"].GetInt());
+    ASSERT_EQ(run_command("relation remove " + pot + at("e.graph.json") + " " + at("f.graph.json") + " --id " + first).code, 0);
+    expect_kept("f.graph.json", 2);
+    ASSERT_EQ(run_command("template pack " + at("t.template.json") + " --mesh " + data + "teapot.ply --annotations " + data +
+                          "teapot.ant.json --graph " + at("f.graph.json") + " --copy")
+                  .code,
+              0);
+    expect_kept("f.graph.json", 2);
+    const auto checked = run_command("relation check --json " + pot + at("f.graph.json"));
+    const Json report = report_of(checked.out);
+    std::vector<std::vector<int>> told;
+    for (const auto& one : report["result"]["relationships"].GetArray()) {
+        if (!one["isConstraint"].GetBool()) continue;
+        told.emplace_back();
+        for (const auto& id : one["annotations"].GetArray()) told.back().push_back(id.GetInt());
+    }
+    EXPECT_EQ(told, (std::vector<std::vector<int>>{wanted, turned}));
+}

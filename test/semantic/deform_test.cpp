@@ -274,6 +274,52 @@ TEST(Deform, AxesBecomeParallelAndPerpendicular) {
     }
 }
 
+TEST(Deform, PartsComeToTheAxisOfAnother) {
+    // The parts as they were made: the body is cut open by spout and handle, so that its centroid is off its axis.
+    const SyntheticMesh made = make_mesh(synthetic_object("teapot"), {.vertices = 3000});
+    AnnotationSet set;
+    for (const int id : {0, 1, 2}) {
+        Annotation& part = set.annotations.emplace_back();
+        part.id = id, part.tag = "part " + std::to_string(id), part.type = AnnotationType::region;
+        for (const Face f : made.mesh.faces())
+            if (made.face_labels[f.idx()] == id) part.faces.push_back(f.idx());
+    }
+    RelationGraph graph;
+    graph.relationships = {constraint(0, "co-axiality", {2, 0}, R"({"hard": true})"),
+                           constraint(1, "co-axiality", {1, 0}, R"({"hard": true})")};
+    const DeformResult result =
+        deform({made.mesh, set}, graph, edit(R"({"select": {"annotation": "part 0"}, "translate": [8, 0, 0]})"), "e");
+    for (const ConstraintReport& report : result.constraints) EXPECT_EQ(report.verdict, Verdict::holds) << report.text;
+}
+
+TEST(Deform, PartsThatAreNotAskedStay) {
+    // Flowers follow one that is raised; a tenth of the diagonal away from all of them hardly anything moves.
+    const Caged pot("teapot", 3000, 100);
+    const Mesh& mesh = pot.made.mesh;
+    RelationGraph graph;
+    graph.relationships = {
+        constraint(0, "same level", {7, 8, 9, 10, 11}, R"({"follow": true, "heights": "equal", "hard": true})")};
+    const DeformResult result =
+        deform(pot.bare(), graph, edit(R"({"select": {"annotation": "flower 1"}, "translate": [0, 0, 4]})"), "e");
+    EXPECT_TRUE(result.acceptable);
+    const double diagonal = box_diagonal(mesh);
+    std::vector<Point> flowers;
+    for (const int id : graph.relationships[0].annotations)
+        for (const Index v : vertices_of(mesh, *pot.set.find(id))) flowers.push_back(mesh.point(Vertex(v)));
+    double farthest = 0;
+    std::size_t count = 0;
+    for (const Vertex v : mesh.vertices()) {
+        const Point& p = mesh.point(v);
+        if (std::any_of(flowers.begin(), flowers.end(),
+                        [&](const Point& q) { return CGAL::squared_distance(p, q) < 0.01 * diagonal * diagonal; }))
+            continue;
+        ++count;
+        farthest = std::max(farthest, std::sqrt(CGAL::squared_distance(result.points[v.idx()], result.edited[v.idx()])));
+    }
+    EXPECT_GT(count, mesh.number_of_vertices() / 4);
+    EXPECT_LT(farthest, 0.003 * diagonal) << 100 * farthest / diagonal << " %";
+}
+
 TEST(Deform, MeasuresAreKeptAndMadeEqual) {
     const Hand hand;
     const auto length = [&](int id, const std::vector<Point>& points) {
@@ -299,6 +345,19 @@ TEST(Deform, MeasuresAreKeptAndMadeEqual) {
     EXPECT_NEAR(length(6, equal.points), length(7, equal.points), 0.01 * was);
     EXPECT_GT(length(7, equal.points), length(7, rest) * 1.05);
     EXPECT_LT(length(6, equal.points), length(6, rest) * 0.95);
+    // A range of which the nearer end is denied by another measure, but not the range.
+    const auto range = [&](double from, double to) {
+        return R"(, "hard": true, "minValue": )" + std::to_string(from) + R"(, "maxValue": )" + std::to_string(to) + "}";
+    };
+    const double ratio = was / length(7, rest);
+    graph.relationships = {
+        constraint(0, "keep measure", {6}, R"({"measure": "length")" + range(1.2 * was, 1.2 * was)),
+        constraint(1, "proportion", {6, 7}, R"({"measure1": "length", "measure2": "length")" + range(1.12 * ratio, 1.3 * ratio))};
+    const DeformResult within = deform(hand.space(), graph, edit(""), "e");
+    EXPECT_TRUE(within.conflicts.empty());
+    for (const ConstraintReport& one : within.constraints) EXPECT_EQ(one.verdict, Verdict::holds) << one.text;
+    EXPECT_NEAR(length(6, within.points), 1.2 * was, 2e-3 * was);
+    graph.relationships.pop_back();
     // Of a tape the line changes.
     Caged tape("hand", 6000, 100);
     Annotation& finger = *tape.set.find(6);

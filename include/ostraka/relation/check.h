@@ -25,7 +25,7 @@ struct RelationCheck {
     std::string text;               ///< why it fails or cannot be determined
 };
 
-/// Checks each relationship of `graph`, in its order. Unknown are constraints (judge_constraints tells of them), types that only
+/// Checks each relationship of `graph`, in its order. Unknown are constraints (see judge_relationships), types that only
 /// experts can tell, and types whose input is missing; `text` says what. Throws Error (input) if the graph does not fit the set.
 std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                            const RelationOptions& options = {});
