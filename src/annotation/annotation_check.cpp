@@ -43,7 +43,7 @@ void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, co
     fail(where, pointer,
          a == b ? "vertex " + std::to_string(a) + " follows itself"
                 : "the mesh has no edge from vertex " + std::to_string(a) + " to vertex " + std::to_string(b),
-         "successive vertices must be joined by an edge: give the mesh the annotations were made for, or mend the list");
+         "successive vertices must be joined by an edge: give the mesh the annotations were made for, or correct the list");
 }
 
 }  // namespace places
@@ -69,7 +69,7 @@ void check_measure(const Measure& measure, const Mesh& mesh, const std::string& 
         const auto& [face, weights] = measure.locations[i];
         places::check_face(mesh, face, where, here + "/face");
         if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
-            fail(where, here + "/barycentric", "the weights do not sum to one", "mend them");
+            fail(where, here + "/barycentric", "the weights do not sum to one", "give three weights whose sum is 1");
     }
     if (measure.tool == "bounding") {
         if (!measure.direction) fail(where, at, "a bounding measure without a direction", "add the member \"direction\"");
@@ -102,7 +102,8 @@ void check_attributes(const Annotation& annotation, const Mesh& mesh, const std:
                  "give each attribute its own id");
         if (attribute.type == AttributeType::measure) check_measure(attribute.measure, mesh, where, here + "/measure");
         for (const double value : attribute.descriptor.values)
-            if (!std::isfinite(value)) fail(where, here + "/value", "a value is not finite", "mend or remove it");
+            if (!std::isfinite(value))
+                fail(where, here + "/value", "a value is not finite", "give a finite number, or remove the attribute");
     }
 }
 
@@ -169,7 +170,8 @@ void places::check_set(const AnnotationSet& set, const Mesh& mesh, const std::st
             fail(where, at + "/id", "the id " + to_string(annotation.id) + " is taken", "give each annotation its own id");
         for (const int part : annotation.colour)
             if (part < 0 || part > 255)
-                fail(where, at + "/colour", "the colour part " + to_string(part) + " is not within 0 to 255", "mend it");
+                fail(where, at + "/colour", "the colour part " + to_string(part) + " is not within 0 to 255",
+                     "give red, green and blue from 0 to 255");
         check_selection(annotation, mesh, where, at, settled);
         check_attributes(annotation, mesh, where, at);
     }

@@ -211,7 +211,7 @@ SurfacePlace surface_place_of(const JsonValue& value, const Mesh& mesh, const st
         places::check_face(mesh, face, where, at + "/face");
         const std::array<double, 3> weights = triple_of(value["barycentric"]);
         if (!(std::abs(weights[0] + weights[1] + weights[2] - 1) <= 1e-6))
-            fail(where, at + "/barycentric", "the weights do not sum to one", "mend them");
+            fail(where, at + "/barycentric", "the weights do not sum to one", "give three weights whose sum is 1");
         constexpr double rim = 1e-12;
         if (std::min({weights[0], weights[1], weights[2]}) < rim) return place_of(mesh, surface_node(mesh, face, weights, rim));
         place.kind = SurfaceNode::Kind::face;

@@ -413,9 +413,10 @@ std::vector<FairedAnnotation> fair_outlines(const Mesh& mesh, AnnotationSet& set
 }
 
 void FairOptions::describe(OptionList& visit) {
-    visit("distance", distance, "how far from where it was a curve may run; 0: the mean edge length, of the mesh or along it",
-          Range{0, 1e60}, "unit of the mesh");
-    visit("let-area-change", let_area_change, "do not shift the curves so that each region keeps its area");
+    visit("distance", distance,
+          "maximum distance of a curve from its original; 0: the mean edge length of the mesh or along the curve", Range{0, 1e60},
+          "unit of the mesh");
+    visit("let-area-change", let_area_change, "do not restore the area of each region");
 }
 
 }  // namespace ostraka

@@ -48,11 +48,11 @@ private:
                 std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
                 return JsonValue(std::stoi(text));
         }
-        fail(where_, at, "is not a whole number", "mend it");
+        fail(where_, at, "is not a whole number", "give an integer");
     }
 
     JsonValue annotation(const JsonValue& source, const std::string& at) {
-        if (!source.IsObject()) fail(where_, at, "is not an object", "mend or regenerate the file");
+        if (!source.IsObject()) fail(where_, at, "is not an object", "correct or regenerate the file");
         JsonValue result(rapidjson::kObjectType);
         std::string type = lower_in(source, "type");
         if (type == "area" || type == "surface") type = "region";
@@ -72,12 +72,12 @@ private:
     }
 
     JsonValue attributes(const JsonValue& source, const std::string& at) {
-        if (!source.IsArray()) fail(where_, at, "is not a list", "mend or regenerate the file");
+        if (!source.IsArray()) fail(where_, at, "is not a list", "correct or regenerate the file");
         JsonValue list(rapidjson::kArrayType);
         for (rapidjson::SizeType i = 0; i < source.Size(); ++i) {
             const std::string here = at + '/' + to_string(i);
             const JsonValue& entry = source[i];
-            if (!entry.IsObject()) fail(where_, here, "is not an object", "mend or regenerate the file");
+            if (!entry.IsObject()) fail(where_, here, "is not an object", "correct or regenerate the file");
             const std::string type = lower_in(entry, "type");
             if (type == "semantic" && find_member(entry, "note") == nullptr) list.PushBack(semantic(entry), allocator());
             else if (type == "geometric") list.PushBack(geometric(entry, here), allocator());

@@ -171,14 +171,15 @@ std::string to_obj(const Axis& axis) {
 }
 
 void AxisOptions::describe(OptionList& visit) {
-    visit("method", method, "how the axis is found", Choices{"rotation", "slices", "skeleton", "principal"});
-    visit("tolerance", tolerance, "rotation: distance from the turned profile that counts as on it", Range{0, 1},
+    visit("method", method, "method by which the axis is computed", Choices{"rotation", "slices", "skeleton", "principal"});
+    visit("tolerance", tolerance, "rotation: maximum distance from the revolved profile of what lies on it", Range{0, 1},
           "share of its largest diameter");
-    visit("least-quality", min_quality, "rotation: share of the surface that must lie on the turned profile", Range{0, 1});
+    visit("min-quality", min_quality, "rotation: minimum share of the surface that lies on the revolved profile", Range{0, 1});
     visit("slices", slices, "slices: number of planes across the part", Range{4, 10000});
-    visit("trials", trials, "rotation: random sets of normals tried", Range{0, 1000000});
-    visit("smoothing", smoothing, "rotation: how often normals are averaged over their neighbours", Range{0, 100});
-    visit("seed", seed, "rotation: of the random sets");
+    visit("trials", trials, "rotation: number of random sets of normals (RANSAC)", Range{0, 1000000});
+    visit("smoothing", smoothing, "rotation: number of rounds in which normals are averaged over their neighbours",
+          Range{0, 100});
+    visit("seed", seed, "rotation: random seed");
 }
 
 }  // namespace ostraka

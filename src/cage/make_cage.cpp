@@ -130,13 +130,14 @@ std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uin
 }
 
 void CageOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "wanted number of vertices", Range{4, 1e6});
+    visit("vertices", vertices, "target number of vertices", Range{4, 1e6});
     visit("alpha", alpha,
-          "what is narrower than this is wrapped over; 0: a fortieth, and more where the wanted number of vertices needs it",
+          "width of the openings that the wrap does not enter; 0: a fortieth, or more where the target number of vertices "
+          "requires it",
           Range{0, 1}, "share of the diagonal");
     visit("offset", offset, "distance of the wrap from the mesh", Range{1e-4, 0.5}, "share of the diagonal");
     visit("genus", genus,
-          "holes through the object: follow (the cage has those that the wrap leaves open) or fill (the cage has none)",
+          "handles of the object: follow (the cage keeps those that the wrap leaves open) or fill (the cage has none)",
           Choices{"follow", "fill"});
 }
 

@@ -162,7 +162,7 @@ void SyntheticMeasuresOptions::describe(OptionList& visit) {
           "from 1 - spread to 1 + spread",
           Range{0, 0.95});
     visit("missing", missing, "share of values that are missing", Range{0, 0.95});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

@@ -176,9 +176,9 @@ void GroupOptions::describe(OptionList& visit) {
                     double number = 0;
                     static_cast<void>(epsilon_rule(word, number));
                 }});
-    visit("expected-size", expected_size, "heads of one mould that are expected, for knn; 0: the square root of their number",
-          Range{0, 1e9});
-    visit("dimensions", dimensions, "eigenvectors of the embedding", Range{1, 20});
+    visit("expected-size", expected_size,
+          "expected number of heads per mould, for knn; 0: the square root of the number of heads", Range{0, 1e9});
+    visit("dimensions", dimensions, "number of eigenvectors of the embedding", Range{1, 20});
 }
 
 MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& options) {

@@ -98,14 +98,13 @@ CutPart largest_segment(const Mesh& mesh) {
 
 void PartOptions::describe(OptionList& visit) {
     visit("annotation", annotations,
-          "the part that is looked at: regions by id or by tag (with a vocabulary also what is narrower); else the whole objects")
+          "the part that is analysed: regions by id or tag (with a vocabulary also narrower concepts); otherwise whole objects")
         .words();
-    visit("without", without, "regions that are left out, by id or tag, such as beard; objects need not have them").words();
-    visit(
-        "proposed", proposed,
-        "a part that is found instead: the tubular part or the top above the neck, by slices across the upward direction, or the "
-        "largest segment by thickness",
-        Choices{"none", "tube", "top", "segment"});
+    visit("without", without, "regions to leave out, by id or tag, such as beard; objects need not have them").words();
+    visit("proposed", proposed,
+          "a part that is detected instead: the tubular part or the top above the neck, from slices across the upward direction, "
+          "or the largest thickness segment",
+          Choices{"none", "tube", "top", "segment"});
 }
 
 ObjectParts::ObjectParts(PartOptions options, TagWords words, std::string words_checksum)

@@ -340,16 +340,16 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
 }
 
 void ProportionOptions::describe(OptionList& visit) {
-    visit("false-discoveries", false_discoveries, "share of false ones that is allowed among the ratios called fixed",
+    visit("false-discoveries", false_discoveries, "allowed share of false discoveries among the ratios reported as fixed",
           Range{1e-6, 0.5});
     visit("correction", correction,
-          "for the number of ratios: bh (Benjamini and Hochberg) or by (Benjamini and Yekutieli, under any dependence)",
+          "correction for multiple tests: bh (Benjamini and Hochberg) or by (Benjamini and Yekutieli, under any dependence)",
           Choices{"bh", "by"});
-    visit("permutations", permutations, "random rearrangements of each test; more where the number of ratios asks for it",
+    visit("permutations", permutations, "number of random permutations per test; more where the number of ratios requires it",
           Range{99, 1000000});
     visit("range", range, "share of the observed ratios that a proposed range spans", Range{0.01, 1});
-    visit("confidence", confidence, "confidence of intervals", Range{0.5, 0.999});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("confidence", confidence, "confidence level of intervals", Range{0.5, 0.999});
+    visit("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

@@ -225,7 +225,7 @@ TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const Te
                    "only " + std::to_string(result.slices.size()) + " of " + std::to_string(result.asked) +
                        " slices can be used: " + std::to_string(result.too_open) + " are too open, " +
                        std::to_string(result.empty) + " have no outline",
-                   "fill the holes (ostraka mesh repair), check --up, or lower --least-turn or --least-slices");
+                   "fill the holes (ostraka mesh repair), check --up, or lower --min-turn or --min-slices");
     describe_technique(result);
     return result;
 }
@@ -269,11 +269,12 @@ TechniqueMeasures technique_from_json(const JsonValue& json) {
 }
 
 void TechniqueOptions::describe(OptionList& visit) {
-    visit("slices", slices, "slices of each object", Range{2, 100000});
-    visit("from", from, "where they begin", Range{0, 1}, "share of the height");
-    visit("to", to, "where they end (the thesis: the lowest two fifths)", Range{0, 1}, "share of the height");
-    visit("least-turn", min_turn, "an open outline is used if it covers as much", Range{0.5, 1}, "share of the full turn");
-    visit("least-slices", min_slices, "an object needs as many slices that can be used", Range{2, 100000});
+    visit("slices", slices, "number of slices per object", Range{2, 100000});
+    visit("from", from, "lower end of the sliced range", Range{0, 1}, "share of the height");
+    visit("to", to, "upper end of the sliced range (the thesis: the lowest two fifths)", Range{0, 1}, "share of the height");
+    visit("min-turn", min_turn, "minimum share of the full turn that an open outline covers", Range{0.5, 1},
+          "share of the full turn");
+    visit("min-slices", min_slices, "minimum number of usable slices per object", Range{2, 100000});
 }
 
 }  // namespace ostraka

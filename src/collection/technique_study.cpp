@@ -288,18 +288,20 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
 }
 
 void TechniqueStudyOptions::describe(OptionList& visit) {
-    visit("positive", positive, "the label that F1 is of; else the one whose bodies are rounder");
+    visit("positive", positive, "positive class of F1; otherwise the class whose bodies are rounder");
     std::vector<std::string> classifiers;
     for (const TechniqueClassifier& one : technique_classifiers()) classifiers.push_back(one.name);
-    visit("answer-by", answer_by, "the classifier that answers for each object", Choices(std::move(classifiers)));
-    visit("folds", folds, "parts of the cross-validation", Range{2, 1000});
-    visit("repeats", repeats, "divisions into parts", Range{1, 1000});
-    visit("resamples", resamples, "resampled collections that each answer is asked of", Range{10, 100000});
-    visit("simulations", simulations, "collections of one group that a division into two is compared with", Range{19, 100000});
+    visit("answer-by", answer_by, "classifier whose answer is reported for each object", Choices(std::move(classifiers)));
+    visit("folds", folds, "number of folds of the cross-validation", Range{2, 1000});
+    visit("repeats", repeats, "number of repeated divisions into folds", Range{1, 1000});
+    visit("resamples", resamples, "number of resampled collections that classify each object", Range{10, 100000});
+    visit("simulations", simulations, "number of simulated one-group collections with which a division into two is compared",
+          Range{19, 100000});
     visit("unlike-from", unlike_from,
-          "an object that lies as many robust standard deviations outside the labelled ones by any descriptor gets no answer",
+          "minimum distance, in robust standard deviations of any descriptor, at which an object is out of class and gets no "
+          "answer",
           Range{1, 1e6});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

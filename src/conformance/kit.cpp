@@ -275,21 +275,21 @@ void record_case(const ConformanceKit& kit, const ConformanceCase& one, Backend&
     if (answer.code != one.code)
         fail_work("case '" + one.id + "'",
                   "exit code " + std::to_string(answer.code) + ", expected " + std::to_string(one.code) + ": " + answer.message,
-                  "mend the case, or what it tests");
+                  "correct the case, or what it tests");
     for (const std::string& word : one.names)
         if (answer.message.find(word) == std::string::npos)
-            fail_work("case '" + one.id + "'", "the message does not name '" + word + "': " + answer.message, "mend the case");
+            fail_work("case '" + one.id + "'", "the message does not name '" + word + "': " + answer.message, "correct the case");
     std::error_code code;
     std::filesystem::remove_all(expected, code);
     std::set<std::string> files;
     Json report(rapidjson::kObjectType);  // what is compared, and no more: other members may name places of this machine
     for (const Comparison& comparison : one.comparisons) {
         if (comparison.what == "report") {
-            if (!answer.result) fail_work("case '" + one.id + "'", "there is no report", "mend the case");
+            if (!answer.result) fail_work("case '" + one.id + "'", "there is no report", "correct the case");
             for (const std::string& name : comparison.only)
                 if (find_member(*answer.result, name) == nullptr)
                     fail_work("case '" + one.id + "'", "compares '" + name + "', which the report does not have",
-                              "mend the case");
+                              "correct the case");
             for (const auto& member : answer.result->GetObject()) {
                 const std::string name = text_of(member.name);
                 const auto in = [&](const std::vector<std::string>& names) {

@@ -111,7 +111,7 @@ Vector3d UnitCage::unit(const Point& p) const {
 CageInterior::CageInterior(const Mesh& cage, std::size_t nodes, const std::string& kind) : mesher_(std::make_unique<Mesher>()) {
     if (CGAL::Polygon_mesh_processing::does_self_intersect(cage))
         fail_input("cage", "crosses itself, so that it has no inside for " + kind + " coordinates",
-                   "mend it ('ostraka cage check' names the faces), or use mean-value coordinates");
+                   "repair the cage ('ostraka cage check' names the faces), or use mean-value coordinates");
     const double volume = std::fabs(CGAL::Polygon_mesh_processing::volume(cage));
     if (!(volume > 1e-12))
         fail_input("cage", "has no volume to speak of, so that it has no inside for " + kind + " coordinates",

@@ -32,7 +32,8 @@ void check_cage(const Mesh& cage) {
     if (cage.number_of_faces() == 0) fail_input("cage", "has no faces", "give a closed triangle mesh around the mesh");
     if (cage.has_garbage()) fail_input("cage", "holds removed elements", "collect its garbage first");
     for (const Vertex v : cage.vertices())
-        if (!is_finite(cage.point(v))) fail_input("cage", "vertex " + std::to_string(v) + " is not finite", "mend the cage");
+        if (!is_finite(cage.point(v)))
+            fail_input("cage", "vertex " + std::to_string(v) + " is not finite", "give a cage with finite coordinates");
     for (const Face f : cage.faces())
         if (cage.degree(f) != 3) fail_input("cage", "face " + std::to_string(f) + " is no triangle", "triangulate the cage");
     for (const Halfedge h : cage.halfedges())
@@ -72,7 +73,8 @@ Coordinates compute_coordinates(const std::string& name, const Mesh& cage, const
     check_options(options, name + " coordinates");
     check_cage(cage);
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i])) fail_input("point " + std::to_string(i), "is not finite", "mend the mesh");
+        if (!is_finite(points[i]))
+            fail_input("point " + std::to_string(i), "is not finite", "give a mesh with finite coordinates");
     // A number for each point and each vertex of the cage, and for each face of it where the kind follows faces.
     const double columns =
         static_cast<double>(cage.number_of_vertices()) + (kind.with_normals ? static_cast<double>(cage.number_of_faces()) : 0.0);
@@ -179,11 +181,13 @@ double Coordinates::stored_share() const {
 void CoordinateOptions::describe(OptionList& visit) {
     visit("snap", snap, "distance below which a point counts as lying on the cage", Range{0, 1e-6},
           "share of the cage's diagonal");
-    visit("nodes", nodes, "harmonic, local: about so many nodes of the tetrahedra inside the cage", Range{100, 5e6});
-    visit("drop", drop, "all but mean-value and green: weights below this are left out", Range{0, 0.01});
-    visit("iterations", iterations, "local: steps at most", Range{1, 100000});
-    visit("tolerance", tolerance, "local: end when ten steps lower the total variation by less than this share", Range{0, 0.1});
-    visit("fade", fade, "cages within cages: length over which an inner cage's hold on what enters it rises", Range{0, 1},
+    visit("nodes", nodes, "harmonic, local: approximate number of nodes of the tetrahedral mesh inside the cage",
+          Range{100, 5e6});
+    visit("drop", drop, "weights below this are dropped (all kinds but mean-value and green)", Range{0, 0.01});
+    visit("iterations", iterations, "local: maximum number of iterations", Range{1, 100000});
+    visit("tolerance", tolerance, "local: stop when ten iterations lower the total variation by less than this share",
+          Range{0, 0.1});
+    visit("fade", fade, "nested cages: length over which the influence of an inner cage rises from its border", Range{0, 1},
           "share of its diagonal");
 }
 

@@ -146,14 +146,14 @@ Json parse_json(std::string_view text, const std::string& where) {
     if (text.size() >= 3 && text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
     // RapidJSON takes a zero byte for the end of the text.
     if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
-        fail_input(where + ", " + place(text, zero), "not valid JSON: a zero byte", "mend or regenerate the file");
+        fail_input(where + ", " + place(text, zero), "not valid JSON: a zero byte", "correct or regenerate the file");
     if (nested_too_deep(text)) fail_input(where, "the JSON is nested deeper than 200 levels", "flatten it");
     Json document;
     document.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
     if (document.HasParseError())
         fail_input(where + ", " + place(text, document.GetErrorOffset()),
                    std::string("not valid JSON: ") + rapidjson::GetParseError_En(document.GetParseError()),
-                   "mend or regenerate the file");
+                   "correct or regenerate the file");
     refuse_twins(document, where);
     return document;
 }
@@ -307,7 +307,7 @@ JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name) {
 }
 
 std::string text_of(const JsonValue& value) {
-    if (!value.IsString()) fail_input("the document", "a value is no text", "mend or regenerate the file");
+    if (!value.IsString()) fail_input("the document", "a value is no text", "correct or regenerate the file");
     return {value.GetString(), value.GetStringLength()};
 }
 

@@ -170,7 +170,8 @@ RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& int
 
 void CurvatureOptions::describe(OptionList& visit) {
     visit("scale", scale,
-          "radius over which curvature is averaged: larger is smoother and bears more noise; 0 = the faces around the vertex",
+          "radius over which curvature is averaged: a larger one is smoother and tolerates more noise; 0: the faces around the "
+          "vertex",
           Range{0, 1}, "share of the box diagonal");
 }
 

@@ -38,7 +38,7 @@ Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, c
         }
         if (!std::isfinite(map[vertex]))
             fail_input(where, "the value of vertex " + std::to_string(vertex) + " is not a finite number",
-                       "mend the map or choose another region");
+                       "correct the map or choose another region");
         values.push_back(map[vertex]);
         weights.push_back(shares[i].second);
     }

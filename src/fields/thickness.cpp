@@ -155,9 +155,10 @@ std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<doub
 
 void ThicknessOptions::describe(OptionList& visit) {
     visit("rays", rays, "rays sent inward from each face", Range{1, 1000});
-    visit("cone", cone, "opening of the cone of rays", Range{0, 175}, "degrees");
-    visit("thickness-scale", scale, "radius over which normals are averaged for the cone's axis; more bears more noise",
-          Range{0, 1}, "share of the box diagonal");
+    visit("cone", cone, "opening angle of the cone of rays", Range{0, 175}, "degrees");
+    visit("thickness-scale", scale,
+          "radius over which normals are averaged for the cone's axis; a larger one tolerates more noise", Range{0, 1},
+          "share of the box diagonal");
 }
 
 }  // namespace ostraka

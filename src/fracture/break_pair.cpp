@@ -411,17 +411,17 @@ JsonValue pair_to_json(const BreakPair& pair, const std::string& a, const std::s
 }
 
 void PairOptions::describe(OptionList& visit) {
-    visit("frames", frames, "places along the rim of each fracture that are laid onto each other", Range{4, 2000});
-    visit("samples", samples, "points on the fracture, and as many on the rest of the surface", Range{50, 1e6});
-    visit("starts", starts, "poses that are refined quickly: the best of all tried", Range{1, 10000});
-    visit("refined", refined, "poses that are refined to the end", Range{1, 1000});
-    visit("reach", search_radius, "farthest that two fractures lie apart at first", Range{1e-4, 1},
+    visit("frames", frames, "number of places along the rim of each fracture surface that are registered", Range{4, 2000});
+    visit("samples", samples, "number of points on the fracture surface, and on the rest of the surface", Range{50, 1e6});
+    visit("starts", starts, "number of best initial poses that are refined coarsely", Range{1, 10000});
+    visit("refined", refined, "number of poses that are refined fully", Range{1, 1000});
+    visit("reach", search_radius, "initial search radius between two fracture surfaces", Range{1e-4, 1},
           "share of the root of the smaller fragment's area");
-    visit("last-reach", last_search_radius, "the same at the end; deeper in each other than this they do not go together",
+    visit("last-reach", last_search_radius, "final search radius; fracture surfaces that penetrate deeper do not join",
           Range{1e-4, 1});
-    visit("edges", edges, "weight of the fractures' rims against their surfaces", Range{0, 1000});
-    visit("least-confidence", min_confidence, "below this it cannot be told how they go together", Range{0, 1});
-    visit("candidates", candidates, "poses told, best first", Range{1, 1000});
+    visit("edges", edges, "weight of the rims of the fracture surfaces against their interiors", Range{0, 1000});
+    visit("min-confidence", min_confidence, "minimum confidence of a joint; below it there is no answer", Range{0, 1});
+    visit("candidates", candidates, "maximum number of poses reported, best first", Range{1, 1000});
 }
 
 }  // namespace ostraka

@@ -195,9 +195,10 @@ Facets find_facets(const Mesh& mesh, const FacetOptions& options) {
 }
 
 void FacetOptions::describe(OptionList& visit) {
-    visit("facet-edge", edge, "turn of the surface over an edge where a break may begin", Range{5, 120}, "degrees");
-    visit("facet-wall", wall, "walls are thinner than this share of the square root of the area", Range{0.01, 1});
-    visit("facet-coherence", coherence, "weight of neighbours against what a face shows by itself", Range{0, 100});
+    visit("facet-edge", edge, "dihedral angle of an edge at which a fracture may begin", Range{5, 120}, "degrees");
+    visit("facet-wall", wall, "maximum thickness of a wall, as a share of the square root of the area", Range{0.01, 1});
+    visit("facet-coherence", coherence, "weight of the agreement of neighbouring faces against the features of a face",
+          Range{0, 100});
 }
 
 }  // namespace ostraka

@@ -167,7 +167,7 @@ private:
         joint.lead = lead.here > 0 ? std::clamp(1 - lead.elsewhere / lead.here, 0.0, 1.0) : 0;
         joint.share = minimum > 0 ? std::clamp(lead.here / minimum, 0.0, 2.0) : 0;
         joint.confidence = std::min(1.0, 2 * joint.share) * std::min(1.0, 3 * joint.lead);
-        joint.decided = joint.confidence >= options_.min_confidence;
+        joint.decided = joint.confidence >= options_.min_joint;
     }
 
     /// Groups that hang on nothing decided stay where they meet the others if they share nothing with them there; else sherds of
@@ -290,14 +290,14 @@ RotationMatch match_rotations(const Mesh& whole, const Vector3d& point, const Ve
 }
 
 void RotationMatchOptions::describe(OptionList& visit) {
-    visit("turns", rotations, "turns about a vessel's axis that are open are decided by the breaks: auto; or never",
+    visit("turns", rotations, "decide open rotations about a vessel's axis by the fracture surfaces: auto or never",
           Choices{"auto", "never"});
-    visit("turn-frames", frames, "places along the rim of each fracture", Range{4, 5000});
-    visit("turn-samples", samples, "points on each fracture", Range{50, 1e6});
-    visit("turn-candidates", candidates, "turns of two sherds that are refined: the best of all tried", Range{1, 1000});
-    visit("turn-beam", beam, "assemblies of all sherds that are followed at once", Range{1, 100000});
-    visit("turn-hold", hold, "weight of a sherd's place on the template against the breaks", Range{0, 1000});
-    visit("least-joint", min_confidence, "confidence of a joint; below it is not decided", Range{0, 1});
+    visit("turn-frames", frames, "number of places along the rim of each fracture surface", Range{4, 5000});
+    visit("turn-samples", samples, "number of points on each fracture surface", Range{50, 1e6});
+    visit("turn-candidates", candidates, "number of best rotations of two sherds that are refined", Range{1, 1000});
+    visit("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
+    visit("turn-hold", hold, "weight of a sherd's place on the template against the fracture surfaces", Range{0, 1000});
+    visit("min-joint", min_joint, "minimum confidence of a joint; below it is not decided", Range{0, 1});
 }
 
 }  // namespace ostraka

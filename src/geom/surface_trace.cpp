@@ -103,7 +103,7 @@ SurfaceNode node_at(const Mesh& mesh, const SurfacePlace& place) {
     const auto [first, second] = place.element;
     const auto [u, v] = place.weights;
     const auto outside = [](const std::string& what) {
-        fail_input("a place on the surface", "has weights that are not within " + what, "mend or remove it");
+        fail_input("a place on the surface", "has weights that are not within " + what, "correct or remove it");
     };
     SurfaceNode node;
     node.kind = place.kind;

@@ -98,7 +98,7 @@ private:
     }
     [[nodiscard]] int whole(const std::string& column) const {
         const auto value = whole_of(cell(column));
-        if (!value) fail(column, "'" + one_line(cell(column)).substr(0, 40) + "' is not a whole number", "mend the cell");
+        if (!value) fail(column, "'" + one_line(cell(column)).substr(0, 40) + "' is not a whole number", "correct the cell");
         return *value;
     }
     [[nodiscard]] std::vector<double> numbers(const std::string& column) const { return numbers(column, cell(column)); }
@@ -162,7 +162,7 @@ private:
         attribute.name = cell("name");
         const std::string kind = cell("kind"), stale = cell("stale");
         if (!stale.empty() && lower_case(stale) != "true" && lower_case(stale) != "false")
-            fail("stale", "is neither true nor false", "mend the cell");
+            fail("stale", "is neither true nor false", "correct the cell");
         const bool is_stale = lower_case(stale) == "true";
         if (kind == "semantic") {
             attribute.note = cell("note");
@@ -190,7 +190,7 @@ private:
         if (!direction.empty() && direction.size() != 3) fail("direction", "is not three numbers", "give x, y and z");
         if (!direction.empty()) measure.direction = {direction[0], direction[1], direction[2]};
         const auto locations = numbers("locations");
-        if (locations.size() % 4 != 0) fail("locations", "is not a face and three weights a point", "mend the cell");
+        if (locations.size() % 4 != 0) fail("locations", "is not a face and three weights a point", "correct the cell");
         for (std::size_t i = 0; i < locations.size(); i += 4)
             measure.locations.push_back(
                 {index("locations", locations[i]), {locations[i + 1], locations[i + 2], locations[i + 3]}});

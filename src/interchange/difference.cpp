@@ -112,10 +112,12 @@ std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet&
 }
 
 void MergeOptions::describe(OptionList& visit) {
-    visit("prefer", prefer, "whose change counts where both changed one thing in two ways", Choices{"none", "ours", "theirs"});
-    visit("merge-faces", merge_faces, "where both changed a region, take the changes of both face by face instead of a conflict",
-          Anything{});
-    visit("renumber", renumber, "where both added an annotation under one id, give theirs a new one instead of a conflict",
+    visit("prefer", prefer, "which change is taken where both sets changed the same thing differently",
+          Choices{"none", "ours", "theirs"});
+    visit("merge-faces", merge_faces,
+          "where both sets changed a region, merge the changes face by face instead of reporting a conflict", Anything{});
+    visit("renumber", renumber,
+          "where both sets added an annotation under one id, give the second a new id instead of reporting a conflict",
           Anything{});
 }
 

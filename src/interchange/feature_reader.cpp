@@ -168,7 +168,7 @@ private:
         placement.id = file_.ours ? file_.ids[row] : static_cast<int>(std::min<std::size_t>(row, 2147483647));
         placement.how = same_mesh_ ? "indices" : "places";
         if (!used_.insert(placement.id).second)
-            fail_input(where_, "two features have the id " + std::to_string(placement.id), "mend the table");
+            fail_input(where_, "two features have the id " + std::to_string(placement.id), "correct the table");
         const std::array<int, 3> colour =
             file_.ours ? std::array<int, 3>{file_.colours[3 * row], file_.colours[3 * row + 1], file_.colours[3 * row + 2]}
                        : distinct_colour(row);

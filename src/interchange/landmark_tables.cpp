@@ -168,7 +168,7 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
         if (key == "lm3") {
             const auto count = whole_of(value);
             if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
-                fail_input(at, "the count of landmarks is not a number that the file could hold", "mend LM3=");
+                fail_input(at, "the count of landmarks is not a number that the file could hold", "correct LM3=");
             specimens.emplace_back();
             expected = static_cast<std::size_t>(*count);
         } else if (specimens.empty()) {
@@ -179,7 +179,7 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
             specimens.back().comment = value;
         } else if (key == "scale") {
             const auto scale = number_of(value);
-            if (!scale || !(*scale > 0)) fail_input(at, "the scale is not a positive number", "mend SCALE=");
+            if (!scale || !(*scale > 0)) fail_input(at, "the scale is not a positive number", "correct SCALE=");
             specimens.back().scale = *scale;
         }
     }
@@ -284,7 +284,7 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
     if (header.empty())
         header = {"id", "x", "y", "z", "ow", "ox", "oy", "oz", "vis", "sel", "lock", "label", "desc", "associatedNodeID"};
     const auto columns = columns_of(header);
-    if (!columns) fail_input(where, "its columns do not hold x, y and z", "mend the line '# columns = id,x,y,z,...'");
+    if (!columns) fail_input(where, "its columns do not hold x, y and z", "correct the line '# columns = id,x,y,z,...'");
     const auto rows = csv_rows(body, ',', where);
     for (const CsvRow& row : rows) {
         Landmark landmark;

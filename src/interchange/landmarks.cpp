@@ -240,13 +240,13 @@ void LandmarkFileOptions::describe(OptionList& visit) {
           "space of the mesh's coordinates, for files that state theirs: LPS (x to the left, y to the back; what 3D Slicer "
           "writes since 4.11) or RAS (x to the right, y to the front; older ones)",
           Choices{"LPS", "RAS"});
-    visit("specimen", specimen, "which specimen of a TPS file is meant: its ID, or its number from 1", Anything{});
+    visit("specimen", specimen, "specimen of a TPS file: its ID, or its number from 1", Anything{});
 }
 
 void PlaceOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "farthest that a place of the file may lie from the surface", Range{0, 1},
+    visit("tolerance", tolerance, "maximum distance of a place of the file from the surface", Range{0, 1},
           "share of the box diagonal");
-    visit("skip-far", skip_far, "leave out what lies farther, with a note, instead of refusing the file", Anything{});
+    visit("skip-far", skip_far, "skip places that lie farther, with a note, instead of refusing the file", Anything{});
 }
 
 }  // namespace ostraka

@@ -28,7 +28,8 @@ struct Reader {
                        "use LPS or RAS");
         const JsonValue* list = find_member(markup, "controlPoints");
         if (list == nullptr) return points;
-        if (!list->IsArray()) fail_input(where, "at " + pointer + "/controlPoints: is not a list", "mend or regenerate the file");
+        if (!list->IsArray())
+            fail_input(where, "at " + pointer + "/controlPoints: is not a list", "correct or regenerate the file");
         for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
             const JsonValue& point = (*list)[i];
             const std::string status = text_in(point, "positionStatus");
@@ -47,7 +48,7 @@ struct Reader {
     }
 
     void read(const JsonValue& markup, const std::string& pointer) {
-        if (!markup.IsObject()) fail_input(where, "at " + pointer + ": is not an object", "mend or regenerate the file");
+        if (!markup.IsObject()) fail_input(where, "at " + pointer + ": is not an object", "correct or regenerate the file");
         const std::string type = text_in(markup, "type"), name = text_in(markup, "name");
         const JsonValue* unit = find_member(markup, "coordinateUnits");
         if (unit != nullptr && unit->IsArray() && !unit->Empty()) unit = &(*unit)[0];

@@ -43,7 +43,7 @@ LandmarkSet read_picked_points(const std::string& bytes, const std::string& wher
     if (!parsed) {
         const auto end = bytes.begin() + std::clamp<std::ptrdiff_t>(parsed.offset, 0, static_cast<std::ptrdiff_t>(bytes.size()));
         fail_input(where + ", line " + std::to_string(1 + std::count(bytes.begin(), end, '\n')),
-                   std::string("not valid XML: ") + parsed.description(), "mend or regenerate the file");
+                   std::string("not valid XML: ") + parsed.description(), "correct or regenerate the file");
     }
     const pugi::xml_node root = document.child("PickedPoints");
     if (!root) fail_input(where, "has no element PickedPoints", "give a file of MeshLab's tool 'Pick Points'");

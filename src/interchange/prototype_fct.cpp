@@ -34,7 +34,7 @@ public:
     AnnotationSet read() {
         (void)field("Filename:");
         const auto count = whole_of(field("Number of Facets:"));
-        if (!count || *count < 0) fail("the number of facets is not a number", "mend the header");
+        if (!count || *count < 0) fail("the number of facets is not a number", "correct the header");
         AnnotationSet set;
         for (int i = 0; i < *count; ++i) set.annotations.push_back(facet(i));
         if (next()) set.notes.push_back("line " + std::to_string(number_) + ": text behind the last facet is not read");
@@ -112,7 +112,7 @@ private:
         if (next_line()) inner = indices();
         annotation.faces = flagged(side(borders, inner));
         if (annotation.faces.empty())
-            fail("the facet '" + one_line(annotation.tag).substr(0, 40) + "' holds no face", "mend its border");
+            fail("the facet '" + one_line(annotation.tag).substr(0, 40) + "' holds no face", "correct its border");
         return annotation;
     }
 

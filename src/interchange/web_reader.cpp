@@ -118,7 +118,7 @@ private:
     std::vector<std::pair<const JsonValue*, std::string>> items_of(const JsonValue& document) {
         std::vector<std::pair<const JsonValue*, std::string>> items;
         const auto add_list = [&](const JsonValue& list, const std::string& pointer) {
-            if (!list.IsArray()) fail_input(where_, "at " + pointer + ": is not a list", "mend or regenerate the file");
+            if (!list.IsArray()) fail_input(where_, "at " + pointer + ": is not a list", "correct or regenerate the file");
             for (rapidjson::SizeType i = 0; i < list.Size(); ++i) items.emplace_back(&list[i], pointer + "/" + std::to_string(i));
         };
         const JsonValue* type = find_member(document, "type");
@@ -245,7 +245,7 @@ private:
         const double limit = options_.tolerance * placer().diagonal();
         for (const auto& entry : list.GetArray()) {
             const auto position = triple(&entry);
-            if (!position) fail_input(where_, "in " + pointer + ": a place that is not finite", "mend or regenerate the file");
+            if (!position) fail_input(where_, "in " + pointer + ": a place that is not finite", "correct or regenerate the file");
             check_place(*position, where_ + ", in " + pointer);
             const Placed p = placer().place(Point((*position)[0], (*position)[1], (*position)[2]));
             if (p.to_surface > limit) {
@@ -300,7 +300,8 @@ private:
                 RegionPart& next = wanted.emplace_back();
                 next.area = part["area"].GetDouble();
                 const auto inside = triple(&part["inside"]);
-                if (!inside) fail_input(where_, "in " + pointer + ": a place that is not finite", "mend or regenerate the file");
+                if (!inside)
+                    fail_input(where_, "in " + pointer + ": a place that is not finite", "correct or regenerate the file");
                 check_place(*inside, where_ + ", in " + pointer);
                 next.inside = Point((*inside)[0], (*inside)[1], (*inside)[2]);
                 for (const auto& outline : part["outlines"].GetArray()) {

@@ -165,7 +165,7 @@ Reader::Reader(const std::string& bytes, const std::string& where)
 }
 
 void Reader::fail(const std::string& pointer, const std::string& what) const {
-    fail_input(where_, "at " + pointer + ": " + what, "mend or regenerate the file");
+    fail_input(where_, "at " + pointer + ": " + what, "correct or regenerate the file");
 }
 
 std::size_t Reader::number(const JsonValue& object, const char* name, const std::string& pointer, std::size_t fallback) const {

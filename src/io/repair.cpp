@@ -300,14 +300,15 @@ void prepare_for_stl(RepairResult& result) {
 void RepairOptions::describe(OptionList& visit) {
     visit("merge-distance", merge_distance, "merge border points closer than this (0: only equal ones)", Range{0, 0.1},
           "share of the diagonal");
-    visit("merge-gap", merge_gap, "and those across cracks narrower than this (0: none)", Range{0, 0.5},
+    visit("merge-gap", merge_gap, "also merge border points across cracks narrower than this (0: none)", Range{0, 0.5},
           "share of the shortest edge at the points");
     visit("keep-isolated", keep_isolated, "keep vertices without a face", Anything{});
     visit("keep-largest", keep_largest, "keep only the component with the largest area", Anything{});
-    visit("min-component-share", min_component_share, "drop components with less than this", Range{0, 1}, "share of the area");
-    visit("fill-holes", fill_holes, "fill holes of at most so many border edges (0: none)", Range{0, 100000});
-    visit("fill-holes-size", fill_holes_size, "and at most so wide (diameter of a disc of the same area)", Range{0, 1},
-          "share of their component's diagonal");
+    visit("min-component-share", min_component_share, "drop connected components whose share of the area is smaller", Range{0, 1},
+          "share of the area");
+    visit("fill-holes", fill_holes, "maximum number of border edges of a hole to fill (0: fill none)", Range{0, 100000});
+    visit("fill-holes-size", fill_holes_size, "maximum width of a hole to fill (diameter of a disc of the same area)",
+          Range{0, 1}, "share of their component's diagonal");
     visit("remove-self-intersections", remove_self_intersections, "cut out intersecting triangles and close the gap", Anything{});
     visit("wrap", wrap, "replace the surface by a watertight wrap (loses detail below wrap-alpha)", Anything{});
     visit("wrap-alpha", wrap_alpha, "the wrap enters openings wider than this", Range{0.002, 0.5}, "share of the diagonal");

@@ -84,7 +84,7 @@ void check_soup(const TriangleSoup& soup) {
         for (const double x : soup.points[v])
             if (!(std::abs(x) <= 1e100))
                 fail_input("vertex " + std::to_string(v), "has a coordinate that is not finite or is beyond 1e100",
-                           "mend or remove that vertex, or scale the object");
+                           "correct or remove that vertex, or scale the object");
 }
 
 DisjointSets fans_of_corners(const TriangleSoup& soup, const SoupEdges& edges) {

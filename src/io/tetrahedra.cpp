@@ -60,7 +60,7 @@ void take_surface(PolygonSoup& soup, const std::string& file) {
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t end = i + 1;
         while (end < sides.size() && sides[end].key == sides[i].key) ++end;
-        if (end - i > 2) fail_input(file, "has a triangle between more than two tetrahedra", "mend the file");
+        if (end - i > 2) fail_input(file, "has a triangle between more than two tetrahedra", "correct the file");
         if (end - i == 1) {
             soup.corners.insert(soup.corners.end(), sides[i].corners.begin(), sides[i].corners.end());
             close_polygon(soup, file);
@@ -84,7 +84,7 @@ void check_cells(const PolygonSoup& soup, const std::string& file) {
         Tetrahedron sorted = soup.extras.tetrahedra[i];
         std::sort(sorted.begin(), sorted.end());
         if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-            fail_input(file, "tetrahedron " + std::to_string(i) + " names a vertex twice", "mend the file");
+            fail_input(file, "tetrahedron " + std::to_string(i) + " names a vertex twice", "correct the file");
     }
 }
 
@@ -241,7 +241,8 @@ PolygonSoup read_vtu(const std::string& bytes, const std::string& file) {
     if (places.size() % 3 != 0) fail_input(file, "has points that are not three numbers each", "export it again");
     for (std::size_t i = 0; i < places.size(); i += 3) {
         for (std::size_t k = 0; k < 3; ++k)
-            if (!std::isfinite(places[i + k])) fail_input(file, "point " + std::to_string(i / 3) + " is not finite", "mend it");
+            if (!std::isfinite(places[i + k]))
+                fail_input(file, "point " + std::to_string(i / 3) + " is not finite", "give finite coordinates");
         soup.points.push_back({places[i], places[i + 1], places[i + 2]});
     }
     const pugi::xml_node cells = piece.child("Cells");
@@ -253,12 +254,12 @@ PolygonSoup read_vtu(const std::string& bytes, const std::string& file) {
     if (const pugi::xml_node array = named(piece.child("CellData"), "label"))
         labels = numbers_of<std::int64_t>(array, file, "labels");
     if (!labels.empty() && labels.size() != types.size())
-        fail_input(file, "has another number of labels than of cells", "mend it");
+        fail_input(file, "has another number of labels than of cells", "give one label per cell");
     std::size_t others = 0;
     for (std::size_t i = 0, begin = 0; i < ends.size(); ++i) {
         const auto end = static_cast<std::size_t>(std::max<std::int64_t>(ends[i], 0));
         if (end < begin || end > corners.size())
-            fail_input(file, "has offsets that do not ascend within its connectivity", "mend it");
+            fail_input(file, "has offsets that do not ascend within its connectivity", "correct or regenerate the file");
         const std::size_t n = end - begin;
         for (std::size_t k = begin; k < end; ++k) check_corner(corners[k], soup, file, "cell " + std::to_string(i));
         if (types[i] == vtk_tetrahedron && n == 4) {

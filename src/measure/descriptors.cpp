@@ -192,7 +192,7 @@ std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, c
         std::vector<double> here;
         for (const Index v : vertices) {
             if (!std::isfinite(values[v]))
-                fail_input(where, "the value of vertex " + std::to_string(v) + " is not a finite number", "mend the map");
+                fail_input(where, "the value of vertex " + std::to_string(v) + " is not a finite number", "correct the map");
             here.push_back(values[v]);
         }
         return statistics(here, std::vector<double>(here.size(), 1), where);

@@ -65,7 +65,11 @@ void Call::no_such_name(const std::string& name, const std::vector<std::string>&
     std::vector<std::string> names = flags;
     for (const Option& option : parameters_.options) names.push_back(option.name);
     for (const Slot* slot : parameters_.slots()) names.push_back(slot->name);
-    const std::string near = nearest_name(name, names);
+    // Bounds were named least and most before version 0.2.
+    const std::string asked = name.starts_with("least-")  ? "min-" + name.substr(6)
+                              : name.starts_with("most-") ? "max-" + name.substr(5)
+                                                          : name;
+    const std::string near = nearest_name(asked, names);
     throw Error(ErrorKind::usage, entry_->name, "has no option '" + printable(name, 60) + "'",
                 near.empty()                     ? "'ostraka " + std::string(entry_->name) + " --help' shows them"
                 : near == name && !flags.empty() ? "options begin with --"

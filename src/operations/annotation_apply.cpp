@@ -77,7 +77,7 @@ struct AnnotationPictures {
         p.output_option("ply", Kind::mesh, coloured,
                         "write the mesh in the colours of its annotations (PLY or another format with colours)");
         p.output_option("labels-out", Kind::labels, labels,
-                        "write one label a face: the id of the smallest region on it, -1 for none");
+                        "label file to write: for each face the id of the smallest region on it, -1 for none");
     }
     void write(const Mesh& mesh, const AnnotationSet& set, Report& report) const {
         if (coloured) coloured.write(mesh, colour_by_annotation(mesh, set));
@@ -92,7 +92,7 @@ struct AnnotationPictures {
 struct AnnotationApply final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("recipe", Kind::recipe, recipe, "recipe (.recipe.json) or label file (one integer a face)").optional();
+        p.input("recipe", Kind::recipe, recipe, "recipe (.recipe.json) or label file (one integer per face)").optional();
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.order({"mesh", "recipe", "output"});
         p.order({"mesh", "output"});

@@ -17,10 +17,10 @@ struct AnnotationCheck final : Operation {
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
                        "vocabulary (.vocabulary.json, .ttl, .rdf) that tags and attributes must be from");
         words.describe(p.options);
-        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must keep");
-        p.input_option(
-            "graph", Kind::graph, graph,
-            "relationships that the rules speak of (.graph.json); without it containment and adjacency are taken from the mesh");
+        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must satisfy");
+        p.input_option("graph", Kind::graph, graph,
+                       "relationships that the rules refer to (.graph.json); without it containment and adjacency are computed "
+                       "from the mesh");
         p.report.checks = true;
     }
 

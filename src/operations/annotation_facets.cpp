@@ -11,13 +11,14 @@ struct AnnotationFacets final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file of the fragment");
         p.input("annotations", Kind::annotations, annotations,
-                "annotations (.ant.json), brought up to date or made: regions \"outer\", \"inner\" and \"fracture\"; called "
-                "NAME.ant.json beside NAME.ply they are what 'fit' and 'pair' go by");
-        p.output_option("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
+                "annotations (.ant.json) to update or create: regions \"outer\", \"inner\" and \"fracture\"; 'fit' and 'pair' "
+                "use them if they are called NAME.ant.json beside NAME.ply");
+        p.output_option("output", Kind::annotations, output, "write the annotations to this file instead of updating the input")
             .updates(annotations);
         p.output_option("probability", Kind::values, probability,
-                        "how likely each face is of a break by what it shows itself (.npy, or text; 'render --map' shows it)");
-        p.options("unit", unit, "of a new file: unit of the mesh's coordinates, e.g. mm");
+                        "probability that each face belongs to a fracture, from its own features alone (.npy, or text; 'render "
+                        "--map' shows it)");
+        p.options("unit", unit, "unit of the mesh's coordinates for a new file, e.g. mm");
         options.describe(p.options);
         p.report.values(text("answer"), boolean("shell"), number("thickness", "", "length"), number("confidence"));
         p.report.table("segments", text("facet", "facet"), integer("faces", "faces"), number("area", "area", "length^2"),

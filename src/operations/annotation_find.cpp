@@ -61,9 +61,7 @@ struct ReadObject {
 
 struct AnnotationFind final : Operation {
     void describe(Parameters& p) override {
-        p.options("query", query, "what to look for, such as '2 arm and 2 leg' or 'area(handle) >= area(body) / 3'")
-            .required()
-            .positional();
+        p.options("query", query, "query, such as '2 arm and 2 leg' or 'area(handle) >= area(body) / 3'").required().positional();
         p.input(
              "objects", Kind::collection, objects,
              "folders of meshes, lists of objects (.study.json), or single meshes or annotations (.ant.json); NAME.ant.json and "

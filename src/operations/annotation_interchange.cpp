@@ -46,7 +46,7 @@ struct AnnotationImport final : Operation {
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         describe_format(p, format);
         p.input_option("onto", Kind::annotations, onto,
-                       "annotations to which the file's are added, or that its table of attributes is of");
+                       "annotations to which those of the file are added, or to which its table of attributes applies");
         options.describe(p.options);
         p.report.values(text("format"), integer("annotations"));
         p.report.table("placed", integer("id", "id"), text("tag", "tag"), text("by", "by"), integer("points", "points"),

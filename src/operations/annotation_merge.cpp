@@ -45,7 +45,7 @@ namespace {
 
 struct AnnotationDiff final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh of both");
+        p.input("mesh", Kind::mesh, mesh, "mesh of both sets");
         p.input("before", Kind::annotations, before, "annotations (.ant.json)");
         p.input("after", Kind::annotations, after, "annotations to compare with them");
         p.report.values(boolean("same"));
@@ -65,10 +65,10 @@ struct AnnotationDiff final : Operation {
 
 struct AnnotationMerge final : Operation {
     void describe(Parameters& p) override {
-        p.input("mesh", Kind::mesh, mesh, "mesh of all");
-        p.input("base", Kind::annotations, base, "annotations that both began with");
-        p.input("ours", Kind::annotations, ours, "one's annotations");
-        p.input("theirs", Kind::annotations, theirs, "the other's annotations");
+        p.input("mesh", Kind::mesh, mesh, "mesh of all sets");
+        p.input("base", Kind::annotations, base, "common ancestor of both sets");
+        p.input("ours", Kind::annotations, ours, "first changed set");
+        p.input("theirs", Kind::annotations, theirs, "second changed set");
         p.output("output", Kind::annotations, output, "annotations to write");
         options.describe(p.options);
         p.report.values(boolean("merged"), integer("annotations"));

@@ -14,7 +14,8 @@ struct AnnotationSegment final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed");
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
-        p.output_option("labels-out", Kind::labels, labels_out, "write the number of each face's segment, one a line");
+        p.output_option("labels-out", Kind::labels, labels_out,
+                        "label file to write: the number of each face's segment, one per line");
         options.describe(p.options);
         thickness_options.describe(p.options);
         p.report.table("segments", integer("id", "id"), text("tag", "tag"), integer("faces", "faces"),

@@ -12,15 +12,15 @@ namespace {
 struct AnnotationSelect final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.input("annotations", Kind::annotations, annotations, "annotation file (.ant.json): brought up to date, or made");
-        p.output_option("output", Kind::annotations, output, "write the annotations here and leave the file as it is")
+        p.input("annotations", Kind::annotations, annotations, "annotation file (.ant.json) to update or create");
+        p.output_option("output", Kind::annotations, output, "write the annotations to this file instead of updating the input")
             .updates(annotations);
-        p.input_option("record", Kind::recipe, record, "recipe to which the step is added, or which is begun");
-        p.output_option("recipe", Kind::recipe, recipe, "write the recipe here and leave that of --record as it is")
+        p.input_option("record", Kind::recipe, record, "recipe to which the step is appended; created if it does not exist");
+        p.output_option("recipe", Kind::recipe, recipe, "write the recipe to this file instead of updating that of --record")
             .updates(record);
         step.describe(p.options);
         p.options.group("New file");
-        p.options("class", object_class, "what the object is (any text)");
+        p.options("class", object_class, "class of the object (any text)");
         p.options("unit", unit, "unit of the coordinates (any text, such as mm)");
 
         p.report.values(integer("id"), text("action"), text("tag"), text("type"), integer("elements"), integer("patches"),

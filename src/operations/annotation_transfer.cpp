@@ -41,14 +41,14 @@ struct AnnotationTransfer final : Operation {
         p.input("target", Kind::mesh, target, "the mesh at another resolution");
         p.output("output", Kind::annotations, output, "the annotations on the target (*.ant.json)");
         p.output_option("back", Kind::annotations, back,
-                        "transfer them back to the source as well, into this file, and score that");
+                        "also transfer the result back to the source, into this file, and score it");
         p.output_option("ply", Kind::mesh, coloured,
                         "write the target in the colours of its annotations (PLY or another format with colours)");
         p.output_option("refined-mesh", Kind::mesh, refined, "with --refine: the target with the inserted vertices");
         p.output_option("map", Kind::index_map, map, "with --refine: new face -> old face, as JSON");
         options.describe(p.options);
         p.options("register", registers,
-                  "bring the source onto the target first: the meshes may differ in unit and place (see mesh register)",
+                  "register the source onto the target first: the meshes may differ in unit and pose (see mesh register)",
                   Anything{});
 
         p.report.values(number("meanDistance", "", "length"), any("registration"));

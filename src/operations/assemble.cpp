@@ -41,7 +41,7 @@ struct Assemble final : Operation {
                        "template of the objects' class: each group is completed by it");
         p.input_option("class", Kind::shape_class, class_file, "a class learnt with the template (NAME.class.json)");
         p.options("no-pictures", no_pictures, "draw no pictures");
-        p.options("fresh", fresh, "try all pairs anew, whatever an earlier run found").unrecorded();
+        p.options("fresh", fresh, "register all pairs again, whatever an earlier run found").unrecorded();
         options.describe(p.options);
         reading.describe(p.options);
         p.report.schema = "reassembly";
@@ -150,7 +150,7 @@ private:
             fail_input(files.file(0) + (files.size() > 1 ? " and others" : ""),
                        "only " + std::to_string(fragments.size()) + " of " + std::to_string(list.size()) +
                            " fragments can be read, and two are needed",
-                       "mend what the notes above name");
+                       "correct what the notes above name");
         find_odd(report);
     }
 

@@ -15,7 +15,8 @@ struct FindAxis final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json)").optional();
         p.output_option("output", Kind::report, output, "write the axis as poly-lines (.json, .obj)");
-        p.options("annotation", names, "id or tag of the part; more than one: all together; a line or points: its circle")
+        p.options("annotation", names,
+                  "id or tag of the part, several for their union; a line or points give the axis of their circle")
             .words();
         attribute.describe(p, "axis");
         options.describe(p.options);

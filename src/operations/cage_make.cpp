@@ -37,12 +37,12 @@ struct CageMake final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file; it may be open");
         p.output("output", Kind::cage, output, "cage to write (.ply, .obj, .off, .stl)");
-        p.input_option("annotations", Kind::annotations, annotations,
-                       "annotations of the mesh (.ant.json): four times the vertices where points, lines and outlines are");
         p.input_option(
-            "graph", Kind::graph, graph,
-            "relationships (.graph.json): a mirror symmetry gives the plane of the cage, and parts of which one is the "
-            "image of the other get cages that are, too");
+            "annotations", Kind::annotations, annotations,
+            "annotations of the mesh (.ant.json): the cage has four times as many vertices near points, lines and outlines");
+        p.input_option("graph", Kind::graph, graph,
+                       "relationships (.graph.json): a mirror symmetry gives the mirror plane of the cage and of the cages of "
+                       "symmetric parts");
         p.input_option("for", Kind::graph, constraints,
                        "relationships (.graph.json) whose constraints the cage is to be able to meet: denser at their parts, "
                        "nearer to the mesh and with "
@@ -50,16 +50,17 @@ struct CageMake final : Operation {
         vocabulary.describe(p, "by which tags are compared with --parts");
         options.describe(p.options);
         p.options("levels", levels,
-                  "numbers of vertices with commas: nested cages, each around the finer one, written as output-NUMBER",
+                  "numbers of vertices, separated by commas: nested cages, each around the finer one, written as output-NUMBER",
                   Range{4, 1000000});
-        p.options("together", one_file, "the levels in one file: a cage with cages nested in it, each of which can be edited");
+        p.options("together", one_file, "write the levels to one file: nested cages, each of which can be edited");
         p.options("parts", parts, "regions, by id or tag, that get cages of their own, nested in that of the whole").words();
-        p.options("part-vertices", part_vertices, "wanted number of vertices of a part's cage", Range{4, 1000000});
-        p.options("mirror", mirror, "a mirror-symmetric cage about this plane; auto: about that of the object",
+        p.options("part-vertices", part_vertices, "target number of vertices of a part's cage", Range{4, 1000000});
+        p.options("mirror", mirror,
+                  "make the cage mirror-symmetric about this plane; auto: about the symmetry plane of the object",
                   Words{{"auto"}, "a point and a normal as six numbers with commas", [](const std::string& text) {
                             if (text != "auto") static_cast<void>(plane_of(text));
                         }});
-        p.options("detail", details, "annotation=factor: so many times the vertices there, instead; may be given several times");
+        p.options("detail", details, "annotation=factor: factor on the vertex density there; may be given several times");
         p.report.table("cages", text("file", "cage"), integer("level"), text("part"), integer("vertices", "vertices"),
                        integer("faces", "faces"), boolean("reached"), integer("genus", "genus"),
                        number("clearance", "clearance", "length"), number("alpha", "alpha"));
@@ -299,7 +300,7 @@ struct CheckOfCage final : Operation {
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json), for --graph");
         p.input_option(
             "graph", Kind::graph, graph,
-            "relationships (.graph.json): which of the constraints can the cage meet, and where are control points missing?");
+            "relationships (.graph.json): report which constraints the cage can satisfy and where control points are missing");
         p.input_option("weights", Kind::coordinates, weights,
                        "weights of 'cage weights' (.npy), for --graph; without: mean value");
         p.input_option("edit", Kind::edit, edit,

@@ -105,12 +105,13 @@ struct CageInfluence final : Operation {
         p.input("cage", Kind::cage, cage, "its cage");
         p.input("weights", Kind::coordinates, weights, "weights of 'cage weights' (.npy)");
         p.output("output", Kind::mesh, output,
-                 "coloured mesh to write (PLY, with the numbers as the property quality): the cage for --annotation, else the "
-                 "mesh; without a choice coloured by the number of cage vertices that carry 95 %");
+                 "coloured mesh to write (PLY, with the numbers as the property quality): the cage for --annotation, otherwise "
+                 "the mesh; by default coloured by the number of cage vertices that carry 95 % of the weight");
         p.input_option("annotations", Kind::annotations, annotations, "annotations of the mesh (.ant.json)");
         p.options("cage-vertex", cage_vertex, "the weights of this cage vertex on the mesh");
         p.options("annotation", annotation, "id or tag: the influence of each cage vertex on its vertices");
-        p.options("by", by, "influence on an annotation: largest weight on its vertices, or their sum", Choices{"max", "sum"});
+        p.options("by", by, "influence on an annotation: the maximum or the sum of the weights on its vertices",
+                  Choices{"max", "sum"});
         p.options("threshold", threshold, "list the cage vertices with an influence above this");
         p.report.values(text("what", "what"), text("on", "on the"), number("min", "min"), number("max", "max"), any("above"),
                         any("strongest"));

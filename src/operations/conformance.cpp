@@ -20,7 +20,7 @@ struct Conformance : Operation {
         p.input_option("kit", Kind::folder, kit, "folder of the kit (conformance.json); else the one that came with the command");
         p.options("only", only, "operations or cases, instead of all").words();
         p.output_option("junit", Kind::report, junit, "write the results as JUnit XML");
-        p.options("time-limit", time_limit, "of a case", Range{0.1, 86400}, "s").unrecorded();
+        p.options("time-limit", time_limit, "time limit of a case", Range{0.1, 86400}, "s").unrecorded();
         p.report.values(text("kit", "kit"), integer("cases", "cases"), integer("agree", "agree"), integer("differ", "differ"),
                         integer("unsupported", "not supported"));
         p.report.table("operations", text("operation", "operation"), integer("cases", "cases"), integer("agree", "agree"),
@@ -122,7 +122,8 @@ struct ConformanceRun final : Conformance {
 
 struct ConformanceSelf final : Conformance {
     void describe(Parameters& p) override {
-        p.options("record", record, "keep what this command makes as what is expected: for who changes the kit").unrecorded();
+        p.options("record", record, "record the output of this command as the expected output: for those who change the kit")
+            .unrecorded();
         describe_kit(p);
     }
 

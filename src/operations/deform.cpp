@@ -189,7 +189,7 @@ struct Deform final : Operation {
         const Template& loaded = *package;
         for (const Finding& finding : loaded.findings)
             if (finding.defect)
-                fail_input(package.file() + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+                fail_input(package.file() + ", " + finding.where, finding.text, "'template check' lists all defects");
         if (!loaded.mesh) fail_input(package.file(), "has no mesh", "pack one");
         if (!loaded.annotations)
             fail_input(package.file(), "has no annotations", "pack them, or give a mesh and its annotations");

@@ -35,8 +35,8 @@ struct Fit final : Operation {
             "class", Kind::shape_class, class_file,
             "a class learnt with this template (NAME.class.json of 'template learn'): what no fragment shows is as in its "
             "members that look so where one does; thresholds that are not told are those of its members");
-        p.options("fresh", fresh, "search poses anew, whatever an earlier fit in the folder found").unrecorded();
-        p.options("placed", placed, "also write each fragment where it lies: NAME.placed.ply");
+        p.options("fresh", fresh, "search poses again, whatever an earlier fit in the folder found").unrecorded();
+        p.options("placed", placed, "also write each fragment in its pose: NAME.placed.ply");
         vocabulary.describe(p, as_template_words);
         options.describe(p.options);
         reading.describe(p.options);

@@ -15,8 +15,9 @@ struct MeasureClay final : Operation {
         p.input("mesh", Kind::mesh, mesh, "mesh file, closed or open");
         p.input("annotations", Kind::annotations, annotations, "its annotations (.ant.json): unit and upward direction")
             .optional();
-        up.describe(p, "direction that slices lie across; else as the annotations say, else 0,0,1");
-        p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; else as the annotations say");
+        up.describe(p,
+                    "direction perpendicular to the slices; otherwise the upward direction of the annotations, otherwise 0,0,1");
+        p.options("unit", unit, "unit of the mesh's coordinates, e.g. mm; otherwise that of the annotations");
         options.describe(p.options);
         for (const Figure& figure : figures_of({})) p.report.values(any(figure.name, "", figure.unit));
         p.report.values(text("unit"), number("volume of the mesh", "", "length^3"));

@@ -12,7 +12,8 @@ namespace {
 struct MeasureDescribe final : Operation {
     void describe(Parameters& p) override {
         object.describe(p);
-        p.input_option("map", Kind::values, maps, "NAME=FILE: a map of one value a vertex (.npy, or text with a number a line)")
+        p.input_option("map", Kind::values, maps,
+                       "NAME=FILE: a map with one value per vertex (.npy, or text with one number per line)")
             .many()
             .named();
         p.options("annotation", chosen, "id or tag of an annotation; once for each, all if left out");

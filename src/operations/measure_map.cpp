@@ -15,9 +15,10 @@ namespace {
 struct MeasureMap final : Operation {
     void describe(Parameters& p) override {
         p.input("mesh", Kind::mesh, mesh, "mesh file");
-        p.output("output", Kind::values, output, "one value a vertex or face (.npy, or text)");
-        p.options("of", of, "what", Choices{"mean-curvature", "gaussian-curvature", "thickness", "geodesic"}).required();
-        p.options("on", on, "one value a vertex or a face", Choices{"vertex", "face"});
+        p.output("output", Kind::values, output, "file to write: one value per vertex or face (.npy, or text)");
+        p.options("of", of, "quantity to compute", Choices{"mean-curvature", "gaussian-curvature", "thickness", "geodesic"})
+            .required();
+        p.options("on", on, "whether there is one value per vertex or per face", Choices{"vertex", "face"});
         p.options("from", from, "vertices that geodesic distances are measured from, like 12,88",
                   Range{0, std::numeric_limits<int>::max()});
         p.input_option("annotations", Kind::annotations, annotations,

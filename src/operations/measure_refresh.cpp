@@ -12,7 +12,7 @@ struct MeasureRefresh final : Operation {
         Slot& annotations = object.describe(p);
         annotations.needed = true;
         annotations.help = "its annotations (.ant.json)";
-        p.options("merge-pickings", merge, "measures of one name become pickings of one measure");
+        p.options("merge-pickings", merge, "merge measures of the same name into repeated pickings of one measure");
         for (const char* count : {"computed", "stale", "merged"}) p.report.values(integer(count));
         p.report.table("measures", integer("annotation", "id"), people("tag"), text("name", "measure"), number("value", "value"),
                        number("uncertainty", "uncertainty"), people("unit"), integer("pickings", "pickings"));

@@ -27,8 +27,7 @@ struct MeasureTake final : Operation {
         p.options("geodesic", geodesic, "a tape along edges, or the exact shortest curve over the faces",
                   Choices{"edges", "exact"});
         p.options("repeat", repeats,
-                  "the pins picked again, as vertex indices like 12,88, as many as the measure has; once for each picking: "
-                  "the value is the mean");
+                  "the pins picked again, as vertex indices like 12,88; once for each picking: the value is the mean");
         p.options("annotation", annotation, "id or tag of the annotation that gets it; the whole object if left out");
         p.options("name", name, "name of the attribute; the tool if left out");
         p.report.values(text("name"), integer("annotation"), text("tool"), any("points"), number("value"), text("unit"));

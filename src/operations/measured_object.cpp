@@ -5,7 +5,7 @@ namespace ostraka {
 Slot& MeasuredObject::describe(Parameters& p) {
     p.input("mesh", Kind::mesh, mesh, "mesh file");
     Slot& named = p.input_option("annotations", Kind::annotations, annotations,
-                                 "its annotations (.ant.json); without, the whole object is meant");
+                                 "its annotations (.ant.json); the whole object is measured if left out");
     p.output_option("output", Kind::annotations, output, "annotations to write, with the values as attributes (.ant.json)");
     p.options("unit", unit, "unit of the coordinates, where the annotations do not say (any text, such as mm)");
     return named;

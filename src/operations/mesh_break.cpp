@@ -21,7 +21,7 @@ struct MeshBreak final : Operation {
         p.output_option("pose-out", Kind::pose, pose_out,
                         "4 x 4 matrix (JSON) that carries the fragment back to its place on the whole");
         options.describe(p.options);
-        p.options("at", at, "middle of the fragment: a place x,y,z, or the tag of an annotation").required();
+        p.options("at", at, "centre of the fragment: coordinates x,y,z, or the tag of an annotation").required();
         p.report.values(integer("vertices"), integer("faces"), any("pose"));
     }
 

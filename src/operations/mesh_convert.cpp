@@ -12,11 +12,10 @@ struct MeshConvert final : Operation {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl; of tetrahedra .mesh, .vtu");
         p.output("output", Kind::mesh, output.with_encoding(),
                  "mesh to write: .ply, .obj, .off, .stl, .glb; .mesh and .vtu keep tetrahedra");
-        p.output_option("map", Kind::index_map, map, "JSON file to write: for each triangle the polygon it was cut from");
-        p.input_option(
-            "polygons-of", Kind::mesh, polygons_of,
-            "file of polygons that the triangles were cut from, or a mesh of them in another shape, as the input itself: "
-            "they are written instead (.obj, .off, .ply)");
+        p.output_option("map", Kind::index_map, map, "JSON file to write: the source polygon of each triangle");
+        p.input_option("polygons-of", Kind::mesh, polygons_of,
+                       "polygon file from which the triangles were cut, possibly with other vertex positions; its polygons are "
+                       "written instead of the triangles (.obj, .off, .ply)");
         p.options("binary", binary, "write PLY and STL as bytes (the default)");
         for (const char* count : {"vertices", "polygons", "triangles"}) p.report.values(integer(count, count));
     }

@@ -14,9 +14,9 @@ struct MeshExtract final : AnnotatedMeshOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
         p.output("output", Kind::mesh, output, "mesh file of the part to write");
-        p.output_option("annotations-out", Kind::annotations, annotations_out, "what is annotated on it, to write (.ant.json)");
+        p.output_option("annotations-out", Kind::annotations, annotations_out, "annotations of the part to write (.ant.json)");
         vocabulary.describe(p, "by which tags are compared with the names given");
-        p.options("annotation", names, "regions to cut out, by id or tag (all of that tag); without, everything").words();
+        p.options("annotation", names, "regions to cut out, by id or tag (all of that tag); the whole mesh if left out").words();
         p.options("without", without, "regions to leave out, by id or tag").words();
         p.options("closed", closed, "close the cuts by triangles, annotated as 'cut'");
         p.options("labels", labels, "write the id of the smallest region of each face into the mesh (PLY)");

@@ -15,7 +15,7 @@ struct MeshMake final : Operation {
             .positional();
         p.output("output", Kind::mesh, output, "mesh file to write; PLY keeps labels and colours of faces and vertices")
             .optional();
-        p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one a line");
+        p.output_option("labels", Kind::labels, labels, "text file to write: the label of each face, one per line");
         p.order({"object", "output"});
         p.options("list", list, "show the objects, their parts and labels").unrecorded();
         options.describe(p.options);

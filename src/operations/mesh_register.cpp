@@ -13,9 +13,9 @@ struct MeshRegister final : Operation {
     void describe(Parameters& p) override {
         p.input("source", Kind::mesh, source, "the mesh that is moved");
         p.input("target", Kind::mesh, target, "the mesh of the same object, in any unit and place, at any resolution");
-        p.output("output", Kind::mesh, output.with_encoding(), "the source where the target is").optional();
+        p.output("output", Kind::mesh, output.with_encoding(), "the source, registered onto the target").optional();
         p.output_option("matrix", Kind::pose, matrix,
-                        "JSON file to write: the motion of the source as the rows of a 4 x 4 matrix");
+                        "JSON file to write: the transformation of the source as the rows of a 4 x 4 matrix");
         options.describe(p.options);
         p.report.values(text("verdict", "verdict"), any("matrix"), number("scale", "scale"),
                         number("rotation", "rotation", "degrees"), numbers("axis", "about"),

@@ -16,7 +16,8 @@ struct PairFragments final : Operation {
                 "\"inner\", "
                 "\"fracture\" overrides what is found of its facets")
             .with_annotations_beside();
-        p.input("second", Kind::mesh, second, "the fragment that is moved; the same of it").with_annotations_beside();
+        p.input("second", Kind::mesh, second, "the fragment that is moved; the same applies to its annotations")
+            .with_annotations_beside();
         p.output("output", Kind::folder, output,
                  "folder for second.ply (the second fragment where it belongs; face labels 0 outer, 1 inner, 2 fracture) and "
                  "pair.json; made if it is missing")

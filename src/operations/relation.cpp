@@ -95,10 +95,10 @@ struct RelationExtract final : RelationOperation {
         for (const RelationType& type : relation_types())
             if (type.geometric) told.names.push_back(type.name);
         told.check = [](const std::string& name) { static_cast<void>(geometric_types({name})); };
-        p.options("type", types, "type to look for, once for each; all without it", std::move(told)).words();
-        p.input_option(
-            "vocabulary", Kind::vocabulary, vocabulary,
-            "vocabulary (.vocabulary.json, .ttl, .rdf): annotations in what they are parts of by it are related as 'part of'");
+        p.options("type", types, "type of relationship to detect, once for each; all if left out", std::move(told)).words();
+        p.input_option("vocabulary", Kind::vocabulary, vocabulary,
+                       "vocabulary (.vocabulary.json, .ttl, .rdf) with part-whole relations: annotations contained in an "
+                       "annotation of their whole are related as 'part of'");
         tolerances.describe(p.options);
         p.report.table("tree", integer("annotation"), text("tag"), integer("depth"), integer("parent"));
         describe_relationships(p.report);
@@ -145,7 +145,7 @@ struct RelationExtract final : RelationOperation {
 struct RelationAdd final : RelationOperation {
     void describe(Parameters& p) override {
         describe_inputs(p);
-        p.input_option("graph", Kind::graph, graph, "graph it is added to; begun where the file is not there yet");
+        p.input_option("graph", Kind::graph, graph, "graph to which the relationship is added; created if it does not exist");
         p.output("output", Kind::graph, output, "graph to write (.graph.json); without it the one of --graph")
             .optional()
             .updates(graph);
@@ -154,8 +154,8 @@ struct RelationAdd final : RelationOperation {
         p.options("type", type, "what the relationship is", std::move(known));
         p.options("annotation", members, "id or tag of a member, once for each; the first is the subject").words();
         p.options("relation", several,
-                  "TYPE: A, B, ...: type and members in one, once for each of several relationships, which the other options are "
-                  "for; in place of --type and --annotation")
+                  "TYPE: A, B, ...: type and members of a relationship, once for each, instead of --type and --annotation; the "
+                  "other options apply to all")
             .words();
         p.options("own-type", own_type, "the type is one of your own");
         p.options("directed", directed, "the first annotation is the subject");
@@ -163,7 +163,7 @@ struct RelationAdd final : RelationOperation {
         p.options("parameters", parameters, "JSON object with the parameters of the constraint");
         p.options("weight", weight, "weight of the constraint", Range{0, 1e300});
         p.options("tolerance", tolerances,
-                  "QUANTITY=NUMBER that a check shall allow: angle=5 (also tilt; degrees), distance=2 (also height; unit of the "
+                  "QUANTITY=NUMBER, the tolerance of checks: angle=5 (also tilt; degrees), distance=2 (also height; unit of the "
                   "mesh's coordinates), distance=1% (of the mesh's diagonal), area=10 (also shape, difference; per cent)")
             .words();
         p.options("attribute", attribute, "name of the attribute that is equal, with --type 'equal attributes'");
@@ -351,8 +351,9 @@ struct RelationEdit final : RelationOperation {
         p.options("id", id, "id of the relationship, as 'relation list' shows it", Range{0, 2147483647}).required();
         p.options("weight", weight, "its weight as a constraint; 0 leaves it out", Range{0, 1e300});
         p.options("range", range, "MIN,MAX: minValue and maxValue of the constraint");
-        p.options("parameters", parameters, "JSON object whose members replace those of the constraint; null takes one away");
-        p.options("constraint", constraint, "whether deformations keep it", Choices{"unchanged", "yes", "no"});
+        p.options("parameters", parameters, "JSON object whose members replace those of the constraint; null removes one");
+        p.options("constraint", constraint, "whether the relationship is a constraint on deformations",
+                  Choices{"unchanged", "yes", "no"});
         describe_relationships(p.report);
     }
 
@@ -425,10 +426,10 @@ struct RelationCheckAll final : RelationOperation {
         describe_inputs(p);
         describe_graph(p);
         p.input_option("rest", Kind::mesh, rest,
-                       "the same mesh in the shape that it had: constraints that keep what there was are judged against it");
-        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that the annotations must keep as well");
+                       "the same mesh in its rest shape: constraints that preserve something are evaluated against it");
+        p.input_option("rules", Kind::rules, rules, "rules of the class (.rules.json) that are checked as well");
         p.input_option("vocabulary", Kind::vocabulary, vocabulary,
-                       "vocabulary (.vocabulary.json, .ttl, .rdf) whose narrower words the rules mean too");
+                       "vocabulary (.vocabulary.json, .ttl, .rdf): rules also apply to narrower concepts");
         tolerances.describe(p.options);
         describe_relationships(p.report, true);
         for (const char* verdict : {"holds", "fails", "unknown"}) p.report.values(integer(verdict));

@@ -20,24 +20,25 @@ struct Render final : Operation {
         p.input("meshes", Kind::mesh, meshes, "one or more meshes").many();
         p.output("picture", Kind::picture, picture, "picture to write (.png, .svg or .pdf)");
         p.order({"meshes", "picture"});
-        p.input_option("annotations", Kind::annotations, annotations, "annotation file; once a mesh, 'none' for a mesh without")
+        p.input_option("annotations", Kind::annotations, annotations, "annotation file; once per mesh, 'none' for a mesh without")
             .many_or_none();
-        p.input_option("map", Kind::values, maps,
-                       "one number a vertex or face (.npy, or text with a number a line); once a mesh, 'none' for a mesh without")
+        p.input_option(
+             "map", Kind::values, maps,
+             "one number per vertex or face (.npy, or text with one number per line); once per mesh, 'none' for a mesh without")
             .many_or_none();
-        p.input_option("cage", Kind::mesh, cages, "cage to draw around an object; once a mesh, 'none' for a mesh without")
+        p.input_option("cage", Kind::mesh, cages, "cage to draw around an object; once per mesh, 'none' for a mesh without")
             .many_or_none();
         p.options("measures", measures, "draw measures of the annotations with their pins and values");
-        p.options("outlines", outlines, "borders of regions and lines as the mesh has them, or without the steps of its edges",
+        p.options("outlines", outlines, "draw borders of regions and lines along mesh edges, or smoothed",
                   Choices{"exact", "smooth"});
         p.output_option("turntable", Kind::folder, turntable, "write frames of a full turn into this folder (0001.png, ...)");
         p.options("frames", frames, "frames of a full turn", Range{2, 3600});
-        p.options("title", titles, "written under the object; once a mesh, 'none' for a mesh without");
-        p.options("map-on", map_on, "what the map's numbers belong to; auto: as their count says",
+        p.options("title", titles, "title under the object; once per mesh, 'none' for a mesh without");
+        p.options("map-on", map_on, "whether the map has values per vertex or per face; auto: from their number",
                   Choices{"auto", "vertex", "face"});
-        p.options("map-label", map_label, "written beside the colour bar, with the unit");
-        p.options("map-range", map_range, "SMALLEST,LARGEST value of the colour bar instead of those met");
-        p.options("colour-by", colour_by, "the file's labels or colours; auto: what there is",
+        p.options("map-label", map_label, "label of the colour bar, with the unit");
+        p.options("map-range", map_range, "MIN,MAX of the colour bar, instead of those of the map");
+        p.options("colour-by", colour_by, "colour by the file's labels or colours; auto: whichever is present",
                   Choices{"auto", "labels", "colours", "none"});
         p.options("unit", unit, "unit of the mesh, for the scale bar");
         options.describe(p.options);

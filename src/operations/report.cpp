@@ -60,15 +60,15 @@ struct MakeReport final : Operation {
             .many();
         p.output("page", Kind::text, page, "page to write (.html)");
         p.order({"results", "page"});
-        p.output_option(
-            "beside", Kind::folder, beside,
-            "write the objects into this folder, which stays with the page: the page is an index that reads one when it "
-            "is chosen, for collections");
-        p.options("title", title, "of the page; else the name of the first result");
-        p.options("unit", unit, "of objects whose annotations tell none");
-        p.options("limit", limit,
-                  "vertices of an object that the page shows; larger ones are simplified for it, with their annotations",
-                  Range{1000, 2'000'000});
+        p.output_option("beside", Kind::folder, beside,
+                        "write the objects to this folder, which stays with the page: the page is an index that loads an object "
+                        "when it is selected, for collections");
+        p.options("title", title, "title of the page; otherwise the name of the first result");
+        p.options("unit", unit, "unit of objects whose annotations have none");
+        p.options(
+            "limit", limit,
+            "maximum number of vertices of an object on the page; larger objects are simplified for it, with their annotations",
+            Range{1000, 2'000'000});
         p.report.values(text("page"), integer("bytes"));
         p.report.table("objects", text("name"), integer("vertices"), integer("shown"), integer("annotations"), integer("maps"));
     }

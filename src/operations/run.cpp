@@ -68,19 +68,23 @@ void show_programs(Context& context, Report& report, const StudyPlan& plan, bool
 struct Run final : Operation {
     void describe(Parameters& p) override {
         p.input("study", Kind::study, study, "steps, parameters, tables and plots (.study.json)");
-        p.output_option("output", Kind::folder, output, "run folder: results, reports, tables, page, provenance; else NAME-run");
-        p.options("quick", quick, "parameters as the study's 'quick' says, without its slow steps").unrecorded();
-        p.options("set", set, "NAME=VALUE or NAME=VALUE,VALUE: instead of a parameter's values in the study").unrecorded();
-        p.options("only", only, "these steps, with what they need").words().unrecorded();
-        p.options("dry-run", dry_run, "check the study, and say what would run and why").unrecorded();
-        p.options("explain", explain, "why this step would run again").unrecorded();
-        p.options("again", again, "run all steps, whether they have changed or not").unrecorded();
-        p.options("shard", shard, "K/N: the K-th of N parts of the work, for a machine of its own; without it all is gathered")
+        p.output_option("output", Kind::folder, output,
+                        "run folder: results, reports, tables, page, provenance; NAME-run if left out");
+        p.options("quick", quick, "use the parameters of 'quick' in the study, without its slow steps").unrecorded();
+        p.options("set", set, "NAME=VALUE or NAME=VALUE,VALUE: values of a parameter, instead of those in the study")
             .unrecorded();
-        p.options("reads", reads, "further folder that inputs may lie in, beside the study's own; may be given more than once")
+        p.options("only", only, "run these steps and the steps that they need").words().unrecorded();
+        p.options("dry-run", dry_run, "check the study, and report what would run and why").unrecorded();
+        p.options("explain", explain, "report why this step would run again").unrecorded();
+        p.options("again", again, "run all steps, whether they have changed or not").unrecorded();
+        p.options("shard", shard, "K/N: process the K-th of N shards of the work; without it all results are gathered")
+            .unrecorded();
+        p.options("reads", reads,
+                  "further folder from which inputs may be read, besides that of the study; may be given more than once")
             .only_by_caller();
         p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
-        p.options("programs", programs, "folder of the programs that steps name; else that of this command").only_by_caller();
+        p.options("programs", programs, "folder of the programs that steps name; otherwise that of this command")
+            .only_by_caller();
         p.report.values(text("output"), integer("instances", "steps to run"), integer("done", "done"),
                         integer("wouldRun", "would run"), integer("unchanged", "unchanged"), integer("failed", "failed"),
                         integer("skipped", "skipped"));
@@ -206,12 +210,12 @@ std::string lasting_report(const Path& folder) {
 struct Replay final : Operation {
     void describe(Parameters& p) override {
         p.input("crate", Kind::folder, crate, "the folder of a run");
-        p.output_option("output", Kind::folder, output, "where the run is repeated; else nothing of it is kept");
-        p.options("inputs", inputs, "folder that stands for that of the study, whose inputs are found from there")
-            .only_by_caller();
-        p.options("reads", reads, "further folder that inputs may lie in; may be given more than once").only_by_caller();
+        p.output_option("output", Kind::folder, output, "folder in which the run is repeated; otherwise nothing of it is kept");
+        p.options("inputs", inputs, "folder that replaces that of the study when inputs are resolved").only_by_caller();
+        p.options("reads", reads, "further folder from which inputs may be read; may be given more than once").only_by_caller();
         p.options("allow-programs", allow_programs, "let steps start programs that are not the toolkit's own").only_by_caller();
-        p.options("programs", programs, "folder of the programs that steps name; else that of this command").only_by_caller();
+        p.options("programs", programs, "folder of the programs that steps name; otherwise that of this command")
+            .only_by_caller();
         p.report.values(integer("steps", "steps repeated"), integer("outputs", "outputs compared"),
                         integer("same", "same to the bit"), integer("different", "different"));
         p.report.table("programs", text("step", "step"), text("words", "program"));

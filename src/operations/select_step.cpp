@@ -25,67 +25,69 @@ void check_threshold(const std::string& of) {
 }  // namespace
 
 void SelectStep::describe(OptionList& visit) {
-    visit("expression", expression, "what to select, as recipes say it (JSON)").positional();
+    visit("expression", expression, "selection, in the syntax of recipes (JSON)").positional();
     visit.group("Tools (picks are an index, a point x,y,z or a pixel @x,y of the camera)");
     visit("all", all, "the whole mesh");
     visit("rectangle", rectangle, "x0,y0,x1,y1 in pixels of the camera's picture");
     visit("polygon", polygon, "x,y,x,y,... drawn around a part in the camera's picture");
-    visit("box", box, "six numbers: least and greatest corner");
+    visit("box", box, "six numbers: minimum and maximum corner");
     visit("sphere", sphere, "x,y,z,radius");
-    visit("halfspace", halfspace, "six numbers: a point of the plane, and the normal to the side wanted");
+    visit("halfspace", halfspace, "six numbers: a point of the plane, and the normal towards the selected side");
     visit("nearest", nearest, "x,y,z: the nearest vertex");
-    visit("threshold", threshold, "places whose value lies in a range; distance: from --seed",
+    visit("threshold", threshold, "places whose value lies in a range; the value distance is measured from --seed",
           Words{threshold_names(), "a file of values (.npy or text)", check_threshold});
-    visit("segment", segment, "levels of thickness to tell apart; the segment of --seed", Range{2, 100});
+    visit("segment", segment, "number of thickness levels; selects the segment that contains --seed", Range{2, 100});
     visit("path", path, "picks joined by shortest paths along edges").words();
     visit("lasso", lasso, "picks around a part; --seed lies within it").words();
-    visit("brush", brush, "picks; the discs of --radius around them").words();
+    visit("brush", brush, "picks; selects the geodesic discs of --radius around them").words();
     visit("vertices", vertices, "picks").words();
-    visit("component", component, "the connected part of this pick");
+    visit("component", component, "selects the connected component of this pick");
     visit("faces", faces, "indices of faces").words();
     visit("labels", labels, "labels of the mesh file's faces").words();
 
     visit.group("How");
-    visit("through", through, "rectangle and polygon: hidden parts too");
+    visit("through", through, "rectangle and polygon: select hidden parts too");
     visit("closed", closed, "path: back to the first pick");
-    visit("metric", metric, "path and lasso: what is short", Choices{"euclidean", "segment", "combined"});
+    visit("metric", metric, "path and lasso: the length that is minimised", Choices{"euclidean", "segment", "combined"});
     visit("seed", seed, "lasso, segment, distance: a pick");
     visit("radius", radius, "brush: geodesic radius, in lengths as --frame says");
     visit("stroke", stroke, "brush: drawn from pick to pick");
-    visit("above", above, "threshold: least value, in lengths as --frame says (curvature: one over them), of a file its own");
-    visit("below", below, "threshold: greatest value, likewise");
-    visit("quantiles", quantiles, "threshold: values are shares of the area, 0 to 1");
-    visit("scale", scale, "curvature: radius; 0: as the mesh is fine", Range{0, 1}, "share of the diagonal");
-    visit("smoothing", smoothing, "segment: how much short borders in hollows are preferred", Range{0, 1});
-    visit("grow", grow, "so many rings larger", Range{0, 1000000});
-    visit("shrink", shrink, "so many rings smaller", Range{0, 1000000});
-    visit("invert", invert, "all but this");
+    visit("above", above,
+          "threshold: minimum value; lengths in the unit of --frame (curvature: its inverse), values of a file in their own");
+    visit("below", below, "threshold: maximum value, in the same unit");
+    visit("quantiles", quantiles, "threshold: the limits are quantiles by area, 0 to 1");
+    visit("scale", scale, "curvature: averaging radius; 0: from the mesh resolution", Range{0, 1}, "share of the diagonal");
+    visit("smoothing", smoothing, "segment: preference for short borders in concave places", Range{0, 1});
+    visit("grow", grow, "number of rings by which the selection is dilated", Range{0, 1000000});
+    visit("shrink", shrink, "number of rings by which the selection is eroded", Range{0, 1000000});
+    visit("invert", invert, "select the complement");
     visit("frame", frame,
-          "mesh: coordinates and lengths in the unit of the mesh's coordinates; box: as shares, 0 to 1, of its box and of the "
-          "box's diagonal",
+          "mesh: coordinates and lengths in the unit of the mesh; box: coordinates as shares, 0 to 1, of the bounding box, "
+          "lengths as shares of its diagonal",
           Choices{"mesh", "box"});
 
     visit.group("Camera (that of 'ostraka render' without legend and title)");
-    visit("camera", camera_text,
-          "one of the recipe's by its name, or as JSON ('render --json' reports it), instead of the following");
+    visit(
+        "camera", camera_text,
+        "a camera of the recipe by its name, or a camera as JSON ('render --json' reports it), instead of the following options");
     visit("view", view, "where the viewer stands", view_words());
-    visit("up", up, "upward direction, kept where a new file is made; else as the annotations say, else 0,0,1",
+    visit("up", up, "upward direction, stored in a new file; otherwise that of the annotations, otherwise 0,0,1",
           direction_words("--up"));
-    visit("projection", projection, "of the camera", Choices{"orthographic", "perspective"});
+    visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});
     visit("zoom", zoom, "magnification about the middle", Range{0.01, 1000});
     visit("size", size, "width and height of the picture in pixels");
 
     visit.group("Annotation");
-    visit("tag", tag, "what it is");
-    visit("id", id, "its id; a free one if it is new and none is given");
-    visit("type", type, "of a new one; else what the tool selects", Choices{"point", "line", "region"});
+    visit("tag", tag, "tag of the annotation");
+    visit("id", id, "id of the annotation; a new annotation without one gets a free id");
+    visit("type", type, "type of a new annotation; otherwise that of the selection", Choices{"point", "line", "region"});
     visit("outline", outline,
           "free: through the faces of the mesh; edges: along its edges; if left out, an edited one is as it is, and a new region "
           "free where its border is a level (of a volume, a picture's, a threshold's on vertices, a brush's, a lasso's, a "
           "distance's), along the edges where it is a set of faces; lines run along the edges",
           Choices{"edges", "free"});
     visit("colour", colour, "red,green,blue", Range{0, 255});
-    visit("action", action, "what to do with the annotation of this id",
+    visit("action", action, "how the selection changes the annotation of this id",
           Choices{"make", "add to", "remove from", "replace", "delete", "retag"});
 }
 

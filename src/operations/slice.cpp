@@ -72,25 +72,27 @@ struct SliceObject final : Operation {
                         "repeatable")
             .many();
         p.output_option("profile", Kind::picture, profile, "write a profile drawing (.svg, .pdf, .png)");
-        p.options("annotation", names, "id or tag of a region: slice that part only; more than one: all together").words();
+        p.options("annotation", names, "id or tag of a region to slice, several for their union; otherwise the whole object")
+            .words();
         p.options.group("Planes");
-        p.options("direction", direction, "across what the slices lie",
+        p.options("direction", direction, "direction perpendicular to the slices",
                   direction_words("--direction", {"up", "principal", "rotation", "skeleton"}));
-        up.describe(p, "upward direction; else as the annotations say, else 0,0,1");
+        up.describe(p, "upward direction; otherwise that of the annotations, otherwise 0,0,1");
         p.options("count", count, "number of slices, in the middles of as many layers (default 50)", Range{1, 1e6});
-        p.options("spacing", spacing, "distance of the slices, from the lowest place up", Anything{}, "the mesh's unit");
-        p.options("heights", heights, "heights over the lowest place, with commas between them", Anything{}, "the mesh's unit");
-        p.options("range", range, "shares of the height between which to cut, for --count and --spacing", Range{0, 1});
+        p.options("spacing", spacing, "distance between slices, from the lowest point up", Anything{}, "the mesh's unit");
+        p.options("heights", heights, "heights above the lowest point, separated by commas", Anything{}, "the mesh's unit");
+        p.options("range", range, "lower and upper end of the sliced range as shares of the height, for --count and --spacing",
+                  Range{0, 1});
         p.options("plane", plane, "one slice: a point and the normal, x,y,z,nx,ny,nz");
         p.options.group("What is told and drawn");
         p.options("medial-axis", residues, "medial axes of the slices at these residues, like 0.01,0.05,0.15", Range{0.001, 1});
-        p.options("axes", axes, "straightness against the axes of `ostraka axis` as well");
-        p.options("unit", unit, "unit of the mesh; else as the annotations say");
-        p.options("title", title, "title of the drawings; else the mesh file's name");
-        p.options("profile-angle", angle, "direction of the section of the profile; else a typical one", Range{-360, 360},
+        p.options("axes", axes, "also compute the straightness against the axes of `ostraka axis`");
+        p.options("unit", unit, "unit of the mesh; otherwise that of the annotations");
+        p.options("title", title, "title of the drawings; otherwise the name of the mesh file");
+        p.options("profile-angle", angle, "direction of the profile's section; otherwise a typical one", Range{-360, 360},
                   "degrees");
-        p.options("drawn", drawn, "most slices on the drawing", Range{1, 10000});
-        p.options("colour-by", colour_by, "what colours the .ply: height, or a descriptor as the CSV names them",
+        p.options("drawn", drawn, "maximum number of slices on the drawing", Range{1, 10000});
+        p.options("colour-by", colour_by, "quantity that colours the .ply: height, or a descriptor by its name in the CSV",
                   Choices(slice_quantities()));
         p.options.group("The tubular part");
         tube_options.describe(p.options);

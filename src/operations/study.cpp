@@ -7,20 +7,19 @@ namespace ostraka {
 void StudyFiles::describe(Parameters& p, bool labels, const std::string& collections) {
     p.input("collection", Kind::collection, collection, collections);
     p.output("output", Kind::folder, output,
-             "folder for tables, plots and the report; what is done is kept there and not done again")
+             "folder for tables, plots and the report; finished results are kept there and not computed again")
         .flag();
     p.options("plots", plots_, "format of the plots", Choices{"svg", "pdf", "png"}).unrecorded();
-    p.options(
-         "shard", shard_,
-         "K/N: do the K-th of N parts of the objects, on a machine of its own, and keep the results in the folder; without it "
-         "they are gathered")
+    p.options("shard", shard_,
+              "K/N: process the K-th of N shards of the objects and keep the results in the folder; without it the results are "
+              "gathered")
         .unrecorded();
     p.report.table("failed", text("name"), text("problem"));
     p.report.values(integer("part.objects"), integer("part.failed"));
     if (!labels) return;
     p.input_option("truth", Kind::table, truth_, "known answers: CSV with the columns name and label");
     p.options("own-truth", own_truth_,
-              "the known answers are in truth.csv of the collection's folder, where 'study make' writes them");
+              "use the known answers in truth.csv of the collection's folder, where 'study make' writes them");
     p.options("truth-column", truth_column_, "the column of the answers, if not 'label'");
     p.report.values(integer("truth.labelled"), integer("truth.objects"), integer("truth.kinds"));
 }

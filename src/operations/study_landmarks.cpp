@@ -17,15 +17,14 @@ namespace {
 struct StudyLandmarks final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
-        p.options("components", components, "principal components to write", Range{1, 1000});
+        p.options("components", components, "number of principal components to write", Range{1, 1000});
         options.describe(p.options);
         for (const char* count : {"objects", "landmarks", "iterations"}) p.report.values(integer(count));
         for (const char* size : {"meanCentroidSize", "meanNorm", "sumOfSquares"}) p.report.values(number(size));
         p.report.values(boolean("converged"), numbers("components"));
         p.report.table("odd", text("name"), text("why"), boolean("leftOut"));
-        p.options(
-            "leave-odd-out", leave_odd_out,
-            "objects whose landmarks are mirrored, or that are three times as large as the median, or a third, are left out");
+        p.options("leave-odd-out", leave_odd_out,
+                  "exclude objects whose landmarks are mirrored, or whose size differs from the median by a factor of three");
     }
 
     void run(Context& context, Report& report) override {

@@ -18,8 +18,8 @@ struct StudyMoulds final : StudyOperation {
     void describe(Parameters& p) override {
         files.describe(p, true);
         part.describe(p);
-        p.options("similarity", similarity, "what the groups are found by", Choices(mould_similarities()));
-        p.options("leave-out", leave_out, "labels of faces that are left out, such as beards").words();
+        p.options("similarity", similarity, "similarity measure by which the groups are found", Choices(mould_similarities()));
+        p.options("leave-out", leave_out, "labels of faces to leave out, such as beards").words();
         p.options("choices", choices, "write a table of the groups by every similarity, method and epsilon as well");
         compare.describe(p.options);
         group.describe(p.options);

@@ -18,9 +18,9 @@ struct StudySegments final : Operation {
         p.output("output", Kind::annotations, output, "annotations to write (.ant.json)");
         p.output_option("curve", Kind::picture, curve, "plot of the criterion over the number of clusters (.svg, .pdf, .png)");
         p.input_option("compare", Kind::annotations, compare,
-                       "annotations with the known parts; else the mesh file's labels, if it has any");
-        up.describe(p, "upward direction; else as the annotations of --compare say, else 0,0,1");
-        p.options("unit", unit, "unit of the mesh; else as the annotations of --compare say");
+                       "annotations with the known parts; otherwise the labels of the mesh file, if it has any");
+        up.describe(p, "upward direction; otherwise that of --compare, otherwise 0,0,1");
+        p.options("unit", unit, "unit of the mesh; otherwise that of --compare");
         options.describe(p.options);
         p.report.values(text("unit"), integer("clusters"), integer("proposed"), text("criterion"));
         p.report.table("curve", integer("clusters", "clusters"), number("cost", "cost"), number("silhouette", "silhouette"),
@@ -68,7 +68,7 @@ struct StudySegments final : Operation {
             report.line("adjusted Rand index against the known parts, over the faces: " + number(*agreement, 3));
         }
         if (curve && segments.count.rows.size() > 2) draw(segments);
-        else if (curve) report.note("no curve is drawn of fewer than three numbers of clusters (--most-clusters)");
+        else if (curve) report.note("no curve is drawn of fewer than three numbers of clusters (--max-clusters)");
         output.write(std::move(set), surface, mesh.file());
     }
 
@@ -92,7 +92,7 @@ struct StudySegments final : Operation {
         if (count > 0)
             report.line(std::to_string(count) + " of the " + std::to_string(segments.clusters) + " clusters " +
                         (count == 1 ? "has" : "have") + " no segment: " + gone + " in runs of fewer than " +
-                        std::to_string(options.min_run) + ", which joined their neighbours (--least-run)");
+                        std::to_string(options.min_run) + ", which joined their neighbours (--min-run)");
         if (!again.empty()) report.line("one cluster, and so one colour: segments " + again);
     }
 

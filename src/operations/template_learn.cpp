@@ -28,7 +28,7 @@ struct TemplateLearn final : Operation {
             .many()
             .with_annotations_beside();
         p.output("output", Kind::folder, output, "folder for the class and a copy of the template; made if it is missing").flag();
-        p.options("name", name, "of the class; else as the template says");
+        p.options("name", name, "name of the class; otherwise that of the template");
         vocabulary.describe(p, as_template_words);
         p.options("given", given, "the same as --correspondence given");
         options.describe(p.options);

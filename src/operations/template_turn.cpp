@@ -11,7 +11,7 @@ namespace {
 
 struct TemplateTurn final : Operation {
     void describe(Parameters& p) override {
-        p.input("sherds", Kind::mesh, files, "closed meshes of sherds, all where they lay in the vessel").many();
+        p.input("sherds", Kind::mesh, files, "closed meshes of sherds, all in the pose that they had in the vessel").many();
         p.output("output", Kind::folder, output, "folder to write the template to").flag();
         p.options("unit", unit, "unit of the coordinates, any text such as mm");
         options.describe(p.options);

@@ -59,9 +59,11 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
 }
 
 void CloudOptions::describe(OptionList& visit) {
-    visit("cloud-neighbours", neighbours, "points without faces: neighbours that a normal comes from", Range{6, 1000});
-    visit("cloud-edge", longest, "longest edge of the surface, as a multiple of the points' spacing; 0: any", Range{0, 1e6});
-    visit("cloud-holes", close_holes, "widest hole of the surface that is closed", Range{0, 1}, "share of the diagonal");
+    visit("cloud-neighbours", neighbours, "points without faces: number of neighbours used to estimate a normal", Range{6, 1000});
+    visit("cloud-edge", longest, "points without faces: maximum edge length, as a multiple of the point spacing; 0: no limit",
+          Range{0, 1e6});
+    visit("cloud-holes", close_holes, "points without faces: maximum width of a hole that is filled", Range{0, 1},
+          "share of the diagonal");
 }
 
 }  // namespace ostraka

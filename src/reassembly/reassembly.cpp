@@ -162,9 +162,10 @@ Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOp
 }
 
 void ReassemblyOptions::describe(OptionList& visit) {
-    visit("least-join", min_join, "probability from which fragments are joined", Range{0.01, 0.999});
-    visit("partners", partners, "of each fragment, those whose breaks quickly fit best are tried in full", Range{1, 100000});
-    visit("least-faces", min_faces, "a fragment of fewer faces stays alone", Range{4, 1e9});
+    visit("min-join", min_join, "minimum probability of a join", Range{0.01, 0.999});
+    visit("partners", partners, "number of partners per fragment, the best of a coarse comparison, that are registered fully",
+          Range{1, 100000});
+    visit("min-faces", min_faces, "minimum number of faces of a fragment that is joined", Range{4, 1e9});
     pairs.describe(visit);
 }
 

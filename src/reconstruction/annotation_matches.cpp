@@ -161,7 +161,7 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
 }
 
 void AnnotationMatchOptions::describe(OptionList& visit) {
-    visit("least-score", min_score, "annotations that agree less are not matched", Range{0, 1});
+    visit("min-score", min_score, "minimum agreement of matched annotations", Range{0, 1});
 }
 
 }  // namespace ostraka

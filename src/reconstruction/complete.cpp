@@ -100,7 +100,7 @@ private:
                 return hits[v] && area_vector(fragment.mesh, face) * area_vector(object_.mesh, Face(hits[v]->face)) > 0;
             });
         }
-        const Joint joint = join_patch(object_.mesh, Patch(fragment.mesh, std::move(keep), options_.minimum), hits,
+        const Joint joint = join_patch(object_.mesh, Patch(fragment.mesh, std::move(keep), options_.min_piece), hits,
                                        options_.blend * diagonal_, frozen());
         if (!joint.problem.empty()) {
             object_.notes.push_back({number, joint.problem});
@@ -182,14 +182,14 @@ CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& 
 }
 
 void CompleteOptions::describe(OptionList& visit) {
-    visit("seam-angle", angle, "normals of a fragment and of the fitted template differ by at most this", Range{0, 90},
+    visit("seam-angle", angle, "maximum angle between the normals of a fragment and of the fitted template", Range{0, 90},
           "degrees");
-    visit("seam-width", blend, "width over which the template gives way to a fragment's edge", Range{0, 1},
+    visit("seam-width", blend, "width over which the template is blended to a fragment's edge", Range{0, 1},
           "share of the diagonal");
-    visit("confidence-length", halving, "length over which confidence halves away from what was observed", Range{1e-6, 1e6},
-          "share of the diagonal");
-    visit("join", join, "the completed mesh has the fragments' own triangles where they lie", Anything{});
-    visit("least-piece", minimum, "pieces of a fragment's surface below this share of its area are left out", Range{0, 1});
+    visit("confidence-length", halving, "length over which the confidence halves away from the observed surface",
+          Range{1e-6, 1e6}, "share of the diagonal");
+    visit("join", join, "insert the fragments' own triangles into the completed mesh", Anything{});
+    visit("min-piece", min_piece, "minimum share of a fragment's area of a piece of its surface that is used", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -206,23 +206,24 @@ void NonRigidOptions::describe(OptionList& visit) {
           Choices{"mesh", "cage", "both"});
     visit("smoothing", start, "length below which the first level fits no detail", Range{1e-3, 10},
           "share of the template's diagonal");
-    visit("detail", end, "the same of the last level", Range{1e-4, 10});
-    visit("levels", levels, "levels of stiffness", Range{1, 100});
-    visit("steps", steps, "matches and solutions in each level, at most", Range{1, 1000});
+    visit("detail", end, "length below which the last level fits no detail", Range{1e-4, 10});
+    visit("levels", levels, "number of stiffness levels", Range{1, 100});
+    visit("steps", steps, "maximum number of iterations (matching and solving) per level", Range{1, 1000});
     visit("transition", stay, "length over which the deformation of the first level fades where nothing is observed",
           Range{1e-3, 1e3}, "share of the diagonal");
     visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
-    visit("reach", search_radius, "farthest match in the first level", Range{0, 10}, "share of the diagonal");
-    visit("last-reach", last_search_radius, "farthest match in the last level", Range{0, 10});
-    visit("match-angle", angle, "normals of matches differ by at most this", Range{0, 180}, "degrees");
+    visit("reach", search_radius, "search radius of matches in the first level", Range{0, 10}, "share of the diagonal");
+    visit("last-reach", last_search_radius, "search radius of matches in the last level", Range{0, 10});
+    visit("match-angle", angle, "maximum angle between the normals of a match", Range{0, 180}, "degrees");
     visit("counterparts", counterparts,
           "of vertices: places of the surface from which they may slide along it, and along the curves between parts (sliding); "
           "the closest places (surface); or in matched annotations vertices by distance, outline and position along it (equation "
           "5.1): the best of each (best), or each given once (one-to-one)",
           Choices{"sliding", "surface", "best", "one-to-one"});
-    visit("boundary-weight", vertices.boundary, "equation 5.1: of vertices on an outline against vertices inside", Range{0, 1e6});
-    visit("distance-weight", vertices.distance, "equation 5.1: of the distance", Range{0, 1e6});
-    visit("outline-weight", vertices.outline, "equation 5.1: of the positions along the outline", Range{0, 1e6});
+    visit("boundary-weight", vertices.boundary, "equation 5.1: weight of vertices on an outline against vertices inside",
+          Range{0, 1e6});
+    visit("distance-weight", vertices.distance, "equation 5.1: weight of the distance", Range{0, 1e6});
+    visit("outline-weight", vertices.outline, "equation 5.1: weight of the positions along the outline", Range{0, 1e6});
     visit("guides", correspondences, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
     visit("outlines", outlines,
           "matched lines and outlines guide the fit by the position along them, from landmark to landmark; outlines the coarse "

@@ -322,11 +322,11 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
 
 void PlacementOptions::describe(OptionList& visit) {
     visit("outlier", outlier,
-          "a landmark that is off by more than this share of the spread of the template's landmarks may be a wrong one",
+          "a landmark whose residual exceeds this share of the spread of the template's landmarks is a possible outlier",
           Range{0, 1});
-    visit("unit-ratio", unit_ratio, "fragments whose own scales differ by more than this factor are not of one unit",
+    visit("unit-ratio", unit_ratio, "fragments whose scales differ by more than this factor are taken to have different units",
           Range{1, 1e6});
-    visit("collinear", collinear, "landmarks whose second extent is below this share of the first lie on a line", Range{0, 1});
+    visit("collinear", collinear, "landmarks are collinear if their second extent is below this share of the first", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -429,21 +429,19 @@ void ReconstructOptions::describe(OptionList& visit) {
     prior.describe(visit);
     fit.describe(visit);
     completion.describe(visit);
-    visit("observed", observed, "vertices farther from the fragments than this share of the diagonal are not observed",
+    visit("observed", observed, "maximum distance of an observed vertex from the fragments, as a share of the diagonal",
           Range{0, 1});
     visit("scale-tolerance", scale_tolerance,
-          "per cent by which the template's scale as one fragment alone has it may differ from that of the others",
+          "maximum difference, in per cent, between the template's scales that single fragments give", Range{0, 1000});
+    visit("slack", slack, "additional tolerance of constraints in per cent, for the noise of scans and measurements",
           Range{0, 1000});
-    visit("slack", slack,
-          "per cent that a constraint in per cent may be off before it speaks against the fragments: what scans and "
-          "measuring leave",
-          Range{0, 1000});
-    visit("residual", residual, "root mean square of a fragment's landmarks above which it does not fit", Range{0, 10},
+    visit("residual", residual, "maximum root mean square residual of a fragment's landmarks", Range{0, 10},
           "share of their spread");
-    visit("lying", lying, "per cent of a fragment's outer surface that lies on the fitted template, at least", Range{0, 100});
-    visit("overlap", overlap, "per cent of a fragment's outer surface that lies where another one is seen, at most",
+    visit("lying", lying, "minimum share, in per cent, of a fragment's outer surface that lies on the fitted template",
           Range{0, 100});
-    visit("restore", restore, "constraints of the graph are solved for what was not observed", Anything{});
+    visit("overlap", overlap, "maximum share, in per cent, of a fragment's outer surface that lies on another fragment",
+          Range{0, 100});
+    visit("restore", restore, "enforce the constraints of the graph on the unobserved surface", Anything{});
 }
 
 }  // namespace ostraka

@@ -98,9 +98,10 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
 }
 
 void ConsistentOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "matched features lie this near to each other once moved", Range{0, 1}, "share of the size");
-    visit("normal-angle", angle, "and their normals differ by at most this", Range{0, 180}, "degrees");
-    visit("shrinkage", shrinkage, "objects may differ in size by up to this share; 0: rigid", Range{0, 0.5});
+    visit("tolerance", tolerance, "maximum distance between matched features after registration", Range{0, 1},
+          "share of the size");
+    visit("normal-angle", angle, "maximum angle between the normals of matched features", Range{0, 180}, "degrees");
+    visit("shrinkage", shrinkage, "maximum difference in size between objects, as a share; 0: rigid", Range{0, 0.5});
 }
 
 }  // namespace ostraka

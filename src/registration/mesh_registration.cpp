@@ -516,7 +516,8 @@ std::vector<std::string> remarks_on(const MeshRegistration& found) {
 
 void MeshRegistrationOptions::describe(OptionList& visit) {
     visit("scale", scale, "find the scale as well: the meshes may be in different units", Anything{});
-    visit("tolerance", tolerance, "what lies nearer is the same surface; 0: what the meshes' resolutions explain", Range{0, 1},
+    visit("tolerance", tolerance,
+          "maximum distance between places of the same surface; 0: estimated from the resolutions of the meshes", Range{0, 1},
           "share of the target's diagonal");
     visit("samples", samples, "points by which the meshes are registered and compared", Range{100, 1e6});
 }

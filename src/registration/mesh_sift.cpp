@@ -286,21 +286,21 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
 }
 
 void SiftOptions::describe(OptionList& visit) {
-    visit("feature-size", size, "length that scales are shares of; 0 = the square root of its area", Range{0, 1e60},
+    visit("feature-size", size, "length of which scales are shares; 0: the square root of the area", Range{0, 1e60},
           "the mesh's unit");
     visit("first-scale", first_scale, "standard deviation of the first smoothing", Range{1e-4, 0.5}, "share of the size");
-    visit("scales", scales, "levels of smoothing", Range{4, 20});
-    visit("scales-per-octave", per_octave, "levels in which the standard deviation doubles", Range{1, 8});
-    visit("border", border, "no features within this many standard deviations of the border", Range{0, 10});
-    visit("contrast", contrast, "least difference of curvature between two levels, times the standard deviation", Range{0, 10});
+    visit("scales", scales, "number of smoothing levels", Range{4, 20});
+    visit("scales-per-octave", per_octave, "number of levels per doubling of the standard deviation", Range{1, 8});
+    visit("border", border, "minimum distance of features from the border, in standard deviations", Range{0, 10});
+    visit("contrast", contrast, "minimum contrast: difference of curvature between two levels, times the standard deviation",
+          Range{0, 10});
     visit("second-direction", second_direction,
-          "peaks of the histogram of directions above this share of the highest give a "
-          "feature each",
+          "minimum height of a further peak in the histogram of directions, as a share of the highest: each gives a feature",
           Range{0.1, 1});
 }
 
 void MatchOptions::describe(OptionList& visit) {
-    visit("ratio", ratio, "a match's angle over that of the next best feature, at most", Range{0, 1});
+    visit("ratio", ratio, "maximum ratio of a match's angle to that of the next best feature", Range{0, 1});
 }
 
 }  // namespace ostraka

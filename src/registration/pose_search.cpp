@@ -392,13 +392,16 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
 void PoseSearchOptions::describe(OptionList& visit) {
     visit("search-least-scale", min_scale, "smallest scale of the template that is searched", Range{1e-6, 1e6});
     visit("search-most-scale", max_scale, "largest scale of the template that is searched", Range{1e-6, 1e6});
-    visit("search-tolerance", tolerance, "what lies nearer is on the template", Range{1e-6, 1}, "share of the fragment's size");
-    visit("least-confidence", min_confidence, "of a pose that was searched; below it the fragment is not placed", Range{0, 1});
-    visit("search-points", points, "points spread over the template", Range{50, 4000});
-    visit("search-references", references, "points of a fragment for which places are sought", Range{1, 4000});
-    visit("search-partners", partners, "other points of the fragment that vote for each of them", Range{1, 100000});
-    visit("search-candidates", candidates, "poses that are refined on the template's faces", Range{1, 1000});
-    visit("search-seed", seed, "of what the search draws", Range{0, 9007199254740992.0});
+    visit("search-tolerance", tolerance, "maximum distance from the template of what lies on it", Range{1e-6, 1},
+          "share of the fragment's size");
+    visit("min-confidence", min_confidence, "minimum confidence of a searched pose; below it the fragment is not placed",
+          Range{0, 1});
+    visit("search-points", points, "number of points sampled on the template", Range{50, 4000});
+    visit("search-references", references, "number of reference points of a fragment", Range{1, 4000});
+    visit("search-partners", partners, "number of further points of the fragment that vote for each reference point",
+          Range{1, 100000});
+    visit("search-candidates", candidates, "number of candidate poses that are refined", Range{1, 1000});
+    visit("search-seed", seed, "random seed of the search", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

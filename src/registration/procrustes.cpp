@@ -28,7 +28,8 @@ void check(const Landmarks& landmarks, Eigen::Index count, const std::string& wh
                    "give the same landmarks everywhere, in the same order");
     if (count < 3) fail_input(where, "there are " + std::to_string(count) + " landmarks", "give at least three");
     if (!landmarks.allFinite())
-        fail_input(where, "a coordinate is not a finite number", "leave that landmark out everywhere, or mend it");
+        fail_input(where, "a coordinate is not a finite number",
+                   "give a finite coordinate, or leave that landmark out of all specimens");
     if (!(centroid_size(landmarks) > 0)) fail_input(where, "all landmarks are in one place", "leave it out");
 }
 
@@ -139,8 +140,8 @@ Eigen::MatrixXd shape_rows(const std::vector<Landmarks>& configurations) {
 }
 
 void ProcrustesOptions::describe(OptionList& visit) {
-    visit("scaling", scaling, "sizes are made equal; else they stay", Anything{});
-    visit("reflection", reflection, "mirror images count as the same", Anything{});
+    visit("scaling", scaling, "scale all objects to the same size", Anything{});
+    visit("reflection", reflection, "treat mirror images as the same shape", Anything{});
 }
 
 }  // namespace ostraka

@@ -170,7 +170,8 @@ Part& RelationMeter::State::part(int id) {
     if (entry != parts.end()) return entry->second;
     const Annotation* annotation = set.find(id);
     if (annotation == nullptr)
-        fail_input("relationship", "names annotation " + std::to_string(id) + ", which does not exist", "mend it");
+        fail_input("relationship", "names annotation " + std::to_string(id) + ", which does not exist",
+                   "name an annotation of this file");
     return parts.try_emplace(id, mesh, *annotation).first->second;
 }
 

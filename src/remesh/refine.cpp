@@ -76,7 +76,7 @@ RefineResult refine(Mesh& mesh, const RefineOptions& options) {
 }
 
 void RefineOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "wanted number of vertices (met exactly)", Range{0, 5e8});
+    visit("vertices", vertices, "target number of vertices (met exactly)", Range{0, 5e8});
     visit("levels", levels, "number of times each triangle is cut into four", Range{0, 12});
     visit("scheme", scheme,
           "midpoint (each triangle into four, the shape stays; the last part of a wanted number by longest edges), loop (the "

@@ -277,7 +277,7 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
 }
 
 void SimplifyOptions::describe(OptionList& visit) {
-    visit("vertices", vertices, "wanted number of vertices", Range{1, 5e8});
+    visit("vertices", vertices, "target number of vertices", Range{1, 5e8});
     visit("method", method,
           "cost and place of a collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, without memory)",
           Choices{"qem", "lindstrom-turk"});
@@ -286,11 +286,14 @@ void SimplifyOptions::describe(OptionList& visit) {
           "be), protect "
           "(they stay exactly as they are) or ignore",
           Choices{"follow", "protect", "ignore"});
-    visit("max-normal-change", max_normal_change,
-          "degrees that a face may turn in one collapse (given up, up to 90, if the number cannot be reached)", Range{1, 90});
-    visit("outline-weight", outline_weight,
-          "qem: weight of the distance to outlines that are followed, relative to the surface's", Range{0, 1e6});
-    visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to the surface's", Range{0, 1e6});
+    visit(
+        "max-normal-change", max_normal_change,
+        "maximum rotation of a face normal in one collapse, degrees (relaxed, up to 90, if the target number cannot be reached)",
+        Range{1, 90});
+    visit("outline-weight", outline_weight, "qem: weight of the distance to followed outlines, relative to that of the surface",
+          Range{0, 1e6});
+    visit("border-weight", border_weight, "qem: weight of the distance to the border, relative to that of the surface",
+          Range{0, 1e6});
 }
 
 }  // namespace ostraka

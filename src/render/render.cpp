@@ -395,31 +395,31 @@ void RenderOptions::describe(OptionList& visit) {
                     list.views = text;
                     static_cast<void>(views_of(list));
                 }});
-    visit("up", up, "the object's upward axis; auto: as the annotations say, else z",
+    visit("up", up, "upward axis of the object; auto: that of the annotations, otherwise z",
           Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {
                     static_cast<void>(parse_up(text));
                 }});
     visit("projection", projection, "orthographic or perspective", Choices{"orthographic", "perspective"});
-    visit("zoom", zoom, "magnification about the middle, 1 shows the whole object", Range{0.01, 1000});
+    visit("zoom", zoom, "magnification about the centre; 1 shows the whole object", Range{0.01, 1000});
     visit("fit", fit, "several objects: all at one scale, or each as large as fits", Choices{"all", "each"});
     visit("shading", shading, "smooth or flat", Choices{"smooth", "flat"});
     visit("crease", crease, "smooth shading: edges sharper than this stay sharp", Range{0, 180}, "degrees");
-    visit("ambient-occlusion", ambient_occlusion, "rays a pixel that darken hollows, 0 for none", Range{0, 1024});
-    visit("samples", samples, "rays a pixel where colours change, 1 for none extra", Range{1, 64});
+    visit("ambient-occlusion", ambient_occlusion, "number of ambient occlusion rays per pixel; 0: none", Range{0, 1024});
+    visit("samples", samples, "number of rays per pixel where colours change (antialiasing); 1: none extra", Range{1, 64});
     visit("edges", edges, "draw the edges of the mesh");
     visit("drawing", drawing,
           "how the object is drawn: its surface; lines: contours, creases and borders, without hidden ones; wire: its edges; "
           "points",
           Choices{"surface", "lines", "wire", "points"});
     visit("contours", contours, "draw contours, creases and borders over the surface");
-    visit("labels", labels, "names beside the object with lines to what they name, instead of the legend");
+    visit("labels", labels, "write names beside the object with leader lines, instead of a legend");
     visit("axes", axes, "draw the directions of the mesh's axes");
     visit("supersample", supersample,
-          "samples a pixel in each direction: averaged in a PNG, kept in SVG and PDF; 0: 1 in a PNG, 2 in the others",
+          "samples per pixel in each direction: averaged in a PNG, kept in SVG and PDF; 0: 1 in a PNG, 2 in the others",
           Range{0, 4});
-    visit("deep", deep, "PNG with 16 bits a channel");
-    visit("theme", theme, "light or dark: what is written, and the background", Choices{"light", "dark"});
-    visit("background", background, "colour of the background; auto: as the theme",
+    visit("deep", deep, "write a PNG with 16 bits per channel");
+    visit("theme", theme, "light or dark: colours of the text and of the background", Choices{"light", "dark"});
+    visit("background", background, "colour of the background; auto: that of the theme",
           Words{{"auto", "white", "black", "grey"}, "#rrggbb", [](const std::string& text) {
                     if (text != "auto") static_cast<void>(parse_colour(text));
                 }});

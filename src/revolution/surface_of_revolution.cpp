@@ -348,15 +348,14 @@ RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sh
 }
 
 void RevolutionOptions::describe(OptionList& visit) {
-    visit("rows", rows, "heights at which the walls are looked at", Range{10, 20000});
-    visit("columns", columns, "directions around the axis", Range{8, 7200});
-    visit("presence", presence, "degrees of wall that a height must have to count", Range{0, 360});
-    visit("profile-smoothing", smoothing, "of the profile: standard deviation in rows", Range{0, 50});
-    visit("layout-angle", layout_angle, "degrees by which a sherd may be tilted where it lies: standard deviation",
-          Range{0.001, 90});
-    visit("layout-shift", layout_shift, "share of the vessel's diagonal by which it may lie aside: standard deviation",
+    visit("rows", rows, "number of heights at which the walls are sampled", Range{10, 20000});
+    visit("columns", columns, "number of directions around the axis", Range{8, 7200});
+    visit("presence", presence, "minimum extent of wall around the axis at a height, degrees", Range{0, 360});
+    visit("profile-smoothing", smoothing, "smoothing of the profile: standard deviation in rows", Range{0, 50});
+    visit("layout-angle", layout_angle, "standard deviation of a sherd's tilt in its pose, degrees", Range{0.001, 90});
+    visit("layout-shift", layout_shift, "standard deviation of a sherd's shift in its pose, as a share of the vessel's diagonal",
           Range{1e-6, 1});
-    visit("vertices", vertices, "of the template, about", Range{100, 1e7});
+    visit("vertices", vertices, "approximate number of vertices of the template", Range{100, 1e7});
     axis.describe(visit);
 }
 

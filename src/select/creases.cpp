@@ -340,12 +340,13 @@ void CreaseOptions::describe(OptionList& visit) {
     visit("kind", kind, "ridges (clay that stands out), hollows (where parts meet), or both", Choices{"ridge", "hollow", "both"});
     visit("scale", scale, "radius over which curvature is averaged; about the width looked for", Range{1e-6, 0.5},
           "share of the box diagonal");
-    visit("wide", wide, "radius of the surroundings that it is compared with, in multiples of the scale", Range{1.1, 20});
-    visit("weak", weak, "response that belongs to a crease, in robust deviations of the response over the surface",
+    visit("wide", wide, "radius of the neighbourhood used for comparison, in multiples of the scale", Range{1.1, 20});
+    visit("weak", weak, "lower hysteresis threshold of the response, in robust deviations over the surface", Range{0, 1000});
+    visit("strong", strong,
+          "upper hysteresis threshold of the response, which each crease exceeds somewhere, in robust deviations",
           Range{0, 1000});
-    visit("strong", strong, "response that a crease reaches somewhere, in robust deviations", Range{0, 1000});
-    visit("floor", floor, "response (curvature times scale) below which nothing is a crease", Range{0, 100});
-    visit("shortest", shortest, "least length", Range{0, 10}, "share of the box diagonal");
+    visit("floor", floor, "minimum response (curvature times scale) of a crease", Range{0, 100});
+    visit("shortest", shortest, "minimum length", Range{0, 10}, "share of the box diagonal");
 }
 
 }  // namespace ostraka

@@ -69,7 +69,8 @@ private:
         for (Annotation& one : set_.annotations)
             if (before_.contains(one.id) && !touched_.contains(one.id)) others[one.id].swap(one.attributes);
         const RefreshResult measured = refresh_measures(mesh_, set_);
-        if (!measured.notes.empty()) fail_input(where_, "a measure cannot be taken: " + measured.notes.front(), "mend its pins");
+        if (!measured.notes.empty())
+            fail_input(where_, "a measure cannot be taken: " + measured.notes.front(), "correct its pins");
         for (Annotation& one : set_.annotations)
             if (const auto kept = others.find(one.id); kept != others.end()) one.attributes.swap(kept->second);
     }

@@ -76,8 +76,8 @@ double quantile_of(const Mesh& mesh, const ScalarMap& map, double share, const s
 }
 
 void SegmentOptions::describe(OptionList& visit) {
-    visit("clusters", clusters, "levels of thickness that are told apart", Range{2, 100});
-    visit("smoothing", smoothing, "how much short borders in hollows are preferred, 0 to 1", Range{0, 1});
+    visit("clusters", clusters, "number of thickness levels", Range{2, 100});
+    visit("smoothing", smoothing, "preference for short borders in concave places, 0 to 1", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -144,11 +144,12 @@ std::optional<double> segment_agreement(const SliceSegments& segments, const std
 }
 
 void SliceSegmentOptions::describe(OptionList& visit) {
-    visit("slices", slices, "slices across the object, evenly spread", Range{4, 10000});
-    visit("clusters", clusters, "kinds of slices; 0: as many as the criterion proposes", Range{0, 1000});
-    visit("least-run", min_run, "as many slices of one kind in a row make a segment; shorter runs join their longer neighbour",
+    visit("slices", slices, "number of evenly spaced slices across the object", Range{4, 10000});
+    visit("clusters", clusters, "number of clusters of slices; 0: as the criterion proposes", Range{0, 1000});
+    visit("min-run", min_run,
+          "minimum number of consecutive slices of one cluster that form a segment; shorter runs join their longer neighbour",
           Range{1, 1000});
-    visit("size", size, "the radius of the circle of the slice's area counts as well", Anything{});
+    visit("size", size, "also use the radius of the circle of the slice's area", Anything{});
     count.describe(visit);
 }
 

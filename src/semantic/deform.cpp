@@ -145,26 +145,25 @@ void DeformOptions::describe(OptionList& visit) {
           "rest (those of the "
           "shape before it, as in the thesis)",
           Choices{"edited", "rest"});
-    visit("spread", spread, "length over which a change fades out", Range{1e-4, 1e4}, "share of the diagonal");
+    visit("spread", spread, "length over which a constraint's displacement fades out", Range{1e-4, 1e4}, "share of the diagonal");
     visit("laplacian", laplacian, "weight of the Laplacian displacement of each vertex", Range{0, 1e9});
     visit("handles", handles,
           "weight of the positions of the handles that the edit moves, and of joints that parts stretch from; handles that a "
           "constraint moves as well give way",
           Range{0, 1e9});
-    visit("followed", followed, "share of the edit that an acceptable result follows", Range{0, 1});
-    visit(
-        "distortion", distortion,
-        "root mean square distance by which an acceptable result may distort a part that neither the edit nor a constraint that "
-        "did not hold asked to change",
-        Range{0, 1}, "share of the diagonal");
+    visit("followed", followed, "minimum share of the edit that an acceptable result follows", Range{0, 1});
+    visit("distortion", distortion,
+          "maximum root mean square distortion, in an acceptable result, of a part that neither the edit nor a violated "
+          "constraint was to change",
+          Range{0, 1}, "share of the diagonal");
     solve.describe(visit);
-    visit("rounds", rounds, "rounds in which hard constraints are enforced", Range{1, 1e6});
+    visit("rounds", rounds, "maximum number of rounds in which hard constraints are enforced", Range{1, 1e6});
     visit("passes", passes,
           "solutions in which constraints on axes and measures of other parts follow those; up to four times as many while hard "
           "ones that fail come nearer",
           Range{1, 100});
     visit("conflicts", conflicts,
-          "where a constraint does not hold, at most so many are left out in turn, to tell which fight; 0 for none",
+          "maximum number of constraints that are left out in turn to find conflicts where one does not hold; 0: no search",
           Range{0, 1000});
 }
 

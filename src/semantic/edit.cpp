@@ -91,7 +91,7 @@ private:
     [[nodiscard]] Vector3d vector(const JsonValue& value, const char* name, bool direction = false) const {
         const Vector3d v(value[0].GetDouble(), value[1].GetDouble(), value[2].GetDouble());
         const double largest = v.cwiseAbs().maxCoeff();
-        if (!v.allFinite() || largest > 1e60) fail(std::string(name) + " is beyond 1e60", "mend it");
+        if (!v.allFinite() || largest > 1e60) fail(std::string(name) + " is beyond 1e60", "give numbers up to 1e60");
         if (direction && !(largest > 0)) fail(std::string(name) + " is zero", "give a direction");
         return direction ? Vector3d((v / largest).normalized()) : v;
     }
@@ -201,7 +201,7 @@ private:
             if (value.GetUint64() >= count)
                 fail("vertex " + std::to_string(value.GetUint64()) + " is not one of the " + std::to_string(count) + " of the " +
                          of,
-                     "mend the index");
+                     "give an index of the mesh, from 0");
             result.push_back(static_cast<Index>(value.GetUint64()));
         }
         return result;
@@ -233,7 +233,7 @@ private:
         const auto each = [&](auto&& move) {
             for (const Index v : state_.selected) {
                 const Vector3d p = move(eigen(state_.handles[v]));
-                if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e60) fail("moves a handle beyond 1e60", "mend the numbers");
+                if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e60) fail("moves a handle beyond 1e60", "give smaller numbers");
                 state_.handles[v] = point_of(p);
             }
         };

@@ -74,7 +74,7 @@ public:
     }
     [[nodiscard]] bool flag(const char* name) const {
         const JsonValue* value = given(name);
-        if (value != nullptr && !value->IsBool()) fail(std::string(name) + " is neither true nor false", "mend it");
+        if (value != nullptr && !value->IsBool()) fail(std::string(name) + " is neither true nor false", "give true or false");
         return value != nullptr && value->GetBool();
     }
     [[nodiscard]] bool has(const char* name) const { return given(name) != nullptr; }
@@ -116,7 +116,7 @@ public:
         if (value == nullptr) return otherwise;
         if (!value->IsNumber() || !(value->GetDouble() >= minimum && value->GetDouble() <= maximum))
             fail(std::string(name) + " is not a number from " + std::to_string(minimum) + " to " + std::to_string(maximum),
-                 "mend it");
+                 "give a number of this range");
         return value->GetDouble();
     }
     /// Whether the range is given, and not what there is at rest.

@@ -84,7 +84,7 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
         fail_input(where,
                    "of " + range.quantity.text() + " accepts at least " + std::to_string(*range.low) + " and at most " +
                        std::to_string(*range.high),
-                   "mend it, or learn the class anew");
+                   "correct it, or learn the class again");
     range.recognised = number_in(object, "recognised");
     const auto check = [&](const std::vector<std::optional<double>>& values, std::size_t count, const char* whose) {
         if (values.size() != count)

@@ -282,10 +282,10 @@ void ClassifyOptions::describe(OptionList& visit) {
           "an object whose triangles are the template's is taken as it is (auto, given); the template is fitted to it (fitted)",
           Choices{"auto", "given", "fitted"});
     visit("strict", strict,
-          "the template lies on an object by --most-off alone; else as well where it lies as it does on the class's members",
+          "the template lies on an object by --max-off alone; else as well where it lies as it does on the class's members",
           Anything{});
-    visit("attributes", attributes, "values of attributes out of their range speak against it, too", Anything{});
-    visit("close", close, "classes whose scores differ by less than this share of the better one cannot be told apart",
+    visit("attributes", attributes, "also reject objects by attribute values out of range", Anything{});
+    visit("close", close, "classes are not distinguished if their scores differ by less than this share of the better one",
           Range{0, 1});
 }
 

@@ -329,14 +329,13 @@ void MemberFitOptions::describe(OptionList& visit) {
     alignment.describe(visit);
     annotations.describe(visit);
     fit.describe(visit);
-    visit("ignore-landmarks", ignore_landmarks, "lay the template onto objects by their surfaces alone", Anything{});
+    visit("ignore-landmarks", ignore_landmarks, "register the template onto objects by their surfaces alone", Anything{});
     visit("tries", tries,
           "without landmarks: placements that are fitted, the nearest ones of those by principal axes and as the files have "
           "it; the best fit is kept",
           Range{1, 5});
-    visit("observed", observed, "surfaces farther apart than this do not lie on each other", Range{0, 1},
-          "share of the diagonal");
-    visit("most-off", max_off,
+    visit("observed", observed, "maximum distance between surfaces that lie on each other", Range{0, 1}, "share of the diagonal");
+    visit("max-off", max_off,
           "a template does not lie on an object if a larger share of both surfaces (mean of unmatched and unexplained) is off "
           "the other after the fit",
           Range{0, 1});

@@ -192,15 +192,15 @@ Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& known, cons
 }
 
 void SampleOptions::describe(OptionList& visit) {
-    visit("count", count, "members to draw", Range{1, 1e6});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("count", count, "number of members to draw", Range{1, 1e6});
+    visit("seed", seed, "random seed", Range{0, 1e18});
     visit("by", by,
           "modes: normal coefficients within the range of the members'; edits: the mean shape with one to three random parts "
           "stretched or scaled",
           Choices{"modes", "edits"});
-    visit("spread", spread, "coefficients go so many times as far as the members'", Range{0, 10});
-    visit("edit", edit, "standard deviation of the logarithm of a part's stretch", Range{0, 2});
-    visit("attempts", attempts, "draws for each member wanted, at most", Range{1, 1e6});
+    visit("spread", spread, "factor on the range of the members' coefficients", Range{0, 10});
+    visit("edit", edit, "edits: standard deviation of the logarithm of a part's stretch", Range{0, 2});
+    visit("attempts", attempts, "maximum number of draws per member", Range{1, 1e6});
 }
 
 }  // namespace ostraka

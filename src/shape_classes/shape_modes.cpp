@@ -160,8 +160,8 @@ Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficie
 
 void ModeOptions::describe(OptionList& visit) {
     visit("sizes", sizes, "the size of an object counts; else all are brought to one size first", Anything{});
-    visit("modes", maximum, "modes of variation that are kept, at most", Range{0, 1e6});
-    visit("variance", variance, "modes are kept until they have this share of the variance", Range{0, 1});
+    visit("modes", maximum, "maximum number of modes of variation", Range{0, 1e6});
+    visit("variance", variance, "share of the variance that the modes explain", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -146,8 +146,9 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
 }
 
 void ClayOptions::describe(OptionList& visit) {
-    visit("slices", slices, "layers that the object is cut into", Range{2, 1000000});
-    visit("wall", wall, "least wall that the clay is taken to have where it is not seen; 0: a thin one of those seen",
+    visit("slices", slices, "number of layers", Range{2, 1000000});
+    visit("wall", wall,
+          "minimum wall thickness assumed where the inside is not seen; 0: the 5 % quantile of the walls that are seen",
           Range{0, 1e60}, "the mesh's unit");
 }
 

@@ -193,11 +193,11 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
 }
 
 void TubeOptions::describe(OptionList& visit) {
-    visit("least-eccentricity", min_eccentricity, "tube: least breadth / length of a slice's rectangle", Range{0, 1});
-    visit("most-roundness", max_roundness, "tube: largest mean distance of a slice's outline from its circle", Range{0, 10},
+    visit("min-eccentricity", min_eccentricity, "tube: minimum ratio of width to length of a slice's rectangle", Range{0, 1});
+    visit("max-roundness", max_roundness, "tube: maximum mean distance of a slice's outline from its circle", Range{0, 10},
           "share of the radius");
-    visit("similarity", similarity, "tube: largest rms distance of a group's slices from its centre", Range{1e-6, 1e6});
-    visit("tube-seed", seed, "tube: seed of the grouping", Range{0, 1e18});
+    visit("similarity", similarity, "tube: maximum rms distance of a group's slices from its centre", Range{1e-6, 1e6});
+    visit("tube-seed", seed, "tube: random seed of the grouping", Range{0, 1e18});
 }
 
 }  // namespace ostraka

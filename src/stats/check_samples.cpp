@@ -18,7 +18,8 @@ void require_finite_entries(const Eigen::MatrixXd& matrix, const std::string& wh
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
         for (Eigen::Index j = 0; j < matrix.cols(); ++j)
             if (!std::isfinite(matrix(i, j)))
-                fail_input(where, "the value in " + place(i, j) + " is not a finite number", "leave it out, or mend it");
+                fail_input(where, "the value in " + place(i, j) + " is not a finite number",
+                           "leave it out, or give a finite number");
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
     const std::size_t different = distinct_rows(samples);
     const std::size_t possible =
         2 * different <= static_cast<std::size_t>(samples.rows()) ? different : std::max<std::size_t>(1, different - 1);
-    const int maximum = static_cast<int>(std::min(static_cast<std::size_t>(options.maximum), possible));
+    const int maximum = static_cast<int>(std::min(static_cast<std::size_t>(options.max_clusters), possible));
 
     // Version b of the paper: the box lies along the principal directions.
     Eigen::MatrixXd centred = samples.rowwise() - samples.row(0);

@@ -144,9 +144,9 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
 }
 
 void StabilityOptions::describe(OptionList& visit) {
-    visit("stability-resamples", resamples, "times the clusters are found anew in a part of the samples", Range{1, 100000});
-    visit("stability-share", share, "share of the samples in each such part", Range{0.05, 1});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("stability-resamples", resamples, "number of resamples for the stability of the clusters", Range{1, 100000});
+    visit("stability-share", share, "share of the samples in each resample", Range{0.05, 1});
+    visit("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

@@ -190,18 +190,18 @@ Eigen::MatrixXd standardised(const Eigen::MatrixXd& samples) {
 
 void KMeansOptions::describe(OptionList& visit) {
     visit("clusters", clusters, "number of clusters", Range{1, 100000});
-    visit("restarts", restarts, "beginnings of k-means, of which the best is kept", Range{1, 100000});
-    visit("iterations", iterations, "iterations of k-means at most", Range{1, 1000000});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("restarts", restarts, "number of initialisations of k-means; the best result is kept", Range{1, 100000});
+    visit("iterations", iterations, "maximum number of iterations of k-means", Range{1, 1000000});
+    visit("seed", seed, "random seed", Range{0, 1e18});
 }
 
 void ClusterCountOptions::describe(OptionList& visit) {
-    visit("most-clusters", maximum, "largest number of clusters that is tried", Range{1, 10000});
+    visit("max-clusters", max_clusters, "maximum number of clusters", Range{1, 10000});
     visit("criterion", criterion, "how the number of clusters is proposed", Choices{"silhouette", "gap"});
-    visit("references", references, "reference sets of the gap statistic", Range{2, 100000});
-    visit("restarts", k_means.restarts, "beginnings of k-means, of which the best is kept", Range{1, 100000});
-    visit("iterations", k_means.iterations, "iterations of k-means at most", Range{1, 1000000});
-    visit("seed", k_means.seed, "seed of the random numbers", Range{0, 1e18});
+    visit("references", references, "number of reference sets of the gap statistic", Range{2, 100000});
+    visit("restarts", k_means.restarts, "number of initialisations of k-means; the best result is kept", Range{1, 100000});
+    visit("iterations", k_means.iterations, "maximum number of iterations of k-means", Range{1, 1000000});
+    visit("seed", k_means.seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

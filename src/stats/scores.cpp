@@ -200,8 +200,8 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
 
 void CrossValidationOptions::describe(OptionList& visit) {
     visit("folds", folds, "parts that are left out in turn", Range{2, 100000});
-    visit("repeats", repeats, "divisions into parts", Range{1, 100000});
-    visit("seed", seed, "seed of the random numbers", Range{0, 1e18});
+    visit("repeats", repeats, "number of repeated divisions into folds", Range{1, 100000});
+    visit("seed", seed, "random seed", Range{0, 1e18});
 }
 
 }  // namespace ostraka

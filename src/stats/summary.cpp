@@ -23,7 +23,7 @@ struct Distribution {
         for (std::size_t i = 0; i < given.size(); ++i) {
             if (!std::isfinite(given[i]))
                 fail_input(where, "value " + std::to_string(i) + " is not a finite number",
-                           "mend the map or choose another region");
+                           "correct the map or choose another region");
             if (!(weights[i] >= 0 && std::isfinite(weights[i])))
                 fail_input(where, "weight " + std::to_string(i) + " is negative or not finite", "is a face broken?");
         }
@@ -98,7 +98,7 @@ double quantile(const std::vector<double>& values, const std::vector<double>& we
 void require_finite(const std::vector<double>& values, const std::string& where) {
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!std::isfinite(values[i]))
-            fail_input(where, "value " + std::to_string(i) + " is not a finite number", "leave it out, or mend it");
+            fail_input(where, "value " + std::to_string(i) + " is not a finite number", "leave it out, or give a finite number");
 }
 
 Summary summarise(const std::vector<double>& values, const std::string& where) {

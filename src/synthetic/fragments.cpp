@@ -85,12 +85,12 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
 }
 
 void BreakOptions::describe(OptionList& visit) {
-    visit("share", share, "of the surface that the fragment has", Range{0.001, 1});
-    visit("roughness", roughness, "waves of the break", Range{0, 1}, "share of the fragment's size");
+    visit("share", share, "share of the surface that the fragment keeps", Range{0.001, 1});
+    visit("roughness", roughness, "amplitude of the waves of the fracture surface", Range{0, 1}, "share of the fragment's size");
     visit("noise", noise, "standard deviation along the normal", Range{0, 0.1}, "share of the whole's diagonal");
-    visit("erosion", erosion, "width of the rim that is worn away", Range{0, 0.5}, "share of the whole's diagonal");
-    visit("moved", moved, "turned and shifted at random", Anything{});
-    visit("seed", seed, "of the break, the noise and the motion", Range{0, 9007199254740992.0});
+    visit("erosion", erosion, "width of the worn rim", Range{0, 0.5}, "share of the whole's diagonal");
+    visit("moved", moved, "rotate and translate the fragment at random", Anything{});
+    visit("seed", seed, "random seed of the fracture, the noise and the motion", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

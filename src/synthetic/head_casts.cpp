@@ -211,28 +211,28 @@ std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, co
 
 void CastOptions::describe(OptionList& visit) {
     visit("wear", wear,
-          "how worn a cast is at most: standard deviation of a Gaussian that smooths its surface; each cast has half of it to "
-          "all of it, and half of that at some places",
+          "maximum wear of a cast: standard deviation of a Gaussian that smooths its surface; each cast has half of it to all of "
+          "it, and half of that at some places",
           Range{0, 0.1}, "share of the head's height");
-    visit("pressure", pressure, "soft clay gives way: standard deviation of stretches along the axes and of a bend, as a share",
-          Range{0, 0.1});
-    visit("shrinkage", shrinkage, "casts are smaller than their archetype by up to this share", Range{0, 0.3});
+    visit("pressure", pressure,
+          "deformation of soft clay: standard deviation of stretches along the axes and of a bend, as a share", Range{0, 0.1});
+    visit("shrinkage", shrinkage, "maximum shrinkage of casts, as a share", Range{0, 0.3});
     visit("noise", noise, "scan noise: standard deviation along the normal", Range{0, 0.01}, "share of the head's height");
-    visit("beard", beard, "share of the casts that bear a beard added by hand", Range{0, 1});
-    visit("chunk", chunk, "share of the casts that miss a piece of the face", Range{0, 1});
-    visit("dents", dents, "small dents in the front, up to", Range{0, 20});
-    visit("body", body, "whole statuettes: each head on a body of its own, which tells nothing of the mould");
+    visit("beard", beard, "share of the casts with a beard added by hand", Range{0, 1});
+    visit("chunk", chunk, "share of the casts of which a piece of the face is missing", Range{0, 1});
+    visit("dents", dents, "maximum number of small dents in the front", Range{0, 20});
+    visit("body", body, "make whole statuettes: each head on a body of its own, unrelated to the mould");
     visit("keep-pose", keep_pose, "leave heads upright, looking along x, instead of turned and moved at random", Anything{});
     visit("vertices", vertices, "number of vertices of the whole head", Range{1500, 1e6});
-    visit("cast-seed", seed, "draws all of it, and the mesh", Range{0, 9007199254740992.0});
+    visit("cast-seed", seed, "random seed of the cast and of its mesh", Range{0, 9007199254740992.0});
 }
 
 void MouldPopulationOptions::describe(OptionList& visit) {
     visit("objects", objects, "number of moulded heads", Range{1, 100000});
     visit("moulds", moulds, "number of moulds; every other one has long hair", Range{1, 1000});
-    visit("hand-made", hand_made, "heads formed by hand besides", Range{0, 100000});
-    visit("difference", difference, "how far archetypes lie apart: 1 = proportions vary by about 8 %", Range{0, 3});
-    visit("seed", seed, "draws everything", Range{0, 9007199254740992.0});
+    visit("hand-made", hand_made, "number of hand-made heads", Range{0, 100000});
+    visit("difference", difference, "difference between archetypes: 1 means that proportions vary by about 8 %", Range{0, 3});
+    visit("seed", seed, "random seed of all that is drawn", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -362,7 +362,7 @@ std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const
 void ArchetypeOptions::describe(OptionList& visit) {
     visit("long-hair", long_hair, "locks that fall behind the ears instead of a cap of short hair", Anything{});
     visit("hand-made", hand_made, "formed by hand: freely varied, with a hat", Anything{});
-    visit("difference", difference, "how far archetypes lie apart: 1 = proportions vary by about 8 %", Range{0, 3});
+    visit("difference", difference, "difference between archetypes: 1 means that proportions vary by about 8 %", Range{0, 3});
     visit("archetype-seed", seed, "draws the proportions", Range{0, 9007199254740992.0});
 }
 

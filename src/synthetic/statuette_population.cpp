@@ -89,17 +89,17 @@ bool ProportionedOptions::is_fixed(const std::string& size) const {
 }
 
 void ProportionedOptions::describe(OptionList& visit) {
-    visit("fixed", fixed, "sizes in fixed proportion to each other, with commas between them",
+    visit("fixed", fixed, "sizes in fixed proportion to each other, separated by commas",
           Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
         .words();
-    visit("none", none, "no fixed proportion, but that the two arms are equally long");
+    visit("none", none, "no fixed proportion except equal lengths of the two arms");
     visit("objects", objects, "number of statuettes", Range{1, 100000});
     visit("size-deviation", size_deviation, "standard deviation of the logarithm of their common size", Range{0, 0.2});
     visit("ratio-deviation", ratio_deviation, "standard deviation of the logarithm of ratios that are not fixed", Range{0, 0.2});
     visit("planted-deviation", planted_deviation, "standard deviation of the logarithm of fixed ratios", Range{0, 0.2});
     visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal", Range{0, 0.5}, "mm");
-    visit("seed", seed, "of the whole population", Range{0, 1e9});
-    visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+    visit("seed", seed, "random seed of the whole population", Range{0, 1e9});
+    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
 }
 
 std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options) {

@@ -329,12 +329,12 @@ void StatuetteParameters::describe(OptionList& visit) {
 void PopulationOptions::describe(OptionList& visit) {
     visit("objects", objects, "statuettes, half of them of each technique", Range{1, 100000});
     visit("level", level, "difficulty: 1, the techniques far apart, to 5, nearly alike", Range{1, 5});
-    visit("seed", seed, "of the whole population", Range{0, 1e9});
-    visit("vertices", vertices, "of each mesh", Range{4000, 5e6});
+    visit("seed", seed, "random seed of the whole population", Range{0, 1e9});
+    visit("vertices", vertices, "number of vertices of each mesh", Range{4000, 5e6});
     visit("scan-noise", scan_noise, "standard deviation of each vertex along its normal", Range{0, 0.5}, "mm");
-    visit("interior", interior, "of hollow bodies, where the scanner's sight ends", Choices{"mixed", "closed", "open"});
-    visit("cavity-seen", cavity_seen, "least share of a cavity's depth that the scanner saw; the most is all", Range{0.1, 1});
-    visit("holes", holes, "most patches that a scan misses", Range{0, 20});
+    visit("interior", interior, "how the scan of a hollow body ends", Choices{"mixed", "closed", "open"});
+    visit("cavity-seen", cavity_seen, "minimum share of a cavity's depth that was scanned", Range{0.1, 1});
+    visit("holes", holes, "maximum number of holes of a scan", Range{0, 20});
     visit("size-spread", size_spread, "standard deviation of the logarithm of each size (height, base, arm, head)",
           Range{0, 0.15});
 }

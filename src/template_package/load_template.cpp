@@ -287,7 +287,7 @@ Template load_template(TemplateFile file, const TemplateOptions& options) { retu
 
 void check_usable(const Template& known, const std::string& file) {
     for (const Finding& finding : known.findings)
-        if (finding.defect) fail_input(file + ", " + finding.where, finding.text, "mend it: 'template check' tells all");
+        if (finding.defect) fail_input(file + ", " + finding.where, finding.text, "'template check' lists all defects");
     if (!known.mesh) fail_input(file, "has no mesh", "pack one");
 }
 

@@ -94,8 +94,8 @@ Json template_to_json(const TemplateFile& file, const Provenance& provenance) {
 }
 
 void TemplateOptions::describe(OptionList& visit) {
-    visit("allow-outside", allow_outside, "parts may stand outside the folder of the template", Anything{});
-    visit("force-mesh", force_mesh, "take annotations made for another mesh if their indices and edges fit", Anything{});
+    visit("allow-outside", allow_outside, "allow parts outside the folder of the template", Anything{});
+    visit("force-mesh", force_mesh, "use annotations made for another mesh if their indices and edges fit", Anything{});
 }
 
 std::string part_name(const Path& folder, const Path& part) {

@@ -242,10 +242,9 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
 }
 
 void CorrespondenceOptions::describe(OptionList& visit) {
-    visit("max-distance", max_distance, "farthest a corresponding place may lie", Range{1e-9, 1}, "share of the box diagonal");
+    visit("max-distance", max_distance, "maximum distance of a corresponding place", Range{1e-9, 1}, "share of the box diagonal");
     visit("max-angle", max_angle, "largest angle between the normals of vertex and target face", Range{0, 180}, "degrees");
-    visit("vertex", vertex,
-          "which corner of the face that is hit corresponds: the one nearest to the projection or to the source vertex",
+    visit("vertex", vertex, "corner of the hit face that corresponds: the nearest to the projection or to the source vertex",
           Choices{"projection", "source"});
 }
 

@@ -433,7 +433,7 @@ void TransferOptions::describe(OptionList& visit) {
           Choices{"overlapping", "enclosing", "enclosed"});
     visit("refine", refine, "insert vertices on the target so that outlines are exact", Anything{});
     visit("overlap", overlap, "measure the overlap with the source region", Anything{});
-    visit("force", force, "go on although the meshes differ in size or position", Anything{});
+    visit("force", force, "continue although the meshes differ in size or position", Anything{});
 }
 
 }  // namespace ostraka

@@ -167,7 +167,7 @@ void refuse_dangerous_entities(const std::string& text, const std::string& where
         const int line = line_of(text, at);
         const std::size_t quote = text.find_first_of("\"'", at);
         const std::size_t end = quote == std::string::npos ? quote : text.find(text[quote], quote + 1);
-        if (end == std::string::npos) fail_at(where, line, "an entity does not end", "mend or regenerate the file");
+        if (end == std::string::npos) fail_at(where, line, "an entity does not end", "correct or regenerate the file");
         const std::string head = upper(text.substr(at, quote - at)), value = text.substr(quote + 1, end - quote - 1);
         if (head.find("SYSTEM") != std::string::npos || head.find("PUBLIC") != std::string::npos)
             fail_at(where, line, "an entity stands in another file", "put its text in place of it");
@@ -287,7 +287,7 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
         if (const raptor_locator* locator = raptor_parser_get_locator(parser.get())) log.line = locator->line;
     fail_at(where, log.line,
             std::string(xml ? "not valid RDF/XML: " : "not valid Turtle: ") + (log.text.empty() ? "unknown reason" : log.text),
-            "mend or regenerate the file");
+            "correct or regenerate the file");
 }
 
 std::string serialise_rdf(const std::vector<RdfStatement>& statements, RdfSyntax syntax,

@@ -372,7 +372,7 @@ const Term* term_of(const AllowedAttribute& attribute, const std::string& text) 
 }
 
 void CheckVocabularyOptions::describe(OptionList& visit) {
-    visit("strict", strict, "measures and descriptors that the vocabulary does not have are defects too", Anything{});
+    visit("strict", strict, "measures and descriptors that are not in the vocabulary are defects too", Anything{});
 }
 
 }  // namespace ostraka

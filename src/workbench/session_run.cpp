@@ -283,7 +283,7 @@ Path Session::save(const std::string& name, Context& context) const {
     const Report report = call.run(context);
     if (!report.holds()) {
         const auto findings = list_in(report.result(), "findings");
-        fail_input(object->name, findings.Empty() ? "is not sound" : text_in(findings[0], "text"), "mend it, then save again");
+        fail_input(object->name, findings.Empty() ? "is not sound" : text_in(findings[0], "text"), "correct it, then save again");
     }
     if (const std::string recipe = object->part("recipe"); !recipe.empty()) {
         const Path source = (folder_ / recipe).lexically_normal();

@@ -116,7 +116,7 @@ TEST(StudyTechniqueCommand, RefusesWhatMakesNoSense) {
     EXPECT_EQ(run_command(start + " --positive cast").code, 2);
     EXPECT_EQ(run_command("study technique " + (scratch / "nowhere").string() + " --output " + (scratch / "o").string()).code, 1);
     // Nothing can be used: all slices lie above the objects' lower parts.
-    EXPECT_EQ(run_command(start + " --least-slices 101").code, 1);
+    EXPECT_EQ(run_command(start + " --min-slices 101").code, 1);
 }
 
 TEST(StudyTechniqueCommand, SaysWhereAClassifierTellsNothing) {
@@ -165,7 +165,7 @@ TEST(StudySegmentsCommand, SaysWhichClustersHaveNoSegment) {
     const Path mesh = population() / "statuette-1.ply", out = scratch / "segments.ant.json";
     for (const int minimum : {1, 30}) {
         const std::string words = "study segments " + mesh.string() + " " + out.string() + " --size --clusters 6 --unit mm " +
-                                  "--least-run " + std::to_string(minimum);
+                                  "--min-run " + std::to_string(minimum);
         const auto result = run_command(words);
         ASSERT_EQ(result.code, 0) << result.err;
         const auto report = run_command(words + " --json");

@@ -310,7 +310,7 @@ TEST(AssembleCommand, WhatMakesNoSense) {
     EXPECT_EQ(itself.code, 3) << itself.err << itself.out;
     EXPECT_NE(itself.out.find("because the second is a copy of bar"), std::string::npos) << itself.out;
     EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " " + quoted(scratch / "gone.ply") + out).code, 1);
-    EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " --least-join 7" + out).code, 2);
+    EXPECT_EQ(test::run_command("assemble " + quoted(scratch / "bar.ply") + " --min-join 7" + out).code, 2);
 }
 
 }  // namespace

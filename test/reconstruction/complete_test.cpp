@@ -183,7 +183,7 @@ TEST(Complete, ManyPiecesThatLieOnTheFragmentItselfAreLeftOut) {
     PlacedFragment scan;
     scan.mesh = build_mesh(soup);
     CompleteOptions options;
-    options.minimum = 1e-4;
+    options.min_piece = 1e-4;
     const CompletedObject object = complete(ball, {scan}, options);
     EXPECT_TRUE(object.notes.empty()) << object.notes.front().text;
     expect_sound(object, true, 2);

@@ -164,7 +164,7 @@ TEST_F(ClassCommand, PropagateSaysWhereTheTemplateDoesNotLie) {
     EXPECT_GT(report["result"]["members"][0]["lost"].GetInt(), 0) << "a triangle has no room for them";
     EXPECT_NE(bad.err.find("teapot: the template does not lie on it"), std::string::npos) << bad.err;
     // The limit is the user's.
-    EXPECT_EQ(run_command("template propagate " + known() + " " OSTRAKA_SOURCE_DIR "/data/teapot.ply --most-off 1 --quiet" + to)
+    EXPECT_EQ(run_command("template propagate " + known() + " " OSTRAKA_SOURCE_DIR "/data/teapot.ply --max-off 1 --quiet" + to)
                   .err.find("does not lie"),
               std::string::npos);
 }

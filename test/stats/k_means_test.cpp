@@ -107,10 +107,10 @@ TEST(KMeans, IsTheSameForAnyNumberOfThreads) {
     const int before = threads();
     set_threads(1);
     const KMeansResult one = k_means(samples, {.clusters = 6});
-    const ClusterCount count_one = propose_cluster_count(samples, {.maximum = 4, .references = 5});
+    const ClusterCount count_one = propose_cluster_count(samples, {.max_clusters = 4, .references = 5});
     set_threads(3);
     const KMeansResult three = k_means(samples, {.clusters = 6});
-    const ClusterCount count_three = propose_cluster_count(samples, {.maximum = 4, .references = 5});
+    const ClusterCount count_three = propose_cluster_count(samples, {.max_clusters = 4, .references = 5});
     set_threads(before);
     EXPECT_EQ(one.labels, three.labels);
     EXPECT_EQ(one.centres, three.centres);
@@ -166,7 +166,7 @@ TEST(Silhouette, ByHand) {
 
 TEST(ClusterCount, FindsThePlantedNumber) {
     for (const int planted : {2, 3, 4}) {
-        const ClusterCount found = propose_cluster_count(balls(planted, 30, 15, 5), {.maximum = 7, .references = 20});
+        const ClusterCount found = propose_cluster_count(balls(planted, 30, 15, 5), {.max_clusters = 7, .references = 20});
         EXPECT_EQ(found.by_silhouette, planted);
         EXPECT_EQ(found.by_gap, planted);
         EXPECT_EQ(found.proposed, planted);
@@ -180,7 +180,7 @@ TEST(ClusterCount, GapTellsThatThereAreNoClusters) {
     Eigen::MatrixXd samples(200, 2);
     for (Eigen::Index i = 0; i < 200; ++i) samples.row(i) << random.uniform(), random.uniform();
     const ClusterCount found =
-        propose_cluster_count(samples, {.maximum = 6, .criterion = ClusterCountOptions::Criterion::gap, .references = 20});
+        propose_cluster_count(samples, {.max_clusters = 6, .criterion = ClusterCountOptions::Criterion::gap, .references = 20});
     EXPECT_EQ(found.proposed, 1);
     EXPECT_GT(found.by_silhouette, 1) << "which the silhouette cannot";
 }

@@ -2,7 +2,7 @@
 
 
 class Error(Exception):
-    """What went wrong, where, and how to mend it.
+    """What went wrong, where, and the remedy.
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ enum class ErrorKind {
     cancelled  ///< the caller wanted the work to stop (exit code 130)
 };
 
-/// What went wrong, where (file, line, element), and how to mend it.
+/// What went wrong, where (file, line, element), and the remedy.
 class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, const std::string& where, const std::string& what, const std::string& remedy = {});

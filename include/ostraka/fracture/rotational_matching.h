@@ -15,8 +15,8 @@ struct RotationMatchOptions {
     int samples = 2000;                                                  ///< points on each fracture
     int candidates = 16;                                                 ///< rotations of a pair that are refined
     int beam = 64;                                                       ///< assemblies that are followed
-    double hold = 0.5;            ///< weight of the place on the template against the breaks
-    double min_confidence = 0.5;  ///< of a joint; below it is not decided
+    double hold = 0.5;       ///< weight of the place on the template against the breaks
+    double min_joint = 0.5;  ///< of a joint; below it is not decided
 
     void describe(OptionList& visit);
 };

@@ -20,7 +20,7 @@ struct CompleteOptions {
     double blend = 0.03;      ///< width over which the template gives way to the seam, as a share of the diagonal
     double halving = 0.1;     ///< length over which confidence halves, as a share of the diagonal
     bool join = true;         ///< false: the template's own triangles everywhere
-    double minimum = 0.01;    ///< pieces below this share of the fragment's area are left out
+    double min_piece = 0.01;  ///< pieces below this share of the fragment's area are left out
 
     void describe(OptionList& visit);
 };

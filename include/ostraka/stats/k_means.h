@@ -42,7 +42,7 @@ std::vector<double> silhouettes_of_samples(const Eigen::MatrixXd& samples, const
 std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, const std::vector<int>& labels);
 
 struct ClusterCountOptions {
-    int maximum = 10;
+    int max_clusters = 10;
     enum class Criterion { silhouette, gap } criterion = Criterion::silhouette;
     int references = 50;
     KMeansOptions k_means = {};  ///< its number of clusters is not used
@@ -63,10 +63,10 @@ struct ClusterCount {
     int proposed = 1;       ///< by the criterion of the options
 };
 
-/// Tries 1 to `maximum` clusters; never more than there are distinct samples, and as many as there are only where each is there
-/// twice on average. The silhouette cannot propose 1; the gap statistic (Tibshirani, Walther and Hastie 2001, references drawn
-/// evenly from the box along the principal directions, version b) can. Costs below 1e-24 of that of one cluster count as that.
-/// Throws as k_means.
+/// Tries 1 to `max_clusters` clusters; never more than there are distinct samples, and as many as there are only where each is
+/// there twice on average. The silhouette cannot propose 1; the gap statistic (Tibshirani, Walther and Hastie 2001, references
+/// drawn evenly from the box along the principal directions, version b) can. Costs below 1e-24 of that of one cluster count as
+/// that. Throws as k_means.
 ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const ClusterCountOptions& options = {});
 
 }  // namespace ostraka

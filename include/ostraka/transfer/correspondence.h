@@ -45,7 +45,7 @@ struct Agreement {
     double scale = 1;     ///< target diagonal / source diagonal
     double offset = 0;    ///< distance of the box centres, as a share of the larger diagonal
     double rotation = 0;  ///< angle between the principal axes, in degrees; 0 where they are not distinct
-    std::string problem;  ///< empty if the meshes agree; otherwise what differs, by how much and how to mend it
+    std::string problem;  ///< empty if the meshes agree; otherwise what differs, by how much and the remedy
 };
 Agreement compare_alignment(const Mesh& source, const Mesh& target);
 
