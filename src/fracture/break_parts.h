@@ -11,9 +11,8 @@ namespace ostraka {
 struct PreparedBreak::Parts {
     Mesh mesh;
     std::string name;
-    double size = 0;  ///< square root of the surface area
-    double width =
-        0;  ///< width of the fracture: twice its area divided by the length of its rim; for a sherd, the thickness of its wall
+    double size = 0;                                   ///< square root of the surface area
+    double width = 0;                                  ///< of the fracture: see PreparedBreak::width
     std::size_t faces = 0;                             ///< number of fracture faces
     double relief = 0;                                 ///< root mean square deviation of the fracture from its quadric
     double noise = 0;                                  ///< noise of the intact surface, a length: see surface_noise

@@ -19,9 +19,8 @@ using Row6 = Eigen::Matrix<double, 6, 1>;
 
 struct Part {
     double area = 0, rough = 0, bent = 0, wall = 0, uneven = 1, bumpy = 1, side = 0, bulge = 0, spread = 0, grain = 0, ruffle = 0;
-    double length = 0, turn = 0, turn_spread = 0, sharp = 0, jagged = 0;  ///< of its boundary
-    double other_rough = 0, other_bent = 0, other_side = 0,
-           main_neighbour = 0;  ///< of the neighbours across the boundary, weighted by length
+    double length = 0, turn = 0, turn_spread = 0, sharp = 0, jagged = 0;         ///< of its boundary
+    double other_rough = 0, other_bent = 0, other_side = 0, main_neighbour = 0;  ///< of its neighbours, by length
     Vector3d normal = Vector3d::Zero(), middle = Vector3d::Zero();
 
     [[nodiscard]] double width(double size) const { return length > 0 ? area / (length * size) : 1; }

@@ -14,12 +14,11 @@
 namespace ostraka {
 
 struct PairOptions {
-    int frames = 160;    ///< number of frames along the rim of each fracture
-    int samples = 2000;  ///< number of points on each fracture, and on the intact surface of each fragment
-    int starts = 200;    ///< number of best poses that get a quick refinement
-    int refined = 32;    ///< number of poses that are refined to the end
-    double search_radius =
-        0.05;  ///< initial max distance between facing fracture points, as a share of the smaller fragment's size
+    int frames = 160;                   ///< number of frames along the rim of each fracture
+    int samples = 2000;                 ///< number of points on each fracture, and on the intact surface of each fragment
+    int starts = 200;                   ///< number of best poses that get a quick refinement
+    int refined = 32;                   ///< number of poses that are refined to the end
+    double search_radius = 0.05;        ///< initial max distance of facing fracture points, share of the smaller size
     double last_search_radius = 0.025;  ///< final search radius, as a share of join_scale
     double edges = 1;                   ///< weight of the rims relative to the fracture surfaces
     double min_confidence = 0.5;        ///< min confidence of an answer; below it the pair is undecided

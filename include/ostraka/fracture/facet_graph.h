@@ -37,8 +37,7 @@ FacetGraph facet_graph(const Mesh& mesh, std::size_t most = 24000);
 
 /// Results of rays cast from each patch into the solid.
 struct Walls {
-    std::vector<double>
-        depth;  ///< median distance to where the rays leave the solid; infinite if fewer than half of them leave it
+    std::vector<double> depth;     ///< median distance to the exit; infinite if fewer than half of the rays exit
     std::vector<double> opposite;  ///< mean of -cos of the angle between the normals at both ends, -1 to 1
     std::vector<Index> behind;     ///< the patch hit by the middle ray; no_index: none
     double typical = 0;            ///< median depth over the area that lies over a wall (with an opposite side); 0: there is none

@@ -13,9 +13,8 @@ namespace ostraka {
 struct ReassemblyOptions {
     PairOptions pairs;
     double min_join = 0.8;  ///< min probability of a join between two groups
-    int partners =
-        24;  ///< per fragment, number of best quick fits that are tried in full, among the fragments of most similar width
-    int min_faces = 100;  ///< a fragment with fewer fracture faces shows no relief
+    int partners = 24;      ///< per fragment, number of best quick fits tried in full
+    int min_faces = 100;    ///< a fragment with fewer faces shows no relief
 
     void describe(OptionList& visit);
 };
@@ -53,8 +52,7 @@ struct Reassembly {
     std::vector<FragmentJoin> joins;  ///< by group, most certain first
     std::vector<UndoneJoin> undone;
     std::size_t pairs_tried = 0;
-    std::size_t pairs_left =
-        0;  ///< with many fragments: number of pairs that were skipped because their fractures are dissimilar
+    std::size_t pairs_left = 0;  ///< with many fragments: number of pairs skipped for dissimilar fractures
     [[nodiscard]] int groups() const;
 };
 
