@@ -23,10 +23,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// The levels of a fit over one mesh of the template.
+/// The levels of a fit on one mesh of the template.
 class Fitter {
 public:
-    /// Lengths are in the template's unit. All outlive it.
+    /// Lengths are in the template's unit. All arguments must outlive it.
     Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labels labels,
            std::vector<CorrespondenceConstraint> correspondences, double diagonal, const NonRigidOptions& options)
         : system_(system),
@@ -43,7 +43,7 @@ public:
             correspondences_[correspondence.vertex].push_back(correspondence);
     }
 
-    /// Solves for the points of a cage instead; `weights` outlive it, a row for each vertex.
+    /// Solves for the vertices of a cage instead; `weights` must outlive it, one row per vertex.
     void go_through(const CageWeights& weights, const Points& cage) {
         weights_ = &weights;
         cage_rest_ = cage_ = cage;
@@ -109,10 +109,9 @@ public:
         return matches_;
     }
 
-    /// Point-to-plane steps over the points of the cage (Chen and Medioni 1992), each as short as it can be where vertices are
-    /// matched: so the surface is met as nearly as the cage can, which levels with a smoothing do not. Vertices that are not
-    /// matched are held where the levels left them.
-    /// At most 4000 vertices are looked at, evenly over their list.
+    /// Point-to-plane steps in the unknowns of the cage (Chen and Medioni 1992), each of minimal length where vertices are
+    /// matched: this approximates the surface as closely as the cage allows, unlike levels with smoothing. Unmatched vertices
+    /// are held at their positions after the levels. Uses at most 4000 vertices, at equal steps.
     void polish(double search_radius, double smoothing, NonRigidFit& fit) {
         constexpr int max_steps = 12;
         constexpr double settled = 1e-10;  // share of the diagonal
@@ -126,7 +125,7 @@ public:
         }
     }
 
-    /// How the surroundings of each vertex have rotated.
+    /// Rotation of each vertex's neighbourhood.
     [[nodiscard]] std::vector<Matrix3d> rotations() const {
         const auto n = static_cast<std::size_t>(rest_.cols());
         std::vector<Matrix3d> covariances(n), rotations(n);
@@ -152,7 +151,7 @@ public:
     }
 
 private:
-    /// False where the system has no solution.
+    /// False if the system has no solution.
     bool step_to_planes(const Points& left, double smoothing) {
         constexpr Eigen::Index rows_at_once = 512;
         const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, now_.cols() / 4000),
@@ -178,10 +177,10 @@ private:
         return true;
     }
 
-    /// What a vertex adds to a point-to-plane step: to the plane of its match, and to the place where it is held.
+    /// Contribution of a vertex to a point-to-plane step: to the plane of its match, and to the position where it is held.
     void add_plane(Eigen::Index v, const Points& left, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
                    Eigen::Ref<Eigen::VectorXd> place_row, Eigen::VectorXd& right) const {
-        constexpr double hold = 0.1, shorten = 1e-6;  // weights against matches
+        constexpr double hold = 0.1, shorten = 1e-6;  // weights relative to matches
         const Eigen::Index count = cage_.cols();
         const auto i = static_cast<std::size_t>(v);
         const Vector3d x = now_.col(v);
@@ -220,8 +219,8 @@ private:
         return first * std::pow(last / first, options.levels > 1 ? static_cast<double>(level) / (options.levels - 1) : 1);
     }
 
-    /// Where few matches came or went since the weights were last set, they stay, and with them the factorisation: who lost its
-    /// match is held where it is, who found one waits.
+    /// If few matches changed since the weights were set, the weights and the factorisation are kept: vertices that lost their
+    /// match are held, vertices that gained one wait.
     [[nodiscard]] bool matched_as_before() const {
         std::size_t changed = 0;
         for (std::size_t i = 0; i < matches_.size(); ++i) changed += (matches_[i].fragment >= 0) != weighted_[i] ? 1 : 0;
@@ -230,15 +229,15 @@ private:
 
     [[nodiscard]] bool slides() const { return options_.counterparts == NonRigidOptions::Counterparts::sliding; }
 
-    /// Where the match of a vertex draws it: to the place itself, or to the nearest one to which it may slide from there.
+    /// Target of a matched vertex: the match itself, or the nearest position to which it may slide from there.
     [[nodiscard]] Vector3d goal_of(std::size_t i) const {
-        constexpr double free = 0.95;  // the rest of the way draws it back: what nothing else holds does not drift
+        constexpr double free = 0.95;  // the remainder pulls it back, so that unconstrained vertices do not drift
         const VertexMatch& match = matches_[i];
         if (!slides()) return match.place;
         return match.place + free * (slides_[i].free * (now_.col(static_cast<Eigen::Index>(i)) - match.place));
     }
 
-    /// In units of mean areas: of its area, and where it is held by a curve of a part of a strip beside it, as outlines are.
+    /// In units of the mean area: the vertex's area and, if a curve holds it, part of a strip along the curve, as for outlines.
     [[nodiscard]] double weight_of_match(std::size_t i, double smoothing) const {
         constexpr double curve = 0.5;
         double area = rings_.area[i];
@@ -246,8 +245,8 @@ private:
         return area / system_.mean_area;
     }
 
-    /// Vertices that slide take some solutions to come to rest: each solution draws them to the tangent planes from where they
-    /// are (a majorisation of the distance from the plane). In the space of a cage one is as dear as a match, and point-to-plane
+    /// Sliding vertices take several solves to converge: each attracts them to the tangent planes from their current positions
+    /// (a majorisation of the distance from the plane). In cage space a solve costs as much as a matching, and point-to-plane
     /// steps follow at the end.
     void solve(double smoothing, double transition, bool new_level) {
         constexpr int slides_at_once = 5;
@@ -257,12 +256,12 @@ private:
     }
 
     void solve_once(double smoothing, double transition, bool new_level) {
-        // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
+        // In units of the mean area, and of the smoothing length, so that weights are near one.
         const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
         rotate_displacements();
         const bool renew = new_level || !matched_as_before();
         if (renew && weights_ != nullptr) {
-            // So much changes that its small matrix is best made anew.
+            // With so many changes it is fastest to build the small matrix again.
             through_cage_ = std::make_unique<CageSpaceSolver>(system_.constraints(), *weights_, cage_rest_);
             solver_ = through_cage_.get();
         }
@@ -300,7 +299,7 @@ private:
             throw Error(ErrorKind::failure, "fit", "no usable solution: " + summary.text(), "look at the template's faces");
     }
 
-    /// What a patch of the smoothing's size would weigh: of a landmark the whole, of an outline the share of its length.
+    /// Weight of a patch of the size of the smoothing length: a landmark counts in full, an outline by its share of the length.
     [[nodiscard]] double weight_of(const CorrespondenceConstraint& correspondence, double smoothing) const {
         const double width = correspondence.length > 0 ? correspondence.length * smoothing : smoothing * smoothing;
         return options_.correspondences * width / system_.mean_area;
@@ -311,8 +310,7 @@ private:
             sum += weight_of(correspondence, smoothing);
         return sum;
     }
-    /// Where a vertex's match and its correspondences draw it together: sums of squares about several places are one about their
-    /// mean.
+    /// Common target of a vertex's match and correspondences: a sum of squares about several points is one about their mean.
     [[nodiscard]] Vector3d drawn_together(std::size_t vertex, double smoothing, const Vector3d& match) const {
         double weight = match_weight_[vertex];
         Vector3d sum = weight * match;
@@ -324,7 +322,7 @@ private:
         return weight > 0 ? Vector3d(sum / weight) : match;
     }
 
-    /// Rest displacements rotated, and where vertices slide scaled, with the surroundings of each vertex.
+    /// Rest displacements rotated and, for sliding vertices, scaled with the neighbourhood of each vertex.
     void rotate_displacements() {
         const std::vector<Matrix3d> rotation = rotations();
         const std::vector<double> scale = slides() ? local_scales(rings_, rest_, now_) : std::vector<double>(rotation.size(), 1);
@@ -342,7 +340,7 @@ private:
     const Mesh& mesh_;
     const MatchSearch& search_;
     MatchSearch::Labels labels_;
-    std::vector<std::vector<CorrespondenceConstraint>> correspondences_;  ///< of each vertex
+    std::vector<std::vector<CorrespondenceConstraint>> correspondences_;  ///< per vertex
     double diagonal_;
     const NonRigidOptions& options_;
     const Points& rest_;
@@ -353,12 +351,12 @@ private:
     Points cage_rest_, cage_;
     std::unique_ptr<CageSpaceSolver> through_cage_;
     std::vector<VertexMatch> matches_;
-    std::vector<Slide> slides_;         ///< of each match
-    std::vector<bool> weighted_;        ///< vertices whose match weighs in the factorisation
-    std::vector<double> match_weight_;  ///< and how much
+    std::vector<Slide> slides_;         ///< per match
+    std::vector<bool> weighted_;        ///< vertices whose match has a weight in the factorisation
+    std::vector<double> match_weight_;  ///< and its value
 };
 
-/// The template with fewer vertices, for what is smooth anyway.
+/// The simplified template, for smooth levels.
 struct Coarse {
     Mesh mesh;
     std::vector<Index> vertex_map, face_origin;
@@ -377,14 +375,14 @@ Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
     return coarse;
 }
 
-/// Where vertices slide along the curves between parts, outlines need no positions along them.
+/// Vertices that slide along the curves between parts need no positions along outlines.
 MatchSearch::Guides guides_of(const NonRigidOptions& options) {
     if (!options.outlines) return MatchSearch::Guides::landmarks;
     return options.counterparts == NonRigidOptions::Counterparts::sliding ? MatchSearch::Guides::lines
                                                                           : MatchSearch::Guides::outlines;
 }
 
-constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
+constexpr std::size_t few = 4000;  // number of vertices that resolves the shapes of the first levels
 
 }  // namespace
 
@@ -392,7 +390,7 @@ struct TemplateFitter::State {
     State(const Mesh& of, const AnnotationSet& with, const TemplateCage* around)
         : mesh(of), set(with), cage(around), diagonal(box_diagonal(of)), fine(of) {}
 
-    /// Simplifies the template where that is worth while.
+    /// Simplifies the template if it is large enough.
     void prepare() {
         if (coarse || mesh.number_of_vertices() <= 2 * few) return;
         coarse = std::make_unique<Coarse>(coarsened(mesh, few));
@@ -404,7 +402,7 @@ struct TemplateFitter::State {
                      [&](std::size_t i) { nearest[i] = search.closest(mesh.point(Vertex(static_cast<Index>(i)))); });
     }
 
-    /// Coordinates of the vertices that levels in cage space are solved with.
+    /// Coordinates of the vertices used in cage space levels.
     [[nodiscard]] const CageWeights& weights() {
         if (!coarse) return cage->coordinates.vertex;
         if (coarse_weights.size() == 0)
@@ -412,7 +410,7 @@ struct TemplateFitter::State {
         return coarse_weights;
     }
 
-    /// The fine mesh moved with the surroundings of the nearest place of the coarse one.
+    /// Moves the fine mesh with the neighbourhood of the nearest point of the coarse mesh.
     [[nodiscard]] Points follow(const Fitter& fitter) const {
         const std::vector<Matrix3d> rotations = fitter.rotations();
         Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
@@ -429,7 +427,7 @@ struct TemplateFitter::State {
         return points;
     }
 
-    /// Over the coarse mesh, or the template where there is none.
+    /// On the coarse mesh, or on the template if there is none.
     [[nodiscard]] Fitter smooth_fitter(const MatchSearch& search, const NonRigidOptions& options) {
         std::vector<CorrespondenceConstraint> correspondences = search.correspondences();
         if (!coarse) return {fine, search, search.labels(mesh, {}), std::move(correspondences), diagonal, options};
@@ -448,7 +446,7 @@ struct TemplateFitter::State {
             diagonal, options};
     }
 
-    /// Levels through the cage; gives the first one that is left for the template's vertices.
+    /// Solves levels in cage space; returns the first level left for the template's vertices.
     int fit_cage(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
         if (cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
         const Points at_rest = columns_of(cage->cage);
@@ -464,9 +462,9 @@ struct TemplateFitter::State {
         return level;
     }
 
-    /// Levels that are smooth on the coarse mesh; gives the first one that is not.
+    /// Solves the levels that are smooth on the coarse mesh; returns the first one that is not.
     int fit_coarse(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
-        constexpr double edges = 0.8;  // least smoothing length, in edges of the coarse mesh
+        constexpr double edges = 0.8;  // min smoothing length, in edges of the coarse mesh
         int level = 0;
         while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
         Fitter over = smooth_fitter(search, options);
@@ -484,8 +482,8 @@ struct TemplateFitter::State {
     CageWeights coarse_weights;
     std::unique_ptr<Coarse> coarse;
     std::unique_ptr<LevelSystem> smooth;  ///< of the coarse mesh
-    double edge = 0;                      ///< mean length of its edges
-    std::vector<SurfaceHit> nearest;      ///< of each vertex on it
+    double edge = 0;                      ///< its mean edge length
+    std::vector<SurfaceHit> nearest;      ///< per vertex, nearest point on it
 };
 
 TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage) {
@@ -524,7 +522,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     else if (s.coarse) level = s.fit_coarse(search, options, fine, fit);
     fine.run(level, options.levels, fit);
     fit.matches = fine.match(options.last_search_radius * s.diagonal, fit);
-    // So far all was in the template's unit.
+    // Converts from the template's unit.
     for (VertexMatch& match : fit.matches) {
         match.place *= scale;
         match.distance *= scale;

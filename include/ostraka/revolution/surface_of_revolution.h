@@ -11,13 +11,12 @@
 namespace ostraka {
 
 struct RevolutionOptions {
-    int rows = 400;           ///< number of heights at which the walls are sampled
-    int columns = 360;        ///< number of directions around the axis
-    double presence = 3;      ///< min degrees of wall at a height; below it the height is ignored
-    double smoothing = 1.5;   ///< standard deviation of the Gaussian that smooths the profile, in rows
-    double layout_angle = 2;  ///< standard deviation of a sherd's tilt in the input layout, degrees
-    double layout_shift =
-        0.02;  ///< standard deviation of a sherd's offset in the input layout, as a share of the vessel's diagonal
+    int rows = 400;                  ///< number of heights at which the walls are sampled
+    int columns = 360;               ///< number of directions around the axis
+    double presence = 3;             ///< min degrees of wall at a height; below it the height is ignored
+    double smoothing = 1.5;          ///< standard deviation of the Gaussian that smooths the profile, in rows
+    double layout_angle = 2;         ///< standard deviation of a sherd's tilt in the input layout, degrees
+    double layout_shift = 0.02;      ///< standard deviation of a sherd's offset in the layout, share of the vessel's diagonal
     std::uint64_t vertices = 25000;  ///< approximate number of vertices of the template
     AxisOptions axis;
 
@@ -50,15 +49,14 @@ struct SherdOnProfile {
 };
 
 struct RevolutionTemplate {
-    Axis axis;                   ///< common axis of all sherds; its direction points up
-    double direction_error = 0;  ///< standard error of the axis, degrees
-    double place_error = 0;      ///< standard error of the axis's position, at the centroid of the sherds
-    std::vector<Eigen::Vector2d>
-        profile;                  ///< radius and height above the lowest point, from the foot up the outside and down the inside
-    bool base = false;            ///< the sherds reach the axis at the bottom
-    bool rim = false;             ///< the top ends at the same height in all directions where it is preserved
-    std::vector<double> present;  ///< degrees of wall at equal steps of the height
-    Mesh mesh;                    ///< closed, oriented outwards, in the frame of the sherds
+    Axis axis;                             ///< common axis of all sherds; its direction points up
+    double direction_error = 0;            ///< standard error of the axis, degrees
+    double place_error = 0;                ///< standard error of the axis's position, at the centroid of the sherds
+    std::vector<Eigen::Vector2d> profile;  ///< radius, height above the lowest point; from the foot, outside then inside
+    bool base = false;                     ///< the sherds reach the axis at the bottom
+    bool rim = false;                      ///< the top ends at the same height in all directions where it is preserved
+    std::vector<double> present;           ///< degrees of wall at equal steps of the height
+    Mesh mesh;                             ///< closed, oriented outwards, in the frame of the sherds
     AnnotationSet annotations;
     std::vector<SherdOnProfile> sherds;
     std::vector<std::string> notes;
