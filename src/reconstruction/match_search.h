@@ -103,8 +103,7 @@ private:
 
     const Mesh& template_;
     const std::vector<PlacedFragment>& fragments_;
-    std::vector<std::vector<Index>>
-        shared_;  ///< per fragment: the template's vertex for each of its vertices, if all its faces are the template's
+    std::vector<std::vector<Index>> shared_;  ///< per fragment and vertex, the template's vertex, if the faces are shared
     JointCurves joints_;
     std::vector<Counterpart> counterparts_;
     std::vector<std::pair<Index, Index>> landmarks_;  ///< vertices of the template and of the fragment, as correspondences_

@@ -27,8 +27,8 @@ struct FragmentFile {
 };
 
 /// Reads a mesh and the annotations beside it (NAME.ant.json) if they exist, or points without faces (annotations beside them
-/// are not read; a note reports this); facets by the options. On a closed mesh, faces classified as fracture count as such only
-/// if their confidence is better than even. Throws Error (input).
+/// are not read; a note reports this); facets by the options. Fracture segments found from the shape count only if their
+/// confidence is above 0.5. Throws Error (input).
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
 
 /// The facets as up to three regions "outer", "inner" and "fracture", with area and confidence.

@@ -58,8 +58,8 @@ struct Reconstruction {
     std::vector<std::optional<PoseSearchResult>> searched;  ///< per fragment, if its pose was searched
     std::vector<PartAlignment> alignment;                   ///< per placed fragment, if poses were refined
     std::optional<RotationMatch> rotations;                 ///< if rotations about the template's axis were open
-    std::vector<std::vector<AnnotationMatch>> annotations;  ///< of each fragment
-    std::vector<std::vector<std::string>> notes;            ///< of each fragment
+    std::vector<std::vector<AnnotationMatch>> annotations;  ///< per fragment
+    std::vector<std::vector<std::string>> notes;            ///< per fragment
     std::optional<PriorFit> prior;                          ///< if a class was given
     NonRigidFit fit;
     std::vector<Point> points;     ///< final positions of the template's vertices, in the unit of the fragments
@@ -70,8 +70,7 @@ struct Reconstruction {
     std::size_t crossings = 0;  ///< intersecting pairs of faces of the object, without those within the template or a fragment
     std::vector<ConstraintReport> constraints;
     std::vector<ConstraintConflict> conflicts;
-    double strain =
-        0;  ///< largest of all tested deviations, as a multiple of its tolerance: above 1 there is evidence against the object
+    double strain = 0;  ///< largest tested deviation, as a multiple of its tolerance: above 1 is evidence against the object
     Compatibility verdict = Compatibility::undecided;
     std::vector<Objection> objections;
     std::string undecided;                  ///< reason for "undecided"
@@ -130,8 +129,8 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
                            const std::vector<std::vector<StatedMatch>>& stated = {}, const ShapePrior* prior = nullptr,
                            const TemplateCage* cage = nullptr);
 
-/// The template's annotations transferred from the fitted template to the completed object, as far as it represents them;
-/// measures keep their earlier values (`refresh_measures`).
+/// The template's annotations transferred from the fitted template to the completed object; measures keep their earlier values
+/// (`refresh_measures`).
 AnnotationSet carry_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result);
 
 }  // namespace ostraka

@@ -35,8 +35,7 @@ struct PriorFit {
     Mesh mesh;                         ///< the template in the estimated shape, in the frame of the scaled template
     std::vector<double> coefficients;  ///< in standard deviations
     double residual = 0;               ///< root mean square distance of matched vertices from the fragments' planes
-    double samples =
-        0;  ///< number of independent samples that the matched surface counts as, from the correlation of its residuals
+    double samples = 0;                ///< effective number of independent samples of the matched surface, from its residuals
     std::size_t matched = 0;
     int iterations = 0;
 };
