@@ -32,7 +32,6 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options = {});
 /// where convex) has mean curvature l b / 2, half of it for either face; the angle deficit of a vertex is distributed over its
 /// faces by their angles (Cohen-Steiner and Morvan 2003). Border edges and vertices have none: curvature there belongs to the
 /// border.
-/// of the border.
 struct CurvatureIntegrals {
     std::vector<double> mean;      ///< per face, in units of length
     std::vector<double> gaussian;  ///< per face, in radians

@@ -68,7 +68,6 @@ struct RevolutionTemplate {
 /// `layout_shift`) maximise the likelihood; sherds that contradict most others lose their weight (Geman and McClure). If the
 /// facets are not known, fractures are assumed to be a small share of the area, which the robust fit tolerates. Each sherd is
 /// moved by its most likely tilt and offset; one without an axis is not moved.
-/// known. Each sherd is moved by what is then most likely of its own tilt and shift: one without an axis stays where it lies.
 ///
 /// At each height, rays are cast from the axis in all directions: the wall is where most of the rays that hit any wall at that
 /// height are inside a sherd, which discards what fractures cut away. Its outline, a level line of sub-row precision, is the
