@@ -1,4 +1,4 @@
-// Memory whose addresses ascend in the order of the requests.
+// Allocator whose addresses ascend in the order of the requests.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,9 @@
 
 namespace ostraka::detail {
 
-/// Memory for the small objects that AscendingAllocator makes on this thread while it stands. What is given back is used again,
-/// last first, so that the order of addresses depends on the requests alone. Beyond `bytes` memory comes from elsewhere.
+/// Memory for the small objects that AscendingAllocator creates on this thread during the lifetime of this object. Freed memory
+/// is reused, last first, so that the order of addresses depends on the requests alone. Beyond `bytes`, memory comes from the
+/// heap.
 class AscendingMemory {
 public:
     explicit AscendingMemory(std::size_t bytes)
@@ -43,7 +44,7 @@ public:
         next_ += bytes;
         return p;
     }
-    /// False if it is not from here.
+    /// False if the memory is not from here.
     bool give_back(void* p, std::size_t bytes) {
         auto* at = static_cast<std::byte*>(p);
         if (std::less<>()(at, begin_) || !std::less<>()(at, end_)) return false;

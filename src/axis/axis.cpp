@@ -1,4 +1,4 @@
-// Moments, principal axes, circles, and the choice of a method.
+// Moments, principal axes, circles, and the selection of the method.
 #include "ostraka/axis/axis.h"
 
 #include "axis_methods.h"
@@ -139,7 +139,7 @@ Axis circle_axis(const std::vector<Point>& points) {
                     {"circle preserved", 100 * fit.angle / (2 * pi), "%"},
                     {"rms distance", rms, "length"},
                     {"diameter at least", 2 * fit.radius_low, "length"}};
-    // Where a straight line fits too there is no upper end.
+    // No upper bound if a straight line fits too.
     if (std::isfinite(fit.radius_high)) axis.figures.push_back({"diameter at most", 2 * fit.radius_high, "length"});
     return axis;
 }

@@ -21,8 +21,8 @@ struct AxisWitness::State {
 
 namespace {
 
-/// How many independent places lie behind `count` samples: means over patches of the wall (a bin of heights, as wide as high)
-/// vary as single places over their number would, or more.
+/// Effective number of independent samples among `count`: the variance of the means over patches of the wall (a bin of heights,
+/// as wide as high) is at least that of single samples divided by their number.
 double independent(const std::vector<RoundSample>& samples, const AxisGuess& guess, const AxisLine& line,
                    const TurnedProfile& profile, const std::vector<double>& error, double count) {
     double lowest = 1e300, highest = -1e300;
@@ -82,7 +82,7 @@ AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
     const AxisLine line{(evidence.place - state_->centroid) / scale, along};
     const TurnedProfile profile(samples, line);
     const AxisRefinement system(samples, line, profile, guess.u, guess.w);
-    // Heights of a floor count by their normals alone.
+    // Samples of a floor count by their normals alone.
     constexpr double meets = 0.2;
     double all = 0, round = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -98,11 +98,11 @@ AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
     std::vector<double> error = profile.error;
     double squares = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        // A step that is far is not to be believed.
+        // A large step is unreliable.
         if (step.allFinite() && step.norm() < 0.2) error[i] += system.rows[i].dot(step);
         squares += samples[i].weight * profile.robust[i] * (profile.bin_of[i] >= 0 ? error[i] * error[i] : 0);
     }
-    // Faces are chords: no mesh is rounder than that.
+    // Faces are chords: no mesh is rounder than this.
     constexpr double least = 2e-4;
     const double variance = squares / system.weight + least * least;
     evidence.residual = std::sqrt(variance) * scale;

@@ -1,4 +1,4 @@
-// What the methods share.
+// Common functions of the methods.
 #pragma once
 
 #include "ostraka/axis/axis.h"
@@ -28,13 +28,13 @@ inline std::pair<Vector3d, Vector3d> across(const Vector3d& a) {
 /// Per cent of the full turn that the angles cover (`angle_covered`).
 inline double covered_percent(std::vector<double> angles) { return 100 * angle_covered(std::move(angles)) / (2 * pi); }
 
-/// Of a part to find an axis of. Throws Error (usage) for options out of range, Error (input) where no face has an area.
+/// Moments of a part. Throws Error (usage) for options out of range, Error (input) if no face has an area.
 AreaMoments part_moments(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options);
 double part_diagonal(const Mesh& mesh, const std::vector<Index>& faces);
-/// The least and the greatest height of the faces along a direction, over a place whose own 0 counts too.
+/// Min and max height of the faces along a direction, relative to a point whose height 0 is included.
 std::pair<double, double> extent_along(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& place,
                                        const Vector3d& direction);
-/// The straight axis of a result, its point moved next to `centre`.
+/// Sets the straight axis of a result, with its point nearest to `centre`.
 void set_line(Axis& axis, const Vector3d& point, const Vector3d& direction, const Vector3d& centre);
 
 }  // namespace ostraka::detail

@@ -17,7 +17,7 @@ Axis axis_by(AxisMethod method, const Mesh& mesh, std::vector<Index> faces, Axis
     return find_axis(mesh, faces, options);
 }
 
-/// An error says that it is the axis to slice along that is missing.
+/// The axis to slice along; reports in errors that it is this axis that is missing.
 Axis axis_to_cut_along(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options) {
     try {
         return axis_by(*options.direction, mesh, faces, options.axis);

@@ -33,7 +33,7 @@ double score(const std::vector<Sample>& samples, std::size_t step, const Line& a
     return sum;
 }
 
-/// Iteratively reweighted least squares with Cauchy's weights.
+/// Iteratively reweighted least squares with Cauchy weights.
 Line reweighted(const std::vector<Sample>& samples, Line axis, int rounds) {
     for (int round = 0; round < rounds; ++round) {
         check_cancelled();
@@ -79,7 +79,7 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     return reweighted(samples, best, 15);
 }
 
-/// Area-weighted mean squared distance from the profile, none more than `limit`, which is that of what has no bin.
+/// Area-weighted mean squared distance from the profile, clamped to `limit`; samples without a bin count with `limit`.
 double off_profile(const std::vector<Sample>& samples, const Profile& profile, double limit) {
     double sum = 0;
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -104,7 +104,7 @@ Line refined(const std::vector<Sample>& samples, Line axis, int rounds) {
     return axis;
 }
 
-/// The axis of a direction that the normals meet best.
+/// The axis in a given direction that the normals meet best.
 Line along(const std::vector<Sample>& samples, const Vector3d& direction) {
     const auto [u, w] = across(direction);
     Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
@@ -119,9 +119,9 @@ Line along(const std::vector<Sample>& samples, const Vector3d& direction) {
     return {x[0] * u + x[1] * w, direction};
 }
 
-/// The best of the axes that steps from several guesses lead to: that of the normals, and those of their principal directions
-/// (the least is that of a short arc of a cylinder). `rival`: another one, more than 15 degrees off, has less than 1.5 times its
-/// mean squared distance from the profile.
+/// The best of the axes refined from several initialisations: the axis of the normals, and those of their principal directions
+/// (the one of smallest variance suits a short arc of a cylinder). `rival`: another axis, at an angle of more than 15 degrees,
+/// has less than 1.5 times its mean squared distance from the profile.
 struct BestAxis {
     Line line;
     bool rival = false;
@@ -151,7 +151,7 @@ BestAxis best_axis(const std::vector<Sample>& samples, const Line& guess) {
     return best;
 }
 
-/// Median distance (as a standard deviation) of what lies on the profile from the sphere that fits it best: |p|^2 = 2 c . p + d.
+/// Median distance (as a standard deviation) of the samples on the profile from their best-fitting sphere: |p|^2 = 2 c . p + d.
 double sphere_error(const std::vector<Sample>& samples, const Profile& profile) {
     Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
     Eigen::Vector4d b = Eigen::Vector4d::Zero();
@@ -184,7 +184,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         axis.reason = "it has too few faces to tell";
         return axis;
     }
-    // A flat part has every line across it as an axis.
+    // Every line across a flat part is an axis.
     if (moments.variances[2] < 1e-4 * moments.variances[1]) {
         axis.reason = "it is flat: every line across it would do";
         return axis;
@@ -214,7 +214,7 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     }
     const double information = system.tilt_information();
     const double error = profile.sigma / std::sqrt(std::max(1e-300, information * std::max(1.0, system.count)));
-    // The less of the turn is there, the more the radius goes with the shift of the axis towards it.
+    // The shorter the arc, the more the radius is correlated with a translation of the axis towards it.
     Vector3d towards = Vector3d::Zero();
     for (const double angle : angles) towards += Vector3d(std::cos(angle), std::sin(angle), 0) / double(angles.size());
     const double diameter_error =

@@ -1,12 +1,12 @@
-// Mean curvature skeleton of a part, capped where it is open.
+// Mean curvature skeleton of a part with filled holes.
 #include "axis_methods.h"
 
 #include "ostraka/core/error.h"
 #include "ostraka/core/run_apart.h"
 #include "ostraka/geom/submesh.h"
 
-// The library orders the edges of its working mesh by their addresses, so that its allocator decides the result. This one hands
-// out ascending addresses, whatever ran before.
+// The library orders the edges of its working mesh by their addresses, so that the result depends on its allocator. This one
+// returns ascending addresses, independent of earlier allocations.
 #include "ascending_allocator.h"
 #pragma push_macro("CGAL_ALLOCATOR")
 #undef CGAL_ALLOCATOR
@@ -26,7 +26,7 @@ using namespace detail;
 
 namespace {
 
-/// The part of `faces` that is connected over edges and has most faces.
+/// The component of `faces`, connected over edges, with the most faces.
 std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<Index>& faces) {
     std::vector<bool> left(mesh.number_of_faces(), false);
     for (const Index f : faces) left[f] = true;
@@ -48,7 +48,7 @@ std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<Index>& fac
     return best;
 }
 
-/// The piece as a mesh of its own, moved to `centre` and scaled to diagonal 1, its holes filled.
+/// The component as a separate mesh, moved to `centre` and scaled to diagonal 1, with its holes filled.
 Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& centre, double scale) {
     std::map<Index, Index> number;
     TriangleSoup soup;
@@ -74,7 +74,7 @@ Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& c
     return part;
 }
 
-/// Eigen's products on one thread, this one, while it stands.
+/// Runs Eigen's products on the current thread only, during the lifetime of this object.
 class OneThread {
 public:
     OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
@@ -92,7 +92,7 @@ struct Graph {
     double length = 0;
 };
 
-/// Lengths from `start` and the links used.
+/// Distances from `start` and the predecessors on the shortest paths.
 std::pair<std::vector<double>, std::vector<std::size_t>> ways(const Graph& graph, std::size_t start) {
     std::vector<double> distance(graph.points.size(), std::numeric_limits<double>::infinity());
     std::vector<std::size_t> before(graph.points.size(), start);
@@ -122,7 +122,7 @@ std::vector<std::size_t> main_way(const Graph& graph) {
         if (graph.links[v].size() == 1) leaf = v;
     std::vector<std::size_t> way;
     if (leaf == graph.points.size()) {
-        // No end: a loop is followed around where it does not branch.
+        // No leaf: follows a loop, as long as it does not branch.
         std::size_t last = 0, v = 0;
         do {
             way.push_back(v);
@@ -145,7 +145,7 @@ std::vector<std::size_t> main_way(const Graph& graph) {
 
 /// The skeleton of a closed mesh.
 Graph skeleton_of(const Mesh& part) {
-    // The same sums in the same order, however many threads there are and whatever ran before.
+    // For the same order of summation, whatever the number of threads and the earlier calls.
     const OneThread one_thread;
     CGAL::get_default_random() = CGAL::Random(0);
     const AscendingMemory memory(part.number_of_faces() * 2048 + (std::size_t{1} << 20U));
@@ -178,7 +178,7 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         fail_input("part", "has " + std::to_string(piece.size()) + " faces, too many for a skeleton", "simplify the mesh first");
     const Vector3d centre = eigen(moments.centroid);
     const double scale = part_diagonal(mesh, piece);
-    // The library's flow asks no watch.
+    // The library's flow does not check for cancellation.
     using Job = std::pair<Mesh, Graph>;
     const Graph graph =
         run_apart_on(Job(capped(mesh, piece, centre, scale), {}), [](Job& job) { job.second = skeleton_of(job.first); }).second;

@@ -15,8 +15,7 @@ struct PatchSlice {
     double radius = 0;
 };
 
-/// The cut of the part by a plane, of which only what lies within `max_distance` of `point` counts. A vertex on the plane counts
-/// as above.
+/// The intersection of the part with a plane, within `max_distance` of `point`. A vertex on the plane counts as above it.
 PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& point, const Vector3d& normal,
                double max_distance) {
     std::vector<Vector3d> middles;
@@ -63,7 +62,7 @@ PatchSlice cut(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d
         PlaneSegments flat;
         for (const auto& [a, b] : pieces)
             flat.emplace_back(Eigen::Vector2d(u.dot(a), w.dot(a)), Eigen::Vector2d(u.dot(b), w.dot(b)));
-        // An arc that does not tell its radius has no centre.
+        // An arc that does not determine its radius has no centre.
         const ArcFit arc = fit_arc(flat);
         if (!arc.is_round() || arc.uncertainty() > 0.25 || arc.circle.radius > max_distance) return slice;
         centre = arc.circle.centre.x() * u + arc.circle.centre.y() * w;

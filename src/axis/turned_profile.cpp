@@ -105,7 +105,7 @@ void TurnedProfile::fit(const std::vector<RoundSample>& samples, bool first) {
     std::vector<double> errors;
     for (auto& bin : bins) {
         if (first && !bin.members.empty()) {
-            // Start at the median: a handle must not pull the circle away.
+            // Starts at the median, so that a handle does not shift the circle.
             std::vector<double> radii;
             for (const std::size_t i : bin.members) radii.push_back(radius[i]);
             bin.radius = upper_median(std::move(radii));

@@ -23,7 +23,7 @@ std::vector<Vector> unit_normals(const Mesh& mesh) {
     return normals;
 }
 
-/// What an edge between two faces with area holds.
+/// Curvature of an edge between two faces with area.
 struct EdgeCurvature {
     double mean = 0;         ///< l b / 2 (Cohen-Steiner and Morvan 2003)
     Vector vector{0, 0, 0};  ///< half the sum of the two conormals (Sullivan 2008), of length l sin(b / 2)
@@ -58,7 +58,7 @@ double deficit(const Mesh& mesh, Vertex vertex) {
     return 2 * pi - sum;
 }
 
-/// What falls to each face: half of its edges, its angles' shares of the deficits.
+/// Integrals per face: half of its edges, and its share of the vertices' deficits by angle.
 struct FaceShares {
     CurvatureIntegrals integrals;
     std::vector<Vector> vector;
@@ -86,7 +86,7 @@ FaceShares face_shares(const Mesh& mesh) {
     return shares;
 }
 
-/// A third of what falls to the faces around each vertex.
+/// Per vertex, a third of the integrals of the adjacent faces.
 struct VertexShares {
     std::vector<double> mean, gaussian, area;
     std::vector<Vector> mean_vector, area_vector;

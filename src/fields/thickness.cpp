@@ -24,7 +24,7 @@ struct ConeRay {
     double x, y, z, weight;
 };
 
-/// Directions spread evenly over the cone (Vogel's spiral on the sphere); weights fall to a quarter towards the rim.
+/// Directions evenly spread over the cone (Vogel's spiral on the sphere); weights fall to a quarter towards the rim.
 std::vector<ConeRay> cone_rays(int count, double opening) {
     const double half = opening / 2 * pi / 180, lowest = std::cos(half);
     std::vector<ConeRay> rays;
@@ -77,13 +77,13 @@ class Caster {
 public:
     explicit Caster(const Mesh& mesh) : search_(mesh), diagonal_(search_.diagonal()) {}
 
-    /// The way from `origin` to the first face, other than the one it starts from, that the ray leaves the solid through;
-    /// `expected` says how far is looked at first.
+    /// Distance from `origin` to the first face, other than `start`, through which the ray leaves the solid; `expected` is the
+    /// length that is tested first.
     [[nodiscard]] std::optional<double> way(const Point& origin, Index start, const Vector& direction, double expected) const {
         const double minimum = 1e-9 * diagonal_;
         for (double max_distance = std::max(expected, diagonal_ / 64);; max_distance *= 4) {
             max_distance = std::min(max_distance, 1.01 * diagonal_);
-            // The segment of the query runs both ways: its middle stands half way along the ray.
+            // The query segment extends in both directions: its middle is half way along the ray.
             for (const SurfaceHit& hit :
                  search_.line_hits(origin + direction * (max_distance / 2), direction, max_distance / 2)) {
                 const double way = hit.distance + max_distance / 2;

@@ -35,7 +35,7 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
     Motion pose = start;
     const std::size_t count = std::min(samples, b_.fracture.places.size());
     for (int step = 0; step < steps; ++step) {
-        // The last third at the last search radius.
+        // The last third of the steps uses the last search radius.
         const double share = std::min(1.0, 1.5 * step / std::max(1, steps - 1));
         const double search_radius = search_radius_ * std::pow(last_search_radius_ / search_radius_, share);
         std::vector<PlanePoint> planes;
@@ -120,7 +120,7 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     result.residual = result.contact > 0 ? std::sqrt(square / result.contact) : 0;
     double rim = 0;
     for_each_continued(pose, last_search_radius_, [&](const Vector3d& p, const RimFrame& other, double) {
-        // Across the side's plane counts, along the rim does not.
+        // Only the offset across the side's plane counts, not along the rim.
         const double step = other.side.dot(p - other.place) / last_search_radius_;
         rim += std::max(0.0, 1 - step * step);
     });

@@ -1,4 +1,4 @@
-// Poses of one break against another: refined and judged.
+// Refines and scores poses of one fracture against another.
 #pragma once
 
 #include "break_side.h"
@@ -10,11 +10,11 @@ namespace ostraka {
 /// Aligns the second fragment's fracture and rim with those of the first.
 class BreakAligner {
 public:
-    /// The first fragment with its search trees; they outlive this.
+    /// The first fragment with its search trees; both must outlive the aligner.
     struct Target {
         const BreakSide& side;
         const PointTree &fracture, &frames;
-        const SurfaceSearch* surface;  ///< none where nothing penetrates
+        const SurfaceSearch* surface;  ///< null: penetration is not tested
     };
     BreakAligner(const Target& a, const BreakSide& side_b, double search_radius, double last_search_radius, double edges)
         : a_(a.side),
@@ -26,16 +26,15 @@ public:
           frames_(a.frames),
           surface_(a.surface) {}
 
-    /// Closest points, point to plane, with at most `samples` points of the fracture; the search radius falls over `steps` steps.
-    /// With `hold`, the intact surface stays where `start` has it, but for sliding on itself, with that weight against the
-    /// breaks.
+    /// ICP, point to plane, with at most `samples` points of the fracture; the search radius falls over `steps` steps. With
+    /// `hold`, a constraint of that weight keeps the intact surface where `start` has it, up to sliding along itself.
     [[nodiscard]] Motion align(const Motion& start, std::size_t samples, int steps, double hold = 0) const;
-    /// In contact counts by how close it is: `close` times the last search radius is a standard deviation.
+    /// Contact is weighted by its distance, with a standard deviation of `close` times the last search radius.
     [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
 
 private:
-    /// Calls visit(place, frame, squared distance) for each frame of the second, posed, that continues one of the first
-    /// within 1.5 search radii: where it is, and that one.
+    /// Calls visit(place, frame, squared distance) for each frame of the second fragment that, posed, continues a frame of the
+    /// first within 1.5 search radii: its position, and the frame of the first.
     template <class Visit>
     void for_each_continued(const Motion& pose, double search_radius, Visit&& visit) const;
 
@@ -45,9 +44,9 @@ private:
     const SurfaceSearch* surface_;
 };
 
-/// Trees of a side that are made for one alignment.
+/// Search trees of a side for one alignment.
 struct BreakTrees {
-    /// Without a mesh (empty) nothing penetrates.
+    /// With an empty mesh, penetration is not tested.
     BreakTrees(Mesh mesh, const BreakSide& side);
     [[nodiscard]] BreakAligner::Target target() const { return {side_, fracture_, frames_, surface_.get()}; }
 

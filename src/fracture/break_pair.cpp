@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Every n-th element so that about `count` remain.
+/// Indices of about `count` elements at equal steps.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
     std::vector<std::size_t> list;
     const std::size_t wanted = std::min(size, count);
@@ -30,7 +30,7 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
     return list;
 }
 
-/// Poses that are alike: turned by little, and moved by little where the second fragment is.
+/// Whether two poses are similar: small relative rotation, and a small displacement at the second fragment.
 bool alike(const Motion& a, const Motion& b, const Vector3d& middle, double shift, double angle) {
     if ((a(middle) - b(middle)).norm() > shift) return false;
     return Eigen::AngleAxisd(a.rotation.transpose() * b.rotation).angle() < angle;
@@ -41,7 +41,7 @@ struct Scored {
     double score;
 };
 
-/// The best, each unlike those before it.
+/// The best poses that are pairwise dissimilar.
 std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const Vector3d& middle, double shift, double angle) {
     std::stable_sort(list.begin(), list.end(), [](const Scored& x, const Scored& y) { return x.score > y.score; });
     std::vector<Scored> kept;
@@ -61,7 +61,7 @@ std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const 
     return kept;
 }
 
-/// Scores poses quickly, by a few places of the second side.
+/// Scores poses quickly, with few points of the second side.
 class QuickScore {
 public:
     QuickScore(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius)
@@ -79,8 +79,8 @@ public:
         const auto [touching, inside] = look_at(pose);
         return touching - inside;
     }
-    /// Some steps of closest points, by few places, while the search radius falls to `close`; and the score there, where contact
-    /// is what is as near across the surface.
+    /// A few ICP steps with few points while the search radius falls to `close`, and the score of the result, where contact is
+    /// measured within `close` across the surface.
     [[nodiscard]] Scored settled(Motion pose, const PointTree& frames, double close) const {
         constexpr int steps = 6;
         for (int step = 0; step < steps; ++step) {
@@ -138,7 +138,8 @@ private:
                 const double against = -on_.normals[i].dot(pose.rotation * normal);
                 if (against > 0.3) touching += area * (1 - squared) * against;
             }
-            // Far from its nearest place a point is inside only if it lies straight below it: normals are not exact.
+            // Far from its nearest sample a point counts as inside only if it lies straight below it, as the normals are
+            // inexact.
             if (above < -0.5 * search_radius_ && above < -0.9 * off.norm())
                 inside += area * std::min(1.0, -above / search_radius_ - 0.5);
         };
@@ -147,21 +148,21 @@ private:
         return {touching, inside};
     }
 
-    /// 1 where the normals of both fragments meet one axis as well as those of each alone, less where they do not.
+    /// 1 if the normals of both fragments meet a common axis as well as each fragment's its own; less otherwise.
     [[nodiscard]] double shares_axis(const Motion& pose) const {
         const double off = off_common_axis(on_, from_, pose) / std::min(on_.size, from_.size);
         return std::sqrt(0.02 / (0.02 + off));
     }
 
     const PreparedBreak::Parts &on_, &from_;
-    std::size_t fractures_on_;  ///< the first of its places
+    std::size_t fractures_on_;  ///< number of fracture samples, the first of the places
     const BreakSide& of_;
     double search_radius_;
     std::vector<std::size_t> fractures_, others_;
     double each_fracture_, each_other_;
 };
 
-/// The best of all poses that lay a frame onto a frame; `tried` counts them.
+/// The best of all poses that map a frame onto a frame; `tried` counts them.
 std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius,
                                    std::size_t count, std::size_t& tried) {
     const QuickScore quick_score(on, from, search_radius);
@@ -185,7 +186,7 @@ std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const Prepare
     return poses;
 }
 
-/// Poses that lay stretches of the rims onto each other, those first that say most.
+/// Poses that register stretches of the rims, most informative first.
 std::vector<Scored> best_of_stretches(const PreparedBreak::Parts& on, const BreakSide& b, double tolerance, std::size_t count) {
     const double shortest = 0.05 * std::min(on.side.rim_length, b.rim_length);
     std::vector<Scored> poses;
@@ -194,7 +195,7 @@ std::vector<Scored> best_of_stretches(const PreparedBreak::Parts& on, const Brea
     return poses;
 }
 
-/// How sure the best candidate is, or why it is not.
+/// The confidence of the best candidate, or the reason why there is no answer.
 void decide(BreakPair& result, const PairOptions& options) {
     if (result.candidates.empty()) {
         result.undecided = "no pose brings the fractures into contact";
@@ -236,7 +237,7 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     parts.normals = parts.side.fracture.normals;
     parts.places.insert(parts.places.end(), parts.side.intact.places.begin(), parts.side.intact.places.end());
     parts.normals.insert(parts.normals.end(), parts.side.intact.normals.begin(), parts.side.intact.normals.end());
-    // About as fine as the samples lie.
+    // About as fine as the spacing of the samples.
     const int cells = std::clamp(static_cast<int>(std::lround(64 * std::sqrt(options.samples / 2000.0))), 16, 64);
     parts.grid = std::make_unique<SampleGrid>(parts.places, 2 * search_radius, cells);
     parts.surface = std::make_unique<SurfaceSearch>(parts.mesh);
@@ -262,7 +263,7 @@ double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
 
 namespace {
 
-/// One that does not depend on which fragment is named first, nor on where they are.
+/// An order that depends neither on the arguments' order nor on the poses.
 bool goes_first(const PreparedBreak& a, const PreparedBreak& b) {
     const auto key = [](const PreparedBreak& one) {
         return std::tuple(one.fracture_area(), one.size(), one.rim_length(), one.name());
@@ -270,7 +271,7 @@ bool goes_first(const PreparedBreak& a, const PreparedBreak& b) {
     return key(a) > key(b);
 }
 
-/// Candidates in the order of what is seen of them by at most `samples` places; `aligned` brings a pose to where it is seen.
+/// Candidates ordered by their evidence from at most `samples` points; `aligned` refines a pose before it is measured.
 template <class Align>
 std::vector<PairCandidate> seen_candidates(const PreparedBreak& a, const PreparedBreak& b, const std::vector<Scored>& poses,
                                            double tolerance, std::size_t samples, Align&& aligned) {
@@ -309,7 +310,7 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     const auto unlike = [&](std::vector<Scored> list, std::size_t count, double degrees) {
         return distinct(std::move(list), count, middle, 0.5 * search_radius, degrees * pi / 180);
     };
-    // The best of each kind, settled cheaply, and of these the best.
+    // Briefly refines the best poses of each kind and keeps the best of them.
     std::vector<Scored> by_stretches = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6),
                         by_frames =
                             unlike(best_of_frames(first, second, search_radius, 40 * starts, result.tried), 6 * starts, 6);
@@ -326,15 +327,15 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     std::vector<Scored> poses, others;
     for (std::size_t k = 0; k < settled.size(); ++k) (k < starts / 2 ? poses : others).push_back(settled[k]);
 
-    // The best refined: quickly, better, then to the end, each time by what is seen of them.
+    // Refines the best: quickly, better, then to the end, each time ranked by their evidence.
     const BreakAligner::Target target{first.side, first.fracture, first.frames, first.surface.get()};
     const BreakAligner rough(target, second.side, search_radius, tolerance, options.edges);
-    constexpr double near = 4;  // tolerances
+    constexpr double near = 4;  // in tolerances
     const BreakAligner fine(target, second.side, std::min(search_radius, near * tolerance), tolerance, options.edges);
     const auto few = std::min<std::size_t>(300, samples), some = std::min<std::size_t>(800, samples);
     const auto quickly = [&](const Motion& pose) { return rough.align(pose, few, 10); };
     std::vector<Scored> quick = scored(seen_candidates(a, b, poses, tolerance, few, quickly));
-    // Where the best of them are hopeless, the others are too; one is told all the same, to say why.
+    // If the best of them are hopeless, so are the others; one is still reported, to give the reason.
     constexpr double least = -7;  // log odds
     const bool hopeless = quick.empty() || quick.front().score < least;
     if (!hopeless) {

@@ -1,4 +1,4 @@
-// All that is asked of a fragment when its break is laid against others, made once.
+// Data for matching a fragment's fracture, precomputed once.
 #pragma once
 
 #include "break_side.h"
@@ -11,31 +11,31 @@ namespace ostraka {
 struct PreparedBreak::Parts {
     Mesh mesh;
     std::string name;
-    double size = 0;        ///< square root of the surface's area
-    double width = 0;       ///< of the fracture: twice its area by the length of its rim; of a sherd that is its wall
-    std::size_t faces = 0;  ///< of the fracture
-    double relief = 0;      ///< root mean square deviation of the fracture from its quadric
-    double noise = 0;       ///< of the intact surface, a length: see surface_noise
-    double edge = 0;        ///< mean length of the mesh's edges
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the intact surface
-    LineComplex lines;                                 ///< of its normals, about the middle
-    double off_axis = 0;                               ///< root mean square distance of these from their best axis
+    double size = 0;                                   ///< square root of the surface area
+    double width = 0;                                  ///< of the fracture: see PreparedBreak::width
+    std::size_t faces = 0;                             ///< number of fracture faces
+    double relief = 0;                                 ///< root mean square deviation of the fracture from its quadric
+    double noise = 0;                                  ///< noise of the intact surface, a length: see surface_noise
+    double edge = 0;                                   ///< mean edge length of the mesh
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< centroid of the intact surface
+    LineComplex lines;                                 ///< of the normals of the intact surface, relative to the centroid
+    double off_axis = 0;                               ///< root mean square distance of these normals from their best axis
     BreakSide side;
     PointTree fracture, frames;
     std::vector<Eigen::Vector3d> places, normals;  ///< fracture first, then intact surface
-    std::unique_ptr<SampleGrid> grid;              ///< of places
+    std::unique_ptr<SampleGrid> grid;              ///< over `places`
     std::unique_ptr<SurfaceSearch> surface;
 };
 
-/// How much farther the normals of two intact surfaces are off the best axis of both, b moved by `pose`, than off an axis each:
-/// root of the difference of mean squares, so that noise does not count.
+/// How much farther the normals of two intact surfaces are from the best common axis, b moved by `pose`, than from an axis
+/// each: root of the difference of the mean squares, so that noise cancels.
 double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts& b, const Motion& pose);
 
-/// How far an intact surface deviates from quadrics over small neighbourhoods: what scanner, grain and coarse triangles leave.
-/// Median of root mean squares; 0 of fewer than ten samples.
+/// Deviation of an intact surface from quadrics over small neighbourhoods: effect of scanner, grain and coarse triangles.
+/// Median of root mean squares; 0 for fewer than ten samples.
 double surface_noise(const SurfaceSamples& intact);
 
-/// Root mean square deviations of places from their plane and from a quadric over it; 0 of fewer than ten.
+/// Root mean square deviations of points from their plane and from their quadric; 0 for fewer than ten points.
 std::pair<double, double> deviations(const std::vector<Eigen::Vector3d>& places);
 
 }  // namespace ostraka

@@ -16,7 +16,7 @@ SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals
     for (const Face face : mesh.faces())
         if (chosen[face]) samples.area += face_area(mesh, face);
     if (!(samples.area > 0)) return samples;
-    // Within a face the points follow a sequence of low discrepancy (Roberts 2018), so that large faces are covered evenly too.
+    // Within a face the points follow a low-discrepancy sequence (Roberts 2018), so that large faces are covered evenly too.
     double sum = 0, next = 0.5 * samples.area / count;
     std::size_t drawn = 0;
     for (const Face face : mesh.faces()) {
@@ -59,7 +59,8 @@ Motion RimFrame::onto(const RimFrame& other) const {
 
 namespace {
 
-/// A loop with places and sides averaged along it over about `reach`, so that steps from face to face do not lengthen it.
+/// The loop with positions and sides averaged over a length of about `reach`, so that the zigzag of the faces does not lengthen
+/// it.
 RimLoop smoothed(const RimLoop& loop, double reach) {
     const std::size_t n = loop.places.size();
     RimLoop result = loop;
@@ -94,14 +95,14 @@ RimLoop smoothed(const RimLoop& loop, double reach) {
     return result;
 }
 
-/// The rim in order: edges between broken faces and others, followed about their ends.
+/// The rim as ordered loops: edges between fracture and intact faces, followed around their ends.
 std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken, const std::vector<Vector>& normals,
                               const std::vector<Facet>& facets, double reach) {
     const auto on_rim = [&](Halfedge h) {
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
         return f != Mesh::null_face() && g != Mesh::null_face() && broken[f] && !broken[g];
     };
-    // The next edge of the rim, or the one before: about the end they share, through broken faces.
+    // The next or previous edge of the rim: around the shared end, through fracture faces.
     const auto beside = [&](Halfedge h, bool after) {
         const auto step = [&](Halfedge g) { return after ? mesh.next(g) : mesh.prev(g); };
         Halfedge g = step(h);
@@ -174,7 +175,7 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
         rim.push_back({e, f, g, length});
         rim_length += length;
     }
-    // About a broad break, what a frame stands on may be broad too, so that neither relief nor rounded edges turn it.
+    // On a wide fracture the radius of a frame grows, so that neither relief nor rounded edges tilt it.
     const double broad = rim_length > 0 ? 2 * fracture.area / rim_length : 0, size = fragment_size(mesh),
                  about = std::max(radius, std::min(0.25 * broad, 0.1 * size));
     if (rim.empty())
@@ -203,7 +204,7 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
             near.push_back(edge.side);
             near.push_back(edge.broken);
             for (const Index f : near) {
-                // Of the other side of a thin wall nothing.
+                // Ignores the other side of a thin wall.
                 if (fragment.facets[f] == frame.facet && normals[f] * normals[edge.side] > 0) {
                     const double here = face_area(mesh, Face(f));
                     side += here * eigen(normals[f]);
@@ -262,7 +263,7 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin, int c
     parallel_for(
         count_[1] * count_[2],
         [&](std::size_t row) {
-            // What is nearest to the cell before is hardly farther away than what is nearest to this one.
+            // The nearest sample of the previous cell bounds the distance for this cell.
             double bound = far;
             for (std::size_t x = 0; x < count_[0]; ++x) {
                 const Vector3d middle =

@@ -1,4 +1,4 @@
-// What is asked of a fragment when its break is matched with another one.
+// Samples and rim frames of a fragment's fracture.
 #pragma once
 
 #include "ostraka/fracture/fragment.h"
@@ -10,35 +10,35 @@
 
 namespace ostraka {
 
-/// A place on the rim of a fracture: unit normals of the side beside it and, across that, of the fracture.
+/// A point on the rim of a fracture: unit normals of the adjacent intact side and, across the rim, of the fracture.
 struct RimFrame {
     Eigen::Vector3d place, side, fracture;
-    Eigen::Vector3d beside;      ///< middle of the side's faces near the place: how the side goes on away from a worn edge
-    Facet facet = Facet::outer;  ///< of the side
+    Eigen::Vector3d beside;      ///< centroid of the side's faces near the point: where the side continues away from a worn edge
+    Facet facet = Facet::outer;  ///< facet of the side
     [[nodiscard]] Eigen::Matrix3d axes() const;
-    /// The motion that lays this frame onto `other`, fractures facing each other.
+    /// The motion that maps this frame onto `other`, fractures facing each other.
     [[nodiscard]] Motion onto(const RimFrame& other) const;
 };
 
-/// A part of the rim in its order, the fracture on its left seen from outside: closed, or cut by the border of the mesh.
+/// An ordered part of the rim with the fracture on its left seen from outside: closed, or cut by the border of the mesh.
 struct RimLoop {
     std::vector<Eigen::Vector3d> places, sides;  ///< smoothed along the loop; unit normals of the sides
-    std::vector<Facet> facets;                   ///< of the sides
+    std::vector<Facet> facets;                   ///< facets of the sides
     bool closed = true;
 };
 
-/// Normals of fractures face each other, sides continue each other: cosines.
+/// Min cosines: of fractures that face each other, of sides that continue each other.
 constexpr double min_facing = 0.5, continued = 0.7;
 
 std::vector<Point> places_of(const std::vector<RimFrame>& frames);
 
-/// Points evenly spread over faces, each for the same area.
+/// Points evenly spread over faces, each representing the same area.
 struct SurfaceSamples {
     std::vector<Eigen::Vector3d> places, normals;
-    double area = 0;  ///< of all
+    double area = 0;  ///< total area
 };
 
-/// About `count` points on the chosen faces, with the faces' `normals`.
+/// About `count` points on the chosen faces, with the `normals` of the faces.
 SurfaceSamples sample_faces(const Mesh& mesh, const std::vector<Vector>& normals, const std::vector<bool>& chosen, int count);
 
 struct BreakSide {
@@ -52,15 +52,15 @@ struct BreakSide {
     [[nodiscard]] BreakSide moved(const Motion& motion) const;
 };
 
-/// Square root of the surface's area.
+/// Square root of the surface area.
 double fragment_size(const Mesh& mesh);
 
-/// The nearest of some samples from anywhere in a box, by a grid of cells that each know their nearest one.
+/// Approximate nearest sample for points in a box: a grid whose cells store their nearest sample.
 class SampleGrid {
 public:
-    /// `cells`: along the longest side.
+    /// `cells`: number along the longest side.
     SampleGrid(const std::vector<Eigen::Vector3d>& places, double margin, int cells = 64);
-    /// Index of a sample that is near `place`, to the width of a cell; none outside the box.
+    /// Index of a sample near `place`, up to the width of a cell; no_index outside the box.
     [[nodiscard]] Index near(const Eigen::Vector3d& place) const {
         const Eigen::Vector3d cell = (place - low_) / width_;
         if (!(cell.minCoeff() >= 0)) return no_index;

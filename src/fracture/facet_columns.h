@@ -1,4 +1,4 @@
-// Features of patches put together, and samples of a surface found by place.
+// Feature columns of patches, and samples of a surface by position.
 #pragma once
 
 #include "ostraka/fracture/facet_evidence.h"
@@ -11,7 +11,7 @@
 
 namespace ostraka {
 
-/// A column a feature, each with its name.
+/// One named column per feature.
 class FeatureColumns {
 public:
     explicit FeatureColumns(std::size_t rows) : rows_(rows) {}
@@ -41,37 +41,37 @@ private:
 
 constexpr std::size_t scale_count = 4;
 
-/// 12 000 of them, the same for the same mesh.
+/// 12 000 samples, deterministic for a mesh.
 PatchSamples patch_samples(const Mesh& mesh, const FacetGraph& graph);
 
-/// Of all samples so few that about eighty lie within the radius of a place.
+/// Uses a subset of the samples in which about eighty lie within the radius of a point.
 Neighbourhoods neighbourhoods(const FacetGraph& graph, const PatchSamples& samples, double radius);
-/// Radii as shares of the fragment's size, or what its mesh resolves.
+/// Radii as shares of the fragment's size, or the resolution of its mesh.
 std::array<Neighbourhoods, scale_count> neighbourhoods(const FacetGraph& graph, const PatchSamples& samples);
 
-/// What parts are told by, of each patch; `jagged` of each contact.
+/// Values from which the part features are computed, one per patch; `jagged`: one per contact.
 struct PatchValues {
-    std::vector<double> rough, bent, side;  ///< in the middle scale
-    std::vector<double> grain;   ///< how much of the roughness is fine: that of the smallest scale against the middle one
-    std::vector<double> ruffle;  ///< how far the mesh's faces turn from the filtered normal, as a logarithm
+    std::vector<double> rough, bent, side;  ///< at the middle scale
+    std::vector<double> grain;              ///< fine share of the roughness: smallest against middle scale
+    std::vector<double> ruffle;             ///< deviation of the face normals from the filtered normal, as a logarithm
     std::vector<bool> over_wall;
-    std::vector<double> jagged;  ///< how far the sharp edge about a contact is from a line, 0 to 1
+    std::vector<double> jagged;  ///< deviation of the sharp edge near a contact from a line, 0 to 1
 };
-/// Columns that tell of each patch what its part is like. `part`: see convex_parts.
+/// Columns that describe the part of each patch. `part`: see convex_parts.
 void add_part_columns(FeatureColumns& columns, const std::string& name, const FacetEvidence& evidence, const PatchValues& values,
                       const std::vector<std::size_t>& part);
 
-/// What log odds of the patches say of the surroundings of each.
+/// Context features: log odds of the patches around each patch.
 FeatureColumns context_columns(const FacetEvidence& evidence, const std::vector<double>& log_odds);
 
-/// The share of the area below each value.
+/// The share of the area with a smaller value, for each value.
 std::vector<double> area_ranks(const std::vector<double>& values, const std::vector<double>& areas);
-/// The value below which `share` of the area lies.
+/// The quantile of the values, weighted by area: `share` of the area lies below it.
 double area_quantile(const std::vector<double>& values, const std::vector<double>& areas, double share);
-/// Logarithm of a share that may vanish.
+/// Logarithm of a share, finite at 0.
 inline double feature_level(double x) { return std::log10(1e-4 + x); }
 
-/// Means of values of patches over the samples about each that face about the same way.
+/// Means of patch values over the samples around each patch with similar normals.
 std::vector<double> mean_about(const FacetEvidence& evidence, std::size_t scale, const std::vector<double>& values);
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
-// What a patch's surroundings are told to be, as features: a break is told beside what is intact.
+// Context features: the classification of a patch's surroundings, since a fracture is recognised by contrast with intact
+// surface.
 #include "facet_columns.h"
 
 #include <algorithm>
@@ -91,7 +92,7 @@ private:
     const FacetGraph& graph_;
     FeatureColumns columns_;
     const std::vector<double>& odds_;
-    std::vector<double> likely_;  ///< of each patch, by itself
+    std::vector<double> likely_;  ///< per patch, from its own features
 };
 
 }  // namespace

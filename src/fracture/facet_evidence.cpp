@@ -19,11 +19,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// The shape of the surface about a place.
+/// Local shape of the surface around a point.
 struct Shape {
-    double plane = 0, quadric = 0;  ///< root mean square distances from them, over the radius
-    double bend = 0;                ///< how far normals differ: 1 less the length of their mean
-    double side = 0;                ///< mean height over the tangent plane, over the radius: below 0 where convex
+    double plane = 0, quadric = 0;  ///< root mean square distances from the fits, divided by the radius
+    double bend = 0;                ///< spread of the normals: 1 less the length of their mean
+    double side = 0;                ///< mean height over the tangent plane, divided by the radius: below 0 where convex
 };
 
 using Row6 = Eigen::Matrix<double, 6, 1>;
@@ -42,7 +42,7 @@ Shape shape_about(const Vector3d& place, const Vector3d& normal, double radius, 
         const double x = u.dot(d), y = w.dot(d), z = normal.dot(d);
         side += z;
         mean += normals[k];
-        if (normals[k].dot(normal) < 0.3) continue;  // round an edge: no function over the tangent plane
+        if (normals[k].dot(normal) < 0.3) continue;  // beyond an edge: not a height field over the tangent plane
         Row6 row;
         row << 1, x, y, x * x, x * y, y * y;
         matrix.noalias() += row * row.transpose();
@@ -100,7 +100,7 @@ private:
                     for (std::size_t k = around.first[p]; k < around.first[p + 1]; ++k) {
                         const Index sample = around.samples[k];
                         const Vector& normal = graph_.normals[samples_.patch[sample]];
-                        if (normal * graph_.normals[p] <= -0.4) continue;  // another side
+                        if (normal * graph_.normals[p] <= -0.4) continue;  // on another side
                         points.push_back(eigen(samples_.points[sample]));
                         normals.push_back(eigen(normal));
                     }
@@ -109,7 +109,7 @@ private:
                 },
                 64);
         }
-        // Means over the next two larger neighbourhoods, so that a place shows what its surroundings are like.
+        // Means over the next two larger neighbourhoods describe the surroundings.
         for (std::size_t s = 0; s < scale_count; ++s) {
             const std::string at = " at " + std::to_string(s);
             const auto& here = shapes[s];
@@ -155,7 +155,7 @@ private:
         for (std::size_t p = 0; p < n; ++p) values_.grain.push_back(roughs[0][p] - roughs[1][p]);
     }
 
-    /// What is finer than the patches, or the noise of the scan.
+    /// Relief finer than the patches, or noise of the scan.
     void ruffle() {
         std::vector<double> ruffle = mean_about(evidence_, 1, graph_.ruffle);
         for (double& one : ruffle) one = feature_level(one);
@@ -184,7 +184,7 @@ private:
         columns_.add("usual wall", [&](std::size_t) { return typical / graph_.size; });
         columns_.add("area over walls", [&](std::size_t) { return walls_.share; });
         thin_walls();
-        // The way through the wall nearby: the main direction of normals of what has a wall under it.
+        // Direction through the wall nearby: the main direction of the normals of patches over a wall.
         const std::size_t n = graph_.count();
         std::vector<double> along(n, -1), sides(n, 0), reach(n, 1);
         const double radius = std::min(1.6 * typical, 0.3 * graph_.size);
@@ -216,7 +216,7 @@ private:
         columns_.add("distance to a side", [&](std::size_t p) { return reach[p]; });
     }
 
-    /// A wall is thin beside the fragment. Where most of the area lies over one, what does not is a break or a rim.
+    /// A wall is thin relative to the fragment. If most of the area lies over a wall, the rest is fracture or lip.
     void thin_walls() {
         std::vector<std::pair<double, double>> depths;
         double thin = 0;
@@ -233,7 +233,7 @@ private:
         });
     }
 
-    /// How far the edge through each place is from a line: what lies across it, over what lies along it.
+    /// How far the edge at each point deviates from a line: spread across it divided by spread along it.
     [[nodiscard]] std::vector<double> jaggedness(const PointTree& tree, const std::vector<Point>& places) const {
         const double radius = std::min(std::max(0.05 * graph_.size, 3 * graph_.edge), 0.3 * graph_.size);
         std::vector<double> result(places.size(), 1);
@@ -255,7 +255,7 @@ private:
         return result;
     }
 
-    /// Distance from sharp edges, and how many there are, outward and inward; how straight those are that turn outward.
+    /// Distance from sharp edges and their density, convex and concave; straightness of the convex ones.
     void edges() {
         const std::size_t n = graph_.count();
         values_.jagged.assign(graph_.contacts.size(), 1);
@@ -359,7 +359,7 @@ FacetEvidence facet_evidence(const Mesh& mesh) {
 
 namespace {
 
-/// What is measured has its names from what is measured of a tetrahedron.
+/// The names of the features are those measured on a tetrahedron.
 Mesh tetrahedron() {
     TriangleSoup soup;
     soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-/// Faces that lie in one cell of a grid and face about the same way, numbered by their first face.
+/// Groups faces in one cell of a grid with similar normals, numbered by their first face.
 std::vector<Index> grouped_faces(const Mesh& mesh, const std::vector<Vector>& areas, double cell, std::size_t& count) {
     struct Group {
         Vector area;
@@ -90,7 +90,7 @@ FacetGraph facet_graph(const Mesh& mesh, std::size_t most) {
         graph.patch_of_face.resize(faces);
         std::iota(graph.patch_of_face.begin(), graph.patch_of_face.end(), Index{0});
     } else {
-        // A smooth surface crosses about 1.5 cells for each area of a cell's side.
+        // A smooth surface crosses about 1.5 cells per area of a cell's side.
         graph.patch_of_face = grouped_faces(mesh, areas, std::sqrt(2 * graph.area / static_cast<double>(most)), count);
     }
     std::vector<Vector> sum(count, Vector(0, 0, 0)), place(count, Vector(0, 0, 0));

@@ -1,4 +1,4 @@
-// What parts of a surface between sharp convex edges are like, and how each compares with the others.
+// Features of the parts of a surface between sharp convex edges, relative to the other parts.
 #include "facet_columns.h"
 
 #include "ostraka/core/angles.h"
@@ -20,7 +20,7 @@ using Row6 = Eigen::Matrix<double, 6, 1>;
 struct Part {
     double area = 0, rough = 0, bent = 0, wall = 0, uneven = 1, bumpy = 1, side = 0, bulge = 0, spread = 0, grain = 0, ruffle = 0;
     double length = 0, turn = 0, turn_spread = 0, sharp = 0, jagged = 0;         ///< of its boundary
-    double other_rough = 0, other_bent = 0, other_side = 0, main_neighbour = 0;  ///< of what lies across it, by length
+    double other_rough = 0, other_bent = 0, other_side = 0, main_neighbour = 0;  ///< of its neighbours, by length
     Vector3d normal = Vector3d::Zero(), middle = Vector3d::Zero();
 
     [[nodiscard]] double width(double size) const { return length > 0 ? area / (length * size) : 1; }
@@ -143,8 +143,8 @@ private:
         }
     }
 
-    /// Root mean square distance of each part from the plane and the quadric over its mean plane, over the square root of its
-    /// area; 1 where it does not lie over a plane.
+    /// Root mean square distance of each part from its mean plane and from a quadric over that plane, divided by the square
+    /// root of its area; 1 where it is not a height field over the plane.
     void unevenness() {
         struct Fit {
             Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();

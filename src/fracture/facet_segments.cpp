@@ -16,7 +16,7 @@ namespace ostraka {
 namespace {
 
 struct Boundary {
-    double length = 0, turn = 0;  ///< turn: integral along it
+    double length = 0, turn = 0;  ///< turn: integral along the boundary
 };
 
 }  // namespace
@@ -29,7 +29,7 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return std::pair(std::abs(contacts[a].turn), a) < std::pair(std::abs(contacts[b].turn), b);
     });
-    // Small parts first, so that a gap in an edge joins little.
+    // Small parts first, so that a gap in an edge merges only small parts.
     constexpr double patch = 0.002;
     DisjointSets sets(n);
     std::vector<double> size = graph.areas;
@@ -60,7 +60,7 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
     std::vector<unsigned> changes(n, 0);
     const auto offer = [&](std::size_t a, std::size_t b, const Boundary& boundary) {
         if (b < a) std::swap(a, b);
-        // What is tiny has no boundary of its own.
+        // The boundary of a tiny part is not significant.
         const double weight = std::min(1.0, std::min(size[a], size[b]) / (patch / 4 * graph.area));
         const double mean = boundary.length > 0 ? boundary.turn / boundary.length * weight : 0;
         if (mean < sharpest) queue.push({mean, a, b, changes[a], changes[b]});

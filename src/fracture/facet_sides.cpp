@@ -37,7 +37,7 @@ std::vector<double> outwardness(const Mesh& mesh, const FacetGraph& graph, const
         }
         return result;
     }
-    // The point nearest to all lines along normals; held to the centroid where they do not say.
+    // The point nearest to all lines along normals, regularised towards the centroid where they do not determine it.
     Vector3d middle = Vector3d::Zero();
     double area = 0;
     for (const Index p : sides) {

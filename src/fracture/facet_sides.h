@@ -1,4 +1,4 @@
-// Which side of a wall looks outward.
+// Classifies the sides of a wall as outer and inner.
 #pragma once
 
 #include "ostraka/fracture/facet_graph.h"
@@ -9,12 +9,12 @@
 
 namespace ostraka {
 
-/// Cosine of the angle between each patch's normal and the direction away from the object's axis of rotation or, without one, its
-/// middle; told by the patches `sides`. Says how in `notes`.
+/// Cosine of the angle between each patch's normal and the direction away from the object's axis of rotation or, without an
+/// axis, its middle; estimated from the patches `sides`. Reports the method in `notes`.
 std::vector<double> outwardness(const Mesh& mesh, const FacetGraph& graph, const std::vector<Index>& sides,
                                 std::vector<std::string>& notes);
 
-/// Of values with weights; 0 for none.
+/// Weighted median of (value, weight) pairs; 0 for none.
 double weighted_median(std::vector<std::pair<double, double>> values);
 
 }  // namespace ostraka

@@ -32,14 +32,14 @@ Walls walls_under(const Mesh& mesh, const FacetGraph& graph) {
             std::vector<double> ways;
             double opposite = 0;
             for (int i = 0; i < count; ++i) {
-                // Evenly over the cone (Vogel's spiral).
+                // Evenly spread over the cone (Vogel's spiral).
                 const double z = 1 - (1 - std::cos(half)) * (i + 0.5) / count, r = std::sqrt(1 - z * z),
                              turn = i * pi * (3 - std::sqrt(5.0));
                 const Vector direction = r * std::cos(turn) * u + r * std::sin(turn) * w + z * axis;
                 bool met = false;
                 for (double range = diagonal / 32; !met; range *= 4) {
                     range = std::min(range, 1.01 * diagonal);
-                    // The segment of the query runs both ways: its middle stands half way along the ray.
+                    // The query segment extends in both directions: its middle is half way along the ray.
                     for (const SurfaceHit& hit : search.line_hits(origin + direction * (range / 2), direction, range / 2)) {
                         const double way = hit.distance + range / 2;
                         if (graph.patch_of_face[hit.face] == p || way <= 1e-9 * diagonal ||

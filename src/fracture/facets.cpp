@@ -31,16 +31,15 @@ public:
     }
 
 private:
-    /// What a single patch may say at most.
+    /// Bound of the log odds of a single patch.
     static constexpr double limit = 6;
 
-    /// Cost of a boundary at each contact: its length, less where the surface turns sharply outward, there or about there, since
-    /// edges are rounded.
+    /// Cost of the boundary at each contact: its length, reduced at or near sharp convex turns, since edges are rounded.
     [[nodiscard]] std::vector<double> boundary() const {
         const double width = std::min(0.05 * graph_.size, walls_.typical > 0 ? 0.5 * walls_.typical : graph_.size);
         std::vector<double> costs;
         for (const auto& contact : graph_.contacts) {
-            // About an edge of two planes that turn by an angle, places are mostly a quarter of it below the tangent plane.
+            // Near the edge of two planes, points lie about a quarter of the dihedral angle below the tangent plane.
             const double about = 2 * (convexity_[contact.a] + convexity_[contact.b]);
             const double turn = std::max({0.0, contact.turn, about}) / (options_.edge * degree);
             costs.push_back(options_.coherence * width * contact.length * (0.03 + std::exp(-turn * turn)));
@@ -48,13 +47,13 @@ private:
         return costs;
     }
 
-    /// Where there is a break at all, a place is taken for one at a lower probability: most are missed at their worn edges.
+    /// Once a fracture is found, the probability threshold is lowered: most missed area is at worn edges.
     void tell_breaks() {
         constexpr double even = 0, likely = 0.4;  // added to log odds
         if (label_breaks(even)) label_breaks(likely);
         double intact = 0;
         for (std::size_t p = 0; p < labels_.size(); ++p) intact += labels_[p] == broken ? 0 : graph_.areas[p];
-        constexpr double little = 0.02;  // of the area: a break is told beside what is intact
+        constexpr double little = 0.02;  // share of the area: a fracture is recognised by contrast with intact surface
         if (intact > little * graph_.area) return;
         std::fill(labels_.begin(), labels_.end(), 0);
     }
@@ -72,7 +71,7 @@ private:
         return std::find(labels_.begin(), labels_.end(), broken) != labels_.end();
     }
 
-    /// Whether what is intact is mostly a wall between two sides, both intact.
+    /// Whether most of the intact surface is a wall with two intact sides.
     [[nodiscard]] bool is_shell(const std::vector<Index>& intact) {
         double all = 0, over = 0, even = 0;
         std::vector<std::pair<double, double>> depths;
@@ -115,7 +114,7 @@ private:
         for (const Index p : intact) labels_[p] = side[p];
     }
 
-    /// How far a patch looks away from the inside of the vessel, 0 to 1.
+    /// How far a patch faces away from the inside of the vessel, 0 to 1.
     [[nodiscard]] double outside(std::size_t p) const { return std::clamp((outward_[p] + 0.3) / 0.6, 0.0, 1.0); }
 
     void answer() {
@@ -124,7 +123,7 @@ private:
             if (labels_[p] == broken) found += graph_.areas[p], seen += graph_.areas[p] * shown_[p];
             expected += graph_.areas[p] * shown_[p];
         }
-        constexpr double little = 0.05;  // of the area
+        constexpr double little = 0.05;  // share of the area
         constexpr double sure = 0.65;
         result_.answer = found > 0 ? (seen > sure * found ? Facets::Answer::broken : Facets::Answer::unclear)
                                    : (expected < little * graph_.area ? Facets::Answer::whole : Facets::Answer::unclear);
@@ -163,9 +162,9 @@ private:
     const Walls& walls_;
     const std::vector<double>& convexity_;
     const FacetOptions& options_;
-    std::vector<double> shown_;        ///< of each patch: probability that it is of a break
-    std::vector<std::size_t> labels_;  ///< of each patch: a Facet
-    std::vector<double> outward_;      ///< of each patch: see outwardness
+    std::vector<double> shown_;        ///< per patch: probability of being fracture
+    std::vector<std::size_t> labels_;  ///< per patch: a Facet
+    std::vector<double> outward_;      ///< per patch: see outwardness
     Facets result_;
 };
 

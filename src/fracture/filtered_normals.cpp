@@ -32,7 +32,7 @@ std::vector<Vector> filtered_normals(const std::vector<Vector>& areas, const std
             Vector sum = weights[k] * now[k];
             for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
                 const Index other = around[i];
-                constexpr double alike = 0.5;  // of unit vectors: 29 degrees
+                constexpr double alike = 0.5;  // distance of unit vectors: 29 degrees
                 const double apart = (now[other] - now[k]).squared_length() / (alike * alike);
                 sum += std::exp(-apart) * weights[other] * now[other];
             }

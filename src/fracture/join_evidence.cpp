@@ -14,9 +14,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double could_touch = 3;  // tolerances
+constexpr double could_touch = 3;  // in tolerances
 
-/// Contact seen from one side: the samples of `from`, moved by `pose`, on the break of `on`.
+/// Contact measured from one side: the samples of `from`, moved by `pose`, on the fracture of `on`.
 struct Contact {
     std::vector<Vector3d> places, normals;
     double area = 0, could = 0, square = 0, facing = 0;
@@ -47,7 +47,7 @@ Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from
     return result;
 }
 
-/// Area of `from` that lies deeper than the tolerance in `on`.
+/// Area of `from` that lies deeper inside `on` than the tolerance.
 void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
                std::size_t most, double& area, double& depth) {
     const auto over = [&](const SurfaceSamples& samples) {
@@ -57,7 +57,7 @@ void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from,
             const std::size_t k = (2 * i + 1) * samples.places.size() / (2 * count);
             const Vector3d p = pose(samples.places[k]);
             const Index cell = on.grid->near(p);
-            // Outside the box, or clearly above the nearest place.
+            // Outside the box, or clearly above the nearest sample.
             if (cell == no_index) continue;
             const Vector3d away = p - on.places[cell];
             if (on.normals[cell].dot(away) > 0.5 * away.norm() && away.norm() > 2 * tolerance) continue;
@@ -160,7 +160,7 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
         if (other.facet != frame.facet || other.fracture.dot(pose.rotation * frame.fracture) > -min_facing) continue;
         const Vector3d side = pose.rotation * frame.side, across = pose(frame.beside) - other.beside;
         const double cosine = other.side.dot(side), apart = across.norm();
-        // Sides that face each other, or stand on edge, do not continue each other at all.
+        // Sides that face each other, or are perpendicular, do not continue each other.
         turns += cosine > 0 ? 1 - cosine * cosine : 1;
         steps += cosine > 0 && apart > 0 ? std::pow(0.5 * (side + other.side).dot(across) / apart, 2) : 1;
         ++seen_sides;
@@ -242,7 +242,7 @@ std::vector<ContactPoint> contact_points(const PreparedBreak& first, const Prepa
         result.push_back({other.place, other.fracture, frame.place, weight});
         rim += 2 * weight;
     }
-    // Rims weigh as much as fractures.
+    // The rims get the same total weight as the fractures.
     if (rim > 0 && all > 0)
         for (std::size_t k = fractures; k < result.size(); ++k) result[k].weight *= all / rim;
     return result;

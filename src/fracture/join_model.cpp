@@ -12,16 +12,16 @@ namespace ostraka {
 
 namespace {
 
-/// Of a candidate: boosted trees over what is seen. Of a pair: logistic regression over a candidate's log odds and its lead.
+/// Per candidate: boosted trees over its features. Per pair: logistic regression over a candidate's log odds and its lead.
 struct JoinModel {
     BoostedTrees trees;
-    std::array<double, JoinEvidence::count> usual{}, spread{};  ///< of each feature over true joins: mean, standard deviation
+    std::array<double, JoinEvidence::count> usual{}, spread{};  ///< per feature over true joins: mean, standard deviation
     std::array<double, 3> pair{};                               ///< bias, weight of the log odds, weight of the lead
-    double joined = 0.5;  ///< share of the pairs learnt from that were joined as their first candidate says
+    double joined = 0.5;  ///< share of the training pairs whose first candidate is the true join
 };
 constexpr double max_lead = 2;
 
-/// The one that is built in (data/joins.model.json).
+/// The built-in model (data/joins.model.json).
 const JoinModel& join_model() {
     static const JoinModel model = [] {
         JoinModel result;

@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A loop with places at even distances along it.
+/// A loop resampled at equal distances.
 struct EvenLoop {
     std::vector<Vector3d> places, sides;
     std::vector<Facet> facets;
     bool closed = true;
 
-    /// Places that a stretch of `count` may begin with.
+    /// Number of possible start positions of a stretch of `count` samples.
     [[nodiscard]] std::size_t starts(std::size_t count) const {
         if (places.size() < count) return 0;
         return closed ? places.size() : places.size() - count + 1;
@@ -67,13 +67,13 @@ public:
 
 private:
     static constexpr std::size_t few = 8;
-    static constexpr double widest = 1.5, noise = 0.2, straight = 0.5;  // of the tolerance
+    static constexpr double widest = 1.5, noise = 0.2, straight = 0.5;  // in tolerances
 
     void compare(std::size_t i, std::size_t j, std::size_t count, std::vector<StretchFit>& found) const {
         const EvenLoop &a = a_[i], &b = b_[j];
         const std::size_t rows = a.starts(count), columns = b.starts(count), n = a.places.size(), m = b.places.size();
         if (rows == 0 || columns == 0) return;
-        // What a motion leaves as it is: chords.
+        // Chord lengths are invariant under rigid motion.
         const std::size_t half = count / 2, last = count - 1;
         std::vector<std::vector<StretchFit>> of_row(rows);
         parallel_for(
@@ -89,13 +89,13 @@ private:
                     bend += (off - off.dot(chord) * chord).squaredNorm() / static_cast<double>(count);
                 }
                 bend = std::sqrt(bend);
-                if (bend < straight * tolerance_) return;  // lies everywhere on what is as straight
+                if (bend < straight * tolerance_) return;  // too straight: it matches any straight stretch
                 std::vector<Vector3d> from(2 * count), to(2 * count);
                 std::vector<double> weights(2 * count, 1);
                 const double lever = 0.3 * spacing_ * static_cast<double>(count);
                 for (std::size_t t = count; t < 2 * count; ++t) weights[t] = 0.3;
                 for (std::size_t c = 0; c < columns; ++c) {
-                    // The second runs backwards from the end of its stretch.
+                    // The second rim is traversed backwards from the end of its stretch.
                     const auto other = [&](std::size_t t) -> const Vector3d& { return b.places[(c + last - t) % m]; };
                     if (a.facets[(r + half) % n] != b.facets[(c + half) % m]) continue;
                     const double slack = 2 * tolerance_;
@@ -118,12 +118,12 @@ private:
                     if (fit.deviation > widest * tolerance_) continue;
                     fit.length = spacing_ * static_cast<double>(count);
                     fit.bend = bend;
-                    // Bits told, more or less: each place is known to the deviation among all within the bend.
+                    // Information of the match: each position is known to the deviation within a range of the bend.
                     fit.told =
                         static_cast<double>(count) * std::log((noise * tolerance_ + bend) / (noise * tolerance_ + fit.deviation));
                     if (fit.told > 0) of_row[r].push_back(fit);
                 }
-                // Of a row the best ten: neighbours say the same.
+                // Keeps the best ten of a row: neighbouring rows give the same matches.
                 std::stable_sort(of_row[r].begin(), of_row[r].end(),
                                  [](const auto& x, const auto& y) { return x.told > y.told; });
                 if (of_row[r].size() > 10) of_row[r].resize(10);

@@ -1,23 +1,23 @@
-// Stretches of two rims that run alike.
+// Matching stretches of two rims.
 #pragma once
 
 #include "break_side.h"
 
 namespace ostraka {
 
-/// A pose that lays a stretch of the second rim onto one of the first.
+/// A pose that registers a stretch of the second rim with a stretch of the first.
 struct StretchFit {
     Motion pose;
-    double length = 0;     ///< of the stretch
-    double deviation = 0;  ///< root mean square distance of its places
-    double bend = 0;       ///< root mean square distance of its places from their straight line
-    double told = 0;       ///< what the match says: of each place the logarithm of bend by deviation, above the noise
+    double length = 0;     ///< length of the stretch
+    double deviation = 0;  ///< root mean square distance between its matched points
+    double bend = 0;       ///< root mean square distance of its points from their straight line
+    double told = 0;       ///< information of the match: sum over the points of log(bend / deviation), above the noise
 };
 
-/// All stretches of rims of several lengths, from `shortest` on, each twice the one before, up to half of the shorter rim, the
-/// second run backwards (the other side of a break is its mirror), whose places and side normals come together within
-/// `tolerance` by a rigid motion (contour matching after Leitao and Stolfi 2002, in space and with the sides' normals). Those
-/// that say most first: long, bent and close; at most `count`. In O(n m) for n and m places on the rims.
+/// All pairs of stretches of the two rims, of lengths from `shortest` on, doubling up to half of the shorter rim, whose points
+/// and side normals coincide within `tolerance` after a rigid motion; the second rim is traversed backwards, as the other side
+/// of a fracture is its mirror image (contour matching after Leitao and Stolfi 2002, in 3D and with the normals of the sides).
+/// Most informative first: long, bent and close; at most `count`. In O(n m) for n and m points on the rims.
 std::vector<StretchFit> matching_stretches(const std::vector<RimLoop>& first, const std::vector<RimLoop>& second, double shortest,
                                            double tolerance, std::size_t count);
 

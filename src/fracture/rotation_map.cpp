@@ -46,7 +46,7 @@ std::vector<double> RotationMap::shared(const RotationMap& other) const {
         const auto row = static_cast<std::size_t>(place.row);
         if (row >= other.covered_.size() || other.covered_[row].empty()) continue;
         const std::vector<bool>& line = other.covered_[row];
-        // The other rotated by t covers the column c where it covered c - t before.
+        // The other map rotated by t covers column c if it covered c - t before.
         for (int t = 0; t < steps_; ++t)
             if (line[static_cast<std::size_t>((place.column - t + steps_) % steps_)]) area[static_cast<std::size_t>(t)] += each_;
     }

@@ -15,7 +15,7 @@ struct State {
     double value = 0;
 };
 
-/// States in which the same sherds have the same rotations, to a degree or so.
+/// Equal for states in which the same sherds have the same rotations, to about a degree.
 std::vector<long> signature(const State& state) {
     std::vector<long> key;
     for (std::size_t k = 0; k < state.rotations.size(); ++k)
@@ -81,7 +81,7 @@ RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rota
                 tolerance = std::max(tolerance, pairs.of(i, j).tolerance);
             }
     for (const auto& [i, j] : across) lead.here += pairs.value(i, j, rotations[i], rotations[j]);
-    // At other rotations what overlaps is not held against it: that there is no room elsewhere says nothing of the breaks.
+    // Overlap does not count at other rotations: lack of room there is no evidence about the fractures.
     for (int k = 0; k < steps; ++k) {
         const double rotation = wrapped(2 * pi * k / steps);
         if (std::abs(rotation) < 2 * tolerance) continue;
@@ -98,7 +98,7 @@ double least_shared_rotation(const RotationPairs& pairs, const std::vector<doubl
     std::size_t steps = 1;
     for (std::size_t q = 0; q < rotations.size(); ++q)
         if (q != sherd) steps = std::max(steps, pairs.of(q, sherd).shared.size());
-    // In the middle of the widest range of rotations that share least.
+    // The middle of the widest interval of rotations with the least shared area.
     std::vector<double> area(steps, 0);
     for (std::size_t k = 0; k < steps; ++k) {
         const double rotation = 2 * pi * static_cast<double>(k) / static_cast<double>(steps);

@@ -59,7 +59,7 @@ private:
                 const double radius = 0.04 * fragment_size(fragment.mesh);
                 one.side = BreakSide(fragment, radius, options_.frames, options_.samples).moved(pose);
                 walls.push_back(2 * one.side.fracture.area / one.side.rim_length);
-            } catch (const Error& error) {  // without a break it meets nothing, but it covers something
+            } catch (const Error& error) {  // without a fracture it meets nothing, but it covers area
                 if (error.kind() != ErrorKind::input) throw;
                 result_.notes[k] = "has no break that could meet another one";
                 one.side = BreakSide();
@@ -106,7 +106,7 @@ private:
         pairs_ = std::make_unique<RotationPairs>(n, std::move(pairs));
     }
 
-    /// The joints of the assembly; those of the tree of best ones carry it.
+    /// The joints of the assembly; the maximum spanning tree of them carries it.
     void join(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
         std::vector<std::pair<double, BreakJoint>> list;
@@ -140,7 +140,7 @@ private:
         for (std::size_t k = 0; k < n; ++k) result_.group.push_back(static_cast<int>(groups.find(k)));
     }
 
-    /// All that hangs on the second sherd, rotated against all else.
+    /// Rotates all sherds connected to the second sherd against all others.
     void decide(BreakJoint& joint, const std::vector<bool>& fixed) {
         std::vector<bool> side(given_.size(), false);
         side[static_cast<std::size_t>(joint.second)] = true;
@@ -170,8 +170,8 @@ private:
         joint.decided = joint.confidence >= options_.min_joint;
     }
 
-    /// Groups that hang on nothing decided stay where they meet the others if they share nothing with them there; else sherds of
-    /// their own go where they share least.
+    /// A group of several sherds without a decided joint to the largest group stays, with a note. A single sherd stays if it
+    /// overlaps nothing; otherwise it moves to where it overlaps least.
     void put_aside(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
         std::vector<std::size_t> size(n, 0);
@@ -205,7 +205,7 @@ private:
         });
     }
 
-    /// One sherd after the other comes to all that it is joined to, held to the template.
+    /// Aligns one sherd after the other with all sherds joined to it, constrained to the template.
     void refine(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
         const std::size_t still = largest();
@@ -228,7 +228,7 @@ private:
                 if (around.frames.empty()) continue;
                 const BreakTrees trees(Mesh(), around);
                 const BreakAligner aligner(trees.target(), sherds_[k].side, wall_, 0.5 * wall_, 1);
-                // From the rotation alone: what breaks say is not added up over the sweeps.
+                // Starts from the rotation alone, so that offsets do not accumulate over the sweeps.
                 const double rotation = rotation_about_axis(now_[k]);
                 now_[k] = aligner.align(rotated_by(rotation), static_cast<std::size_t>(options_.samples), 16, options_.hold);
             }
@@ -253,12 +253,12 @@ private:
         }
     }
 
-    /// The first of those that cover most.
+    /// The first of the sherds that cover the largest area.
     [[nodiscard]] std::size_t largest() const {
         const auto smaller = [](const UprightSherd& a, const UprightSherd& b) { return a.map->area() < b.map->area(); };
         return static_cast<std::size_t>(std::max_element(sherds_.begin(), sherds_.end(), smaller) - sherds_.begin());
     }
-    /// Area of a sherd that the others share with it.
+    /// Area of a sherd that other sherds cover too.
     [[nodiscard]] double shared_area(std::size_t k, const std::vector<double>& rotations) const {
         double area = 0;
         for (std::size_t q = 0; q < given_.size(); ++q)
@@ -268,14 +268,14 @@ private:
 
     const std::vector<SherdOnAxis>& given_;
     const RotationMatchOptions& options_;
-    Motion upright_;  ///< the axis becomes the vertical one through the origin
+    Motion upright_;  ///< maps the axis to the vertical axis through the origin
     Mesh whole_;
     double wall_ = 0;
     int steps_ = 0;
     std::vector<UprightSherd> sherds_;
     std::unique_ptr<RotationPairs> pairs_;
     RotationAssembly assembly_;
-    std::vector<Motion> now_;  ///< of each sherd, from where it was given, in the upright frame
+    std::vector<Motion> now_;  ///< per sherd, relative to its given pose, in the upright frame
     RotationMatch result_;
 };
 

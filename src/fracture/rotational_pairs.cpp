@@ -18,7 +18,7 @@ std::size_t step_of(double rotation, std::size_t steps) {
     return static_cast<std::size_t>(((k % n) + n) % n);
 }
 
-/// Area of the second sherd's fracture that comes close to the first's, facing it, at each step.
+/// Area of the second sherd's fracture that is close to the first's and faces it, per step.
 std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int steps, double search_radius) {
     std::vector<double> area(static_cast<std::size_t>(steps), 0);
     const SampleGrid grid(a.side.fracture.places, search_radius);
@@ -83,7 +83,7 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
     pair.shared.assign(n, 0);
     const auto ab = a.map->shared(*b.map), ba = b.map->shared(*a.map);
     for (std::size_t t = 0; t < n; ++t) pair.shared[t] = std::max(ab[t], ba[(n - t) % n]);
-    // A joint is where it is to the width of the wall.
+    // A joint is located up to the width of the wall.
     pair.tolerance = std::min(1.0, wall / std::max(std::min(a.radius, b.radius), wall));
     if (a.side.frames.empty() || b.side.frames.empty()) return pair;
     const std::vector<double> close = contacts(a, b, steps, wall);
@@ -115,7 +115,7 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
             one.fit = aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
             one.rotation = rotation_about_axis(one.fit.pose);
             one.value = one.fit.score * area;
-            // Off the template it is no place of this vessel.
+            // Poses off the template are not positions on this vessel.
             const Motion off = one.fit.pose.after(rotated_by(-one.rotation));
             double squares = 0;
             for (const Vector3d& p : b.side.intact.places) squares += (off(p) - p).squaredNorm();

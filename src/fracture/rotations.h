@@ -1,4 +1,4 @@
-// How sherds of a vessel with one axis meet at each rotation of one against the other, and the rotations of all at once.
+// Pairwise scores of sherds of a vessel over their relative rotations, and the rotations of all sherds at once.
 #pragma once
 
 #include "break_align.h"
@@ -10,11 +10,11 @@
 
 namespace ostraka {
 
-/// Places on the profile of a surface of revolution about the vertical axis, as cells of the half plane (radius, height).
+/// Points on the profile of a surface of revolution about the vertical axis, as cells of the half plane (radius, height).
 class ProfileCells {
 public:
     ProfileCells(const SurfaceSearch& whole, double width) : whole_(whole), width_(width) {}
-    /// The cell of the surface's place nearest to `p` that faces the same way; none farther off than `search_radius`: -1.
+    /// The cell of the nearest surface point to `p` with a similar normal; -1 if it is farther than `search_radius`.
     int row(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double search_radius);
     [[nodiscard]] double width() const { return width_; }
     [[nodiscard]] std::size_t rows() const { return known_.size(); }
@@ -25,13 +25,13 @@ private:
     std::map<std::pair<long, long>, int> known_;
 };
 
-/// What a sherd covers at each of `steps` angles.
+/// The area that a sherd covers at each of `steps` angles.
 class RotationMap {
 public:
-    /// Places closer than `margin` to the sherd's own break are covered, but do not complain of being covered twice.
+    /// Points closer than `margin` to the sherd's own fracture are covered, but do not count as overlap.
     RotationMap(ProfileCells& cells, const SurfaceSamples& surface, const std::vector<Eigen::Vector3d>& fracture, int steps,
                 double margin, double search_radius);
-    /// Area of this sherd on which `other` lies too when it is rotated by each of the steps against this one: one a step.
+    /// Area that this sherd shares with `other`, for `other` rotated by each step against this sherd.
     [[nodiscard]] std::vector<double> shared(const RotationMap& other) const;
     [[nodiscard]] double area() const { return area_; }
 
@@ -42,40 +42,40 @@ private:
     int steps_;
     double area_ = 0, each_ = 0;
     std::vector<Place> deep_;
-    std::vector<std::vector<bool>> covered_;  ///< by row; empty: nowhere
+    std::vector<std::vector<bool>> covered_;  ///< per row; empty: nowhere
 };
 
-/// A sherd with the vessel's axis as the vertical one through the origin.
+/// A sherd in the frame whose vertical axis through the origin is the vessel's axis.
 struct UprightSherd {
     Mesh mesh;
-    BreakSide side;     ///< no fracture: nothing meets it
+    BreakSide side;     ///< without fracture: it meets no other sherd
     double radius = 0;  ///< root mean square distance from the axis
     std::unique_ptr<RotationMap> map;
 };
 
-/// A rotation of the second sherd at which the two meet.
+/// A rotation of the second sherd at which the two sherds meet.
 struct MeetingRotation {
     double rotation = 0;  ///< radians
-    double value = 0;     ///< area of the fracture that meets, with the rim, less what lies inside
-    PairCandidate fit;    ///< its pose is the second sherd's, the first where it is
+    double value = 0;     ///< area of the fracture that meets, with the rim, less the area inside the other sherd
+    PairCandidate fit;    ///< its pose is the second sherd's, with the first fixed
 };
 
-/// All that is known of two sherds.
+/// Scores of two sherds.
 struct RotationPair {
     std::vector<MeetingRotation> meetings;  ///< best first
-    std::vector<double> shared;             ///< at each step: area on which both would lie
-    double tolerance = 0;                   ///< radians within which a rotation is that of a meeting
+    std::vector<double> shared;             ///< per step: area that both would cover
+    double tolerance = 0;                   ///< radians within which a rotation belongs to a meeting
 
-    /// What the pair says of a rotation of the second against the first: area that meets less area on which both lie.
+    /// Score of a rotation of the second sherd against the first: area that meets less area that both cover.
     [[nodiscard]] double value(double rotation) const { return met(rotation) - shared_at(rotation); }
-    /// The area that meets alone.
+    /// The area that meets, without the shared area.
     [[nodiscard]] double met(double rotation) const;
     [[nodiscard]] double shared_at(double rotation) const;
-    /// The meeting of a rotation; none: nullptr.
+    /// The meeting at a rotation; none: nullptr.
     [[nodiscard]] const MeetingRotation* meeting(double rotation) const;
 };
 
-/// Between -pi and pi.
+/// The angle in [-pi, pi].
 double wrapped(double angle);
 Motion rotated_by(double angle);
 /// The rotation about the vertical axis that is nearest to a motion.
@@ -83,7 +83,7 @@ double rotation_about_axis(const Motion& motion);
 
 RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, double wall, const RotationMatchOptions& options);
 
-/// What is known of all pairs: of i < j the rotation of j against i.
+/// Scores of all pairs: for i < j the rotation of j against i.
 class RotationPairs {
 public:
     RotationPairs(std::size_t count, std::vector<RotationPair> pairs) : count_(count), pairs_(std::move(pairs)) {}
@@ -91,7 +91,7 @@ public:
     [[nodiscard]] const RotationPair& of(std::size_t i, std::size_t j) const {
         return pairs_[std::min(i, j) * count_ + std::max(i, j)];
     }
-    /// The rotation between two as the pair has it.
+    /// The relative rotation of two sherds in the convention of their pair.
     [[nodiscard]] static double between(std::size_t i, std::size_t j, double rotation_i, double rotation_j) {
         return i < j ? rotation_j - rotation_i : rotation_i - rotation_j;
     }
@@ -101,28 +101,28 @@ public:
 
 private:
     std::size_t count_;
-    std::vector<RotationPair> pairs_;  ///< count x count, of which i < j counts
+    std::vector<RotationPair> pairs_;  ///< count x count; only i < j is used
 };
 
 struct RotationAssembly {
-    std::vector<double> rotations;  ///< of each sherd
-    std::vector<bool> joined;       ///< meets others where it is
+    std::vector<double> rotations;  ///< per sherd
+    std::vector<bool> joined;       ///< per sherd: meets other sherds
     double value = 0;
 };
 
-/// The rotations of largest sum over all pairs, from `root` and those `fixed` (at 0) on: at each step one more sherd comes to the
-/// best assemblies so far (a beam search). What meets none stands where it shares least surface with the others.
+/// The rotations with the largest sum over all pairs, starting from `root` and the sherds that are `fixed` (at 0): each step
+/// adds one sherd to the best assemblies so far (a beam search). A sherd that meets no other is placed where it overlaps least.
 RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vector<bool>& fixed, std::size_t root, int beam);
 
-/// Rotates the sherds marked against all others: the value of all pairs across at the rotations as they are, and the most that
-/// meets at any rotation that is another one, be there room for it or not.
+/// Rotates the sherds in `side` against all others: the value of all pairs across at the current rotations, and the max area
+/// that meets at any other rotation, whether or not there is room.
 struct RotationLead {
     double here = 0, elsewhere = 0;
 };
 RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
                      const std::vector<bool>& side, int steps);
 
-/// The rotation of one sherd at which it shares least surface with the others that count.
+/// The rotation of one sherd at which it overlaps least with the others that count.
 double least_shared_rotation(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
                              std::size_t sherd, double& shared);
 

@@ -63,7 +63,7 @@ struct DescriptorSearch::Cache {
     std::optional<Curvature> curvature;
     std::optional<std::vector<double>> thickness;
 
-    /// The box of the region asked for last: its three quantities are asked for one after the other.
+    /// Caches the box of the last region: its three quantities are queried one after the other.
     const OrientedBox& box_of(const Mesh& mesh, const Annotation& annotation) {
         if (boxed_faces != annotation.faces) {
             std::vector<std::array<double, 3>> points;
@@ -77,12 +77,12 @@ struct DescriptorSearch::Cache {
         return box;
     }
 
-    /// The mesh cut along the curves of free annotations, and what is asked of them there.
+    /// The mesh cut along the curves of free annotations, with a search for quantities on it.
     struct Cut {
         AnnotationSet given;
         CutMesh object;
         std::unique_ptr<DescriptorSearch> search;
-        /// An annotation along the edges of the cut mesh; null if it is not cut along that one.
+        /// The annotation along the edges of the cut mesh; null if the mesh is not cut along this annotation.
         [[nodiscard]] const Annotation* plain(const Annotation& annotation) const {
             const Annotation* known = given.find(annotation.id);
             if (known == nullptr || known->curves != annotation.curves || known->faces != annotation.faces) return nullptr;
@@ -102,7 +102,7 @@ struct DescriptorSearch::Cache {
         cut->search = std::make_unique<DescriptorSearch>(cut->object.mesh);
         return *cut;
     }
-    std::vector<Annotation> expected;  ///< free ones that will be asked for: cut along all at once
+    std::vector<Annotation> expected;  ///< free annotations to be queried: the mesh is cut along all at once
 
 private:
     std::vector<Index> boxed_faces;
@@ -171,7 +171,7 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
 std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, const std::vector<NamedMap>& maps) {
     std::vector<Quantity> result;
     const std::string who = name_of(annotation);
-    // A free annotation is described on the mesh cut along its curves, with the values of the mesh as it is.
+    // A free annotation is described on the mesh cut along its curves, with the values of the original mesh.
     const Cache::Cut* cut = is_free(annotation) ? &cache_->cut_of(mesh_, annotation) : nullptr;
     const Mesh& mesh = cut == nullptr ? mesh_ : cut->object.mesh;
     const Annotation& plain = cut == nullptr ? annotation : *cut->plain(annotation);
@@ -214,7 +214,7 @@ std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, c
             weights.push_back(area);
         }
         if (!values.empty()) add_statistics(result, "thickness", statistics(values, weights, who), 1);
-        // How much of the region has one: rays leave an open mesh without meeting it.
+        // Share of the region with a thickness: rays may leave an open mesh without a hit.
         result.push_back(number("thickness share", all > 0 ? with / all : 0, 0));
     }
     for (const NamedMap& map : maps)

@@ -62,7 +62,7 @@ public:
         }
     }
 
-    /// `measured` is the same annotation with its values computed anew.
+    /// `measured` is the same annotation with recomputed values.
     void values(const Annotation& annotation, const Annotation& measured, const std::string& at) {
         for (std::size_t i = 0; i < annotation.attributes.size(); ++i) {
             const Attribute& attribute = annotation.attributes[i];
@@ -106,7 +106,7 @@ private:
     }
 
     void line(const Annotation& annotation, const std::string& at) {
-        if (is_free(annotation)) return;  // its edges are only the nearest
+        if (is_free(annotation)) return;  // its edges are only the nearest ones
         if (annotation.polylines.empty()) defect(at, "there are no poly-lines" + because(annotation));
         std::set<std::pair<Index, Index>> edges;
         for (std::size_t i = 0; i < annotation.polylines.size(); ++i) {
@@ -160,7 +160,7 @@ AnnotationSummary summarise(const Mesh& mesh, const Annotation& annotation) {
         case AnnotationType::region: {
             const RegionMeasures measures = measure_region(mesh, annotation);
             summary.elements = annotation.faces.size();
-            // Faces that a curve cuts may hold parts together which faces of the nearer side do not.
+            // Faces cut by a curve may connect parts that the selected faces alone do not.
             std::vector<Index> touched;
             for (const auto& [face, share] : face_shares(mesh, annotation)) touched.push_back(face);
             summary.patches = count_patches(mesh, touched);

@@ -14,14 +14,14 @@ namespace ostraka {
 HullSize hull_size(const std::vector<Point>& points) {
     check_cancelled();
     if (points.size() < 4) return {};
-    // Near the origin, so that nothing is lost; a plane hull has no inside.
+    // Relative to the first point, for precision; a planar hull has no interior.
     std::vector<Point> near;
     near.reserve(points.size());
     for (const Point& p : points) near.push_back(CGAL::ORIGIN + (p - points.front()));
     CGAL::Surface_mesh<Point> hull;
     CGAL::convex_hull_3(near.begin(), near.end(), hull);
     if (hull.number_of_faces() < 4) return {};
-    // The order of the hull's faces, and where each begins, hangs on where its parts lie in memory: not that of the sum.
+    // The order of the hull's faces and their first corners depend on memory addresses; the order of summation must not.
     std::vector<double> volumes, areas;
     for (const Face face : hull.faces()) {
         const Halfedge any = hull.halfedge(face);

@@ -21,7 +21,7 @@ namespace {
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
-/// A pin: where it is, and the vertices from which edge paths start with the way to each.
+/// A pin: its position, and the vertices from which edge paths start with the distance to each.
 struct Pin {
     Point point{0, 0, 0};
     Index face = no_index;  ///< of a pin inside a face
@@ -29,7 +29,7 @@ struct Pin {
     std::vector<std::pair<Vertex, double>> gates;
 };
 
-/// Evaluates measures on one mesh; the path search is made when the first tape needs it.
+/// Evaluates measures on one mesh; the path search is created for the first tape.
 class Evaluator {
 public:
     explicit Evaluator(const Mesh& mesh) : mesh_(mesh) {}
@@ -88,7 +88,7 @@ private:
         return sum;
     }
 
-    /// Variance of a picked place in each direction.
+    /// Variance of a pin's position in each direction.
     [[nodiscard]] double variance(const Pin& pin) const {
         double area = 0;
         if (pin.face != no_index) area = face_area(mesh_, Face(pin.face));
@@ -98,7 +98,7 @@ private:
         return area / (4 * pi);
     }
 
-    /// Variance of a measure by the resolution at its pins.
+    /// Variance of a measure due to the resolution at its pins.
     [[nodiscard]] double resolution(const std::vector<Pin>& pins, const Measure& measure) const {
         double sum = 0;
         if (measure.tool == "bounding") {
@@ -107,7 +107,7 @@ private:
         }
         for (std::size_t i = 0; i < pins.size(); ++i) {
             Vector derivative(0, 0, 0);
-            double alone = 0;  // pins in one place: away from each other in any direction
+            double alone = 0;  // coincident pins: may separate in any direction
             for (const std::size_t k : {i - 1, i + 1}) {
                 if (k >= pins.size()) continue;
                 const Vector way = pins[i].point - pins[k].point;
@@ -155,7 +155,7 @@ private:
         result.node.barycentric = weights;
         result.node.point = result.point;
         for (std::size_t k = 0; k < 3; ++k) {
-            if (weights[k] >= 1) {  // the pin is this corner
+            if (weights[k] >= 1) {  // the pin coincides with this corner
                 result.gates.assign(1, {corner[k], 0.0});
                 result.node = surface_node(mesh_, corner[k]);
                 result.face = no_index;
@@ -176,7 +176,8 @@ private:
 
     static Vector unit_direction(const std::array<double, 3>& d) { return unit_vector({d[0], d[1], d[2]}); }
 
-    /// The pins lowest and highest along a unit vector, heights taken from the first so that nothing is lost far from the origin.
+    /// The lowest and highest pins along a unit vector; heights are relative to the first pin, for precision far from the
+    /// origin.
     static std::pair<std::size_t, std::size_t> outermost(const std::vector<Pin>& pins, const Vector& direction) {
         std::size_t lowest = 0, highest = 0;
         double low = 0, high = 0;

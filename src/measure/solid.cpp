@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-/// The middle of the region's box: sums about it lose nothing far from the origin.
+/// The centre of the region's box: sums relative to it keep their precision far from the origin.
 Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
     CGAL::Bbox_3 box;
     for (const Index face : faces)
@@ -23,7 +23,7 @@ Point middle_of(const Mesh& mesh, const std::vector<Index>& faces) {
                                  box.zmin() + (box.zmax() - box.zmin()) / 2);
 }
 
-/// A sum of many numbers without loss (Neumaier 1974).
+/// Compensated summation (Neumaier 1974).
 class CompensatedSum {
 public:
     CompensatedSum& operator+=(double x) {
@@ -44,7 +44,8 @@ public:
     explicit Tetrahedra(const Point& origin) : origin_(origin) {}
     void add(const Point& a, const Point& b, const Point& c) {
         const Vector u = a - origin_, v = b - origin_, w = c - origin_;
-        // c . n A / 3 with the centroid c and the area vector n A of the triangle, about one corner for the area's sake.
+        // c . n A / 3 with the centroid c and the area vector n A of the triangle, relative to one corner for the precision of
+        // the area.
         const Vector centre = (u + v + w) / 3, area = CGAL::cross_product(v - u, w - u) / 2;
         const double volume = centre * area / 3;
         volume_ += volume;
@@ -110,7 +111,7 @@ RegionSolid region_solid(const Mesh& mesh, const std::vector<Index>& faces) {
     result.volume = sum.volume();
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const double size = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
-    // A solid so thin that its volume is rounding has no centroid to tell.
+    // A solid so thin that its volume is rounding error has no reliable centroid.
     result.centroid = std::abs(result.volume) > 1e-13 * size * size * size ? sum.centroid() : surface_centroid(mesh, faces);
     return result;
 }

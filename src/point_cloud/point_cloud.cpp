@@ -33,7 +33,7 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
             "points",
             "there are " + std::to_string(points.size()) + ", too few for normals from " + std::to_string(wanted) + " neighbours",
             "give more, or fewer neighbours");
-    // About their middle, at the size of one: what follows squares and multiplies places.
+    // Normalised to centre 0 and size 1, as the coordinates are squared and multiplied below.
     CGAL::Bbox_3 box;
     for (const Point& p : points) box += p.bbox();
     const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
@@ -47,7 +47,7 @@ std::vector<Vector> estimate_normals(const std::vector<Point>& points, const Clo
     const auto named = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
                            .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
     CGAL::jet_estimate_normals<CGAL::Sequential_tag>(cloud, wanted, named);
-    // Puts those it can orient in front.
+    // Moves the points that it can orient to the front.
     CGAL::mst_orient_normals(cloud, wanted, named);
     std::vector<Vector> normals(points.size());
     double flux = 0;

@@ -1,4 +1,4 @@
-// Points without faces, from files.
+// Reads points without faces from files.
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 #include "ostraka/io/mesh_file.h"
@@ -12,7 +12,7 @@ namespace ostraka {
 
 namespace {
 
-/// Numbers of a line apart from spaces, commas, semicolons and tabs; false where something else stands.
+/// Parses the numbers of a line, separated by spaces, commas, semicolons and tabs; false for any other content.
 bool numbers_of_line(std::string_view line, std::vector<double>& numbers) {
     numbers.clear();
     const char *at = line.data(), *end = at + line.size();
@@ -45,7 +45,7 @@ PointCloud read_text(const Path& file) {
         const std::string where = name + ", line " + std::to_string(line);
         if (!numbers_of_line(text, numbers))
             fail_input(where, "is not a list of numbers", "give x y z, or x y z nx ny nz, a line");
-        if (numbers.size() == 1 && cloud.points.empty() && columns == 0) continue;  // a count of points, as .pts has
+        if (numbers.size() == 1 && cloud.points.empty() && columns == 0) continue;  // a count of points, as in .pts files
         if (numbers.size() < 3) fail_input(where, "has fewer than three numbers", "give x y z, or x y z nx ny nz, a line");
         if (columns == 0) columns = numbers.size();
         if (numbers.size() != columns)

@@ -1,4 +1,4 @@
-// A surface through points.
+// Surface reconstruction from points.
 #include "ostraka/core/error.h"
 #include "ostraka/io/repair.h"
 #include "ostraka/point_cloud/point_cloud.h"
@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-/// Edges that are far longer than the points' spacing are given the worst priority: the front never crosses them.
+/// Gives edges far longer than the point spacing the worst priority, so that the front never crosses them.
 struct EdgeLimit {
     double longest;
     template <class Reconstruction, class Cell>
@@ -32,7 +32,7 @@ bool on_a_line(const std::vector<Point>& points) {
     const auto far = std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
         return CGAL::squared_distance(points.front(), p) < CGAL::squared_distance(points.front(), q);
     });
-    constexpr double none = 1e-20;  // squared, of points the size of one
+    constexpr double none = 1e-20;  // squared, for points of size 1
     const Vector along = *far - points.front();
     return std::all_of(points.begin(), points.end(),
                        [&](const Point& p) { return CGAL::cross_product(p - points.front(), along).squared_length() <= none; });
@@ -45,7 +45,7 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
     const std::vector<Vector> estimated =
         cloud.normals.size() == cloud.points.size() ? std::vector<Vector>() : estimate_normals(cloud.points, options);
     const std::vector<Vector>& normals = estimated.empty() ? cloud.normals : estimated;
-    // About their middle, at the size of one.
+    // Normalised to centre 0 and size 1.
     CGAL::Bbox_3 box;
     for (const Point& p : cloud.points) box += p.bbox();
     const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);

@@ -17,9 +17,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Log odds of a candidate before anything is seen of it: there are several to a pair, and most pairs do not meet.
+/// Prior log odds of a candidate: each pair has several, and most pairs do not meet.
 constexpr double prior = -2;
-/// Log odds below what is needed at which a join is not looked at.
+/// A join whose log odds are lower than needed by more than this is not examined.
 constexpr double hopeless_edge = 4;
 
 }  // namespace
@@ -78,7 +78,7 @@ std::vector<std::vector<std::size_t>> FragmentGroups::groups() const {
     return list;
 }
 
-/// Pairs of fragments of two groups that may touch where `join` lays the second group.
+/// Pairs of fragments of two groups that may touch if `join` is applied to the second group.
 FragmentPairs FragmentGroups::close_pairs(std::size_t a, std::size_t b, const Motion& join) const {
     FragmentPairs close;
     for (const std::size_t i : members_.at(a))
@@ -87,12 +87,12 @@ FragmentPairs FragmentGroups::close_pairs(std::size_t a, std::size_t b, const Mo
     return close;
 }
 
-/// The second group as one body onto the first, by all that then comes into contact: what one join leaves of an error
-/// grows with the distance from it.
+/// Registers the second group, as one rigid body, with the first by all contacts: the error of a single join grows with the
+/// distance from it.
 Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const {
     if (members_.at(a).size() + members_.at(b).size() < 3) return join;
     constexpr int steps = 12;
-    constexpr double widest = 4;  // tolerances
+    constexpr double widest = 4;  // in tolerances
     constexpr std::size_t samples = 300;
     for (int step = 0; step < steps; ++step) {
         const double wide = std::pow(widest, 1 - std::min(1.0, 1.5 * step / (steps - 1)));
@@ -112,14 +112,14 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
         for (std::size_t k = 0; k < close.size(); ++k) {
             const auto [i, j] = close[k];
             const Motion moved_b = join.after(poses_[j]);
-            // A sample stands for the same area whichever fragment it is of.
+            // A sample represents the same area on either fragment.
             for (const bool back : {false, true}) {
                 const Motion &on = back ? moved_b : poses_[i], &from = back ? poses_[i] : moved_b;
                 const double each = loose_[back ? i : j].fracture_area();
                 for (const ContactPoint& one : contacts[2 * k + (back ? 1 : 0)]) {
                     Vector3d point = from(one.on_b), normal = on.rotation * one.normal;
                     const double off = normal.dot(on(one.on_a) - point);
-                    // Seen from the second, its plane moves onto the first's place.
+                    // For samples of the first, the plane of the second is moved to the point of the first.
                     if (back) point += off * normal, normal = -normal;
                     planes.push_back({point, normal, off, each * one.weight});
                 }
@@ -130,7 +130,7 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
     return join;
 }
 
-/// What is seen when the groups of an edge's fragments are joined by it.
+/// The evidence if the groups of an edge's fragments are joined along it.
 FragmentGroups::Verdict FragmentGroups::examine(const PairEdge& edge) const {
     Verdict verdict;
     const Motion told = poses_[edge.a].after(edge.pose).after(poses_[edge.b].inverse());
@@ -158,7 +158,7 @@ FragmentGroups::Verdict FragmentGroups::examine(const PairEdge& edge) const {
         const double t = loose_.tolerance(i, j), smaller = std::min(loose_[i].fracture_area(), loose_[j].fracture_area()),
                      inside = seen[k].penetration * std::max(seen[k].area * t * t, 0.01 * smaller);
         constexpr double touches = 0.03;
-        // Where breaks touch, coarse or noisy ones overlap in places.
+        // Coarse or noisy fractures overlap in places where they touch.
         const double too_much = seen[k].share > touches ? 0.4 : 0.2;
         if (inside > too_much * smaller) {
             verdict.against = loose_[j].name() + " would lie inside " + loose_[i].name();
@@ -173,7 +173,7 @@ FragmentGroups::Verdict FragmentGroups::examine(const PairEdge& edge) const {
     return verdict;
 }
 
-/// What was seen of an edge still holds.
+/// Whether the verdict on an edge is up to date.
 bool FragmentGroups::up_to_date(std::size_t e) const {
     return seen_[e] && seen_[e]->a == version_[graph_.edges()[e].a] && seen_[e]->b == version_[graph_.edges()[e].b];
 }
@@ -182,7 +182,7 @@ void FragmentGroups::look_at(std::size_t e) {
     seen_[e] = Seen{version_[graph_.edges()[e].a], version_[graph_.edges()[e].b], examine(graph_.edges()[e])};
 }
 
-/// Each time the best of all as they then are.
+/// Joins the best edge, re-evaluating all edges after each join.
 void FragmentGroups::join_the_surest() {
     while (true) {
         check_cancelled();
@@ -194,7 +194,8 @@ void FragmentGroups::join_the_surest() {
             if (members_.at(edge.a) == members_.at(edge.b)) continue;
             if (!up_to_date(e)) look_at(e);
             if (seen_[e]->verdict.log_odds > maximum) maximum = seen_[e]->verdict.log_odds, best = e;
-            // None further down can overtake it: what others add is bounded in practice by how sure they are.
+            // Edges further down cannot overtake it: the gain from other contacts is bounded in practice by their own
+            // certainty.
             if (best < graph_.edges().size() && edge.boosted < maximum - 12) break;
         }
         if (best == graph_.edges().size()) break;
@@ -202,8 +203,9 @@ void FragmentGroups::join_the_surest() {
     }
 }
 
-/// Of many: what an edge promised when it was last looked at stands until it is the best of all promises; only then it is
-/// looked at again. One that something speaks against is not looked at again, one that falls short twice more.
+/// For many fragments (lazy evaluation): the log odds from the last examination of an edge stand until they are the highest of
+/// all; only then is the edge examined again. An edge with evidence against it is not examined again; one that falls short,
+/// twice more.
 void FragmentGroups::join_as_promised() {
     using Promise = std::pair<double, std::size_t>;  // log odds, edge
     const auto later = [](const Promise& x, const Promise& y) {
@@ -224,7 +226,7 @@ void FragmentGroups::join_as_promised() {
         if (up_to_date(e)) {
             join(edge, seen_[e]->verdict.join);
             progress.advance();
-            // More touches now.
+            // The group has grown and touches more fragments.
             std::erase_if(short_of, [&](std::size_t other) {
                 if (up_to_date(other)) return false;
                 promises.emplace(std::min(graph_.edges()[other].boosted, needed_), other);
@@ -256,7 +258,7 @@ void FragmentGroups::join(const PairEdge& edge, const Motion& move) {
     constexpr double grown = 1.2;
     std::size_t refined = 0;
     for (const std::size_t k : all) refined = std::max(refined, refined_[k]);
-    // Of large groups not at each join: the time would go with the square of their size.
+    // Large groups are not refined after each join: the time would be quadratic in their size.
     if (all.size() > small && static_cast<double>(all.size()) < grown * static_cast<double>(refined)) return;
     refine(all, 3);
     for (const std::size_t k : all) refined_[k] = all.size();

@@ -1,4 +1,4 @@
-// Fragments joined to groups, the surest join first.
+// Joins fragments to groups, most certain join first.
 #pragma once
 
 #include "pair_graph.h"
@@ -11,30 +11,30 @@ namespace ostraka {
 
 class FragmentGroups {
 public:
-    /// All alone.
+    /// Starts with single fragments.
     FragmentGroups(const LooseFragments& loose, const PairGraph& graph, const ReassemblyOptions& options);
 
-    /// Joins groups while that is likely enough. `all`: of few fragments each time the best of all as they then are; of many,
-    /// what a join promised when it was last looked at stands.
+    /// Joins groups while the probability is high enough. `all`: few fragments, all edges are re-evaluated after each join;
+    /// otherwise edges are re-evaluated lazily.
     void merge(bool all);
-    /// Likely poses that were not taken.
+    /// Likely poses that were rejected.
     [[nodiscard]] std::vector<UndoneJoin> undone() const;
 
-    /// Of two fragments or more, the largest first.
+    /// Groups of two or more fragments, largest first.
     [[nodiscard]] std::vector<std::vector<std::size_t>> groups() const;
-    /// Into the frame of the group.
+    /// Maps the fragment into the frame of its group.
     [[nodiscard]] const Motion& pose(std::size_t k) const { return poses_[k]; }
     /// Refines the poses of a group together.
     void refine(const std::vector<std::size_t>& group, int rounds);
-    /// Pairs of a group that touch where they are, and what is seen of that.
+    /// Pairs of a group that touch in their current poses, with their evidence.
     [[nodiscard]] std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> meetings(
         const std::vector<std::size_t>& group) const;
 
 private:
     struct Verdict {
-        Motion join;  ///< of the second group onto the first
+        Motion join;  ///< maps the second group onto the first
         double log_odds = 0;
-        std::string against;  ///< empty: nothing
+        std::string against;  ///< evidence against the join; empty: none
     };
     struct Seen {
         std::size_t a, b;  ///< versions of the groups
@@ -52,14 +52,14 @@ private:
 
     const LooseFragments& loose_;
     const PairGraph& graph_;
-    double needed_;                   ///< log odds
-    std::vector<std::size_t> order_;  ///< edges, the surest first
+    double needed_;                   ///< min log odds of a join
+    std::vector<std::size_t> order_;  ///< edges, most certain first
     std::vector<Motion> poses_;
-    std::map<std::size_t, std::vector<std::size_t>> members_;  ///< of each fragment: its group
-    std::vector<std::size_t> version_;                         ///< of each fragment's group
-    std::vector<std::size_t> refined_;  ///< of each fragment: how large its group was when it was last refined
+    std::map<std::size_t, std::vector<std::size_t>> members_;  ///< per fragment: the members of its group
+    std::vector<std::size_t> version_;                         ///< per fragment: version of its group
+    std::vector<std::size_t> refined_;                         ///< per fragment: size of its group when it was last refined
     std::size_t versions_ = 0;
-    std::vector<std::optional<Seen>> seen_;  ///< of each edge
+    std::vector<std::optional<Seen>> seen_;  ///< per edge
 };
 
 }  // namespace ostraka

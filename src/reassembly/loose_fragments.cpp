@@ -55,12 +55,12 @@ void LooseFragments::prepare(const Fragment& given, std::size_t k, std::string& 
     for (const Vertex v : mesh.vertices()) radius_[k] = std::max(radius_[k], (eigen(mesh.point(v)) - middle_[k]).norm());
 }
 
-/// Why a break cannot tell what it belongs to, before it is laid against any other; empty: it may.
+/// Why a fracture cannot be matched with any other; empty: it can.
 std::string LooseFragments::what_hides_the_break(const PreparedBreak& one) const {
-    constexpr std::size_t little = 30;  // coarse sherds of a thousand faces have breaks of about a hundred
+    constexpr std::size_t little = 30;  // coarse sherds of a thousand faces have about a hundred fracture faces
     if (one.fracture_faces() < little)
         return "its break has " + std::to_string(one.fracture_faces()) + " faces, too few to show how it broke";
-    constexpr double smooth = 0.7;  // tolerances
+    constexpr double smooth = 0.7;  // in tolerances
     if (!effort_.all && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
         return "its break is so smooth that it fits too many of so many fragments";
     return "";

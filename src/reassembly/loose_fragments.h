@@ -1,4 +1,4 @@
-// The fragments of a box, prepared, before anything is known of what belongs together.
+// The prepared fragments of a collection, before they are grouped.
 #pragma once
 
 #include "ostraka/reassembly/reassembly.h"
@@ -10,7 +10,7 @@ namespace ostraka {
 
 class LooseFragments {
 public:
-    /// `alone` is told why a fragment cannot show what it belongs to.
+    /// `alone` gets the reason why a fragment cannot be matched.
     LooseFragments(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairEffort& effort,
                    std::vector<std::string>& alone);
 
@@ -23,13 +23,13 @@ public:
     /// Mean of the vertices.
     [[nodiscard]] const Eigen::Vector3d& middle(std::size_t k) const { return middle_[k]; }
 
-    /// Length within which two breaks are taken to touch.
+    /// Distance within which two fractures count as touching.
     [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const;
     /// Whether two fragments may touch in these poses.
     [[nodiscard]] bool near(std::size_t i, const Motion& of_i, std::size_t j, const Motion& of_j) const {
         return (of_i(middle_[i]) - of_j(middle_[j])).norm() < radius_[i] + radius_[j];
     }
-    /// Two poses of fragment `k` into the frame of another are the same for what a loop asks.
+    /// Whether two poses of fragment `k` in the frame of another fragment are equal within the tolerance of a loop.
     [[nodiscard]] bool agree(const Motion& x, const Motion& y, std::size_t k, double length) const;
     [[nodiscard]] double loop_length(std::size_t i, std::size_t j, std::size_t k) const;
 

@@ -16,10 +16,10 @@ namespace {
 
 struct Look {
     double area = 0, volume = 0;
-    double width = 0;  ///< of the break: of a sherd its wall; 0: not known
+    double width = 0;  ///< width of the fracture: for a sherd, its wall thickness; 0: unknown
 };
 
-/// Twice the area of the break by the length of its rim.
+/// Twice the area of the fracture divided by the length of its rim.
 double break_width(const Fragment& fragment) {
     if (fragment.facets.empty()) return 0;
     const auto broken = [&](Halfedge h) {
@@ -56,14 +56,14 @@ bool closed(const Mesh& mesh) {
     return std::none_of(mesh.halfedges().begin(), mesh.halfedges().end(), [&](Halfedge h) { return mesh.is_border(h); });
 }
 
-/// The same faces in the same order, of the same areas.
+/// Whether the meshes have the same faces in the same order, by area.
 bool alike(const Mesh& a, const Mesh& b, double area) {
     double off = 0;
     for (const Face f : a.faces()) off += std::abs(face_area(a, f) - face_area(b, f));
     return off < 1e-4 * area;
 }
 
-/// Whether a rigid motion brings the vertices onto each other; else a mirror image does.
+/// Whether a rigid motion maps the vertices onto each other; otherwise a reflection does.
 bool by_motion(const Mesh& a, const Mesh& b) {
     std::vector<Eigen::Vector3d> from, to;
     const std::size_t n = a.number_of_vertices(), step = std::max<std::size_t>(1, n / 500);
@@ -113,7 +113,7 @@ std::vector<OddFragment> odd_fragments(const std::vector<Fragment>& fragments) {
     for (std::size_t k = 0; k < fragments.size(); ++k) {
         const double ratio = std::sqrt(looks[k].area) / usual, times = ratio < 1 ? 1 / ratio : ratio,
                      width_ratio = looks[k].width / usual_width;
-        // Fragments of one vessel may well differ by five, but then their walls do not.
+        // Fragments of one vessel may differ in size by a factor of five, but not their walls in thickness.
         const bool known = looks[k].width > 0 && widths.size() > 1,
                    as_thick = !known || !(ratio < 1 ? width_ratio < 0.2 : width_ratio > 5);
         if (!(looks[k].area > 0) || times < (as_thick ? 8 : 5)) continue;

@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// All pairs; of many fragments each with those whose breaks are most nearly as wide as its own.
+/// All pairs; with many fragments, each fragment with those of most similar fracture width.
 FragmentPairs alike_in_width(const std::vector<std::unique_ptr<PreparedBreak>>& fragments, std::size_t reach) {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < fragments.size(); ++k)
@@ -33,12 +33,12 @@ PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options)
     effort.all = fragments <= partners + 1;
     effort.partners = partners;
     if (effort.all) return effort;
-    // From a hundred on, of each less.
+    // From a hundred fragments on, the effort per pair decreases.
     constexpr std::size_t hundred = 100;
     const double share = std::min(1.0, static_cast<double>(hundred) / static_cast<double>(fragments));
     const auto less = [&](int all, int least) { return std::min(all, std::max(least, static_cast<int>(share * all))); };
     PairOptions& first = effort.first;
-    // Breaks keep their samples: where they lie wider apart than the tolerance, nothing counts as contact.
+    // Fractures keep their samples: with a spacing above the tolerance nothing would count as contact.
     first.samples = less(options.pairs.samples, 500);
     effort.prepared.frames = first.frames = effort.thorough.frames = less(options.pairs.frames, 80);
     first.starts = less(std::min(options.pairs.starts, 60), 24);
@@ -52,7 +52,7 @@ PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options)
 FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedBreak>>& fragments, const PairEffort& effort) {
     const FragmentPairs list = alike_in_width(fragments, std::max<std::size_t>(60, 2 * effort.partners));
     if (effort.all) return list;
-    // Of very many pairs each is looked at by fewer places.
+    // Very many pairs are compared with fewer frames each.
     constexpr std::size_t very_many = 5000;
     const std::size_t places = list.size() > very_many ? 24 : 64;
     std::vector<double> score(list.size());

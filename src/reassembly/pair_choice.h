@@ -1,4 +1,4 @@
-// Which pairs of a box are tried, and how thoroughly.
+// Selects the pairs of a collection to try, and the effort for each.
 #pragma once
 
 #include "ostraka/reassembly/reassembly.h"
@@ -9,23 +9,23 @@ namespace ostraka {
 
 using FragmentPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// How thoroughly pairs are looked at among so many fragments.
+/// Effort of the search, by the number of fragments.
 struct PairEffort {
     bool all = true;           ///< few fragments: all pairs, with `first` only
-    PairOptions prepared;      ///< with which fragments are prepared
-    PairOptions first;         ///< with which pairs are tried
-    std::size_t partners = 0;  ///< of each fragment, that are tried
-    PairOptions thorough;      ///< for those that the first look leaves open
+    PairOptions prepared;      ///< options for preparing the fragments
+    PairOptions first;         ///< options for trying the pairs
+    std::size_t partners = 0;  ///< per fragment, number of partners that are tried
+    PairOptions thorough;      ///< options for the pairs that the first attempt leaves open
     std::size_t most_thorough = 0;
 };
 
-/// Of up to `partners` + 1 fragments all pairs are tried, with all that the options ask for. Of more the work is bounded: a first
-/// look with fewer starts, and, from a hundred fragments on, fewer places, at the pairs that fit best quickly; the thorough one
-/// at so many of those that it leaves open. All numbers depend on that of the fragments only.
+/// Up to `partners` + 1 fragments: all pairs, with the given options. More fragments: the work is bounded. The pairs with the
+/// best quick fit are tried with fewer starts and, from a hundred fragments on, fewer frames; a bounded number of those that
+/// stay open is tried thoroughly. All limits depend on the number of fragments only.
 PairEffort effort_among(std::size_t fragments, const ReassemblyOptions& options);
 
-/// Pairs to be tried, in order. Of many fragments those of which one is among the partners that the other quickly fits best with;
-/// compared are those whose breaks are most nearly as wide. `fragments`: null where one takes no part.
+/// Pairs to try, in order. With many fragments: pairs in which one is among the best quick fits of the other; only fractures of
+/// similar width are compared. `fragments`: null for a fragment that takes no part.
 FragmentPairs promising_pairs(const std::vector<std::unique_ptr<PreparedBreak>>& fragments, const PairEffort& effort);
 
 }  // namespace ostraka

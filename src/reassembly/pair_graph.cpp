@@ -18,7 +18,7 @@ PairGraph::PairGraph(const LooseFragments& loose, const PairEffort& effort, cons
     result.pairs_left = takes_part > 0 ? takes_part * (takes_part - 1) / 2 - list.size() : 0;
     pairs_ = tried("lay breaks against each other", list, effort.first, memory);
     if (!effort.all) {
-        // Once more and thoroughly where the first look leaves it open.
+        // Tries the pairs that the first attempt leaves open again, thoroughly.
         constexpr double hopeless = 0.003, beyond_doubt = 0.98;
         std::vector<std::size_t> open;
         for (std::size_t p = 0; p < pairs_.size(); ++p)
@@ -89,7 +89,7 @@ const std::vector<std::size_t>& PairGraph::edges_of(std::size_t i, std::size_t j
     return found == of_pair_.end() ? none : found->second;
 }
 
-/// Edges that close loops of three get surer by how sure the other two are.
+/// Edges that close loops of three gain probability from that of the other two.
 void PairGraph::close_loops() {
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) {

@@ -11,28 +11,29 @@ namespace ostraka {
 inline double logit(double p) { return std::log(p / (1 - p)); }
 inline double probability(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
-/// How much likelier it is that a right pose closes a loop with two right ones than that a wrong one does: the inverse of the
-/// share of poses within the tolerances of `agree`, by far on the safe side (poses are not spread evenly over all motions).
+/// Likelihood ratio of a loop closure: a correct pose closes a loop with two correct ones this many times more often than a
+/// wrong pose does. Inverse of the share of poses within the tolerances of `agree`, with a wide safety margin (poses are not
+/// uniformly distributed).
 constexpr double loop_gain = 1000;
 
 /// A candidate of a pair.
 struct PairEdge {
     std::size_t a, b;  ///< a < b
-    Motion pose;       ///< b onto a
-    double own;        ///< log odds by the two alone
-    double boosted;    ///< with loops
+    Motion pose;       ///< maps b onto a
+    double own;        ///< log odds from the two fragments alone
+    double boosted;    ///< log odds including loops
 };
 
 class PairGraph {
 public:
-    /// Tries the pairs that are promising. Notes in `result` how many those are.
+    /// Tries the promising pairs and writes their number to `result`.
     PairGraph(const LooseFragments& loose, const PairEffort& effort, const PairMemory& memory, Reassembly& result);
 
     [[nodiscard]] const std::vector<PairOfMany>& pairs() const { return pairs_; }
     [[nodiscard]] const std::vector<PairEdge>& edges() const { return edges_; }
-    /// Candidates of a pair, the lower number first; none of one that was not tried.
+    /// Candidates of a pair, the lower index first; empty for a pair that was not tried.
     [[nodiscard]] const std::vector<std::size_t>& edges_of(std::size_t i, std::size_t j) const;
-    /// A pair's probability among so many.
+    /// Probability of a pair, corrected for the number of fragments.
     [[nodiscard]] double probable(double alone) const;
 
 private:
@@ -44,7 +45,7 @@ private:
     const LooseFragments& loose_;
     std::vector<PairOfMany> pairs_;
     std::vector<PairEdge> edges_;
-    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> of_pair_;  ///< edges, the lower number first
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> of_pair_;  ///< edges; the lower index first
 };
 
 }  // namespace ostraka

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Distance of a place of the second fragment from a plane of the first.
+/// Distance of a point of the second fragment from a plane of the first.
 struct OffPlane {
     ContactPoint contact;
     double weight;
@@ -53,7 +53,7 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
         motion.translation = translations[k];
         return motion;
     };
-    // Of large groups fewer, each fragment being held by several neighbours.
+    // Fewer samples in large groups, where several neighbours constrain each fragment.
     const std::size_t samples = std::clamp<std::size_t>(200 * 25 / n, 40, 200);
     for (int round = 0; round < rounds; ++round) {
         check_cancelled();
@@ -83,9 +83,9 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
         if (problem.NumResidualBlocks() < 6) break;
         ceres::Solver::Options options;
         options.linear_solver_type = n < 12 ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
-        options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // no BLAS: several threads may be here
+        options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // no BLAS: several threads may be active here
         options.max_num_iterations = 12;
-        options.num_threads = 1;  // so that sums have one order
+        options.num_threads = 1;  // for a fixed order of summation
         options.logging_type = ceres::SILENT;
         ceres::Solver::Summary summary;
         ceres::Solve(options, &problem, &summary);

@@ -1,4 +1,4 @@
-// Poses of the fragments of a group refined together.
+// Refines the poses of the fragments of a group together.
 #pragma once
 
 #include "ostraka/fracture/break_pair.h"
@@ -7,15 +7,15 @@
 
 namespace ostraka {
 
-/// Fragments that meet, by their numbers, and the length within which their breaks are taken to touch.
+/// Indices of two fragments that meet, and the distance within which their fractures count as touching.
 struct MeetingPair {
     std::size_t first = 0, second = 0;
     double tolerance = 0;
 };
 
-/// Minimises the distances of all contact points from their planes over all poses at once but that of the first fragment
-/// (Levenberg and Marquardt, by Ceres; a robust loss of the width of the tolerance); contacts are found anew `rounds` times, from
-/// twice the tolerance down to it. `poses` are of each of `fragments` into one frame.
+/// Minimises the distances of all contact points from their planes over all poses except that of the first fragment (Levenberg
+/// and Marquardt, by Ceres; a robust loss whose width is the tolerance). The contacts are updated `rounds` times, from twice
+/// the tolerance down to it. `poses` map each of `fragments` into one frame.
 void refine_group(const std::vector<const PreparedBreak*>& fragments, const std::vector<MeetingPair>& meetings,
                   std::vector<Motion>& poses, int rounds);
 

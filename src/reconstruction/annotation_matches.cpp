@@ -19,12 +19,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// What is compared of an annotation.
+/// Features of an annotation for matching.
 struct Portrait {
     const Annotation* annotation;
     std::set<std::string> containers;  ///< tags
     Vector3d centre = Vector3d::Zero();
-    double size = 0;    ///< diagonal of its box
+    double size = 0;    ///< diagonal of its bounding box
     double extent = 0;  ///< area of a region, length of a line
 };
 
@@ -67,7 +67,7 @@ std::vector<Portrait> portraits(const Mesh& mesh, const AnnotationSet& set, cons
     return list;
 }
 
-/// Share of what both say that agrees; 1 where they say nothing in common.
+/// Share of the common attributes that agree; 1 if there are none.
 double agreement(const Annotation& a, const Annotation& b) {
     double sum = 0;
     int count = 0;
@@ -135,7 +135,7 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
         result.back().stated = true;
     }
 
-    // The best assignment among those of one type and tag.
+    // Maximum weight assignment among annotations of one type and tag.
     using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
                                         boost::property<boost::edge_weight_t, double>>;
     const std::size_t n = theirs.size();

@@ -24,7 +24,7 @@ JsonValue placement_of(const FragmentPlacement& one, JsonAllocator& allocator) {
     return entry;
 }
 
-/// What a search had to say of a fragment's pose.
+/// The search result for a fragment's pose.
 JsonValue search_of(const PoseSearchResult& one, JsonAllocator& allocator) {
     JsonValue entry = json_object(allocator, "decided", one.decided, "confidence", one.confidence, "margin", one.margin);
     if (!one.candidates.empty())
@@ -53,7 +53,7 @@ JsonValue joint_of(const BreakJoint& joint, const std::vector<std::string>& name
     return item;
 }
 
-/// Whether a fragment's rotation is decided, and together with whose.
+/// Whether a fragment's rotation is decided, and with which other fragments.
 JsonValue rotation_of(const RotationMatch& rotations, std::size_t fragment, const std::vector<std::string>& names,
                       JsonAllocator& allocator) {
     std::vector<std::string> with;
@@ -148,7 +148,7 @@ struct Statement {
     std::string place;  ///< JSON pointer
 };
 
-/// What is stated of the fragment of this name, with its place in the file.
+/// The statements on the fragment of this name, with their positions in the file.
 std::vector<Statement> statements(const JsonValue& assembly, const std::string& fragment, const std::string& file) {
     validate(assembly, "assembly", file);
     std::map<std::string, std::string> entries;

@@ -1,4 +1,5 @@
-// Assignment of least cost on a sparse graph. No other headers of ours: its source is compiled as C++17, which LEMON needs.
+// Minimum cost assignment on a sparse graph. Includes no other headers of the project: its source is compiled as C++17, for
+// LEMON.
 #pragma once
 
 #include <cstdint>
@@ -6,14 +7,14 @@
 
 namespace ostraka::fitting {
 
-/// A row may be given this column at this cost.
+/// An admissible assignment of a column to a row, with its cost.
 struct AssignmentArc {
     int row, column;
     std::int64_t cost;  ///< at least 0
 };
 
-/// The column of each row, each column given once at most, -1: none, at the cost `unassigned`; with the least sum of costs
-/// (network simplex, LEMON).
+/// The column of each row, each column at most once; -1: none, at the cost `unassigned`. Minimises the sum of costs (network
+/// simplex, LEMON).
 std::vector<int> assign_columns(int rows, int columns, const std::vector<AssignmentArc>& arcs, std::int64_t unassigned);
 
 }  // namespace ostraka::fitting

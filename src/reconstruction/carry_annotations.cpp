@@ -8,7 +8,7 @@ namespace ostraka {
 AnnotationSet carry_annotations(const Mesh& mesh, const AnnotationSet& set, const Reconstruction& result) {
     TransferOptions options;
     options.overlap = false;
-    options.force = true;  // the template stands where the object is: it was fitted to it
+    options.force = true;  // the fitted template is in the frame of the object
     const Mesh fitted = with_points(mesh, result.points);
     AnnotationSet there = set;
     move_extents(mesh, set, fitted, there);

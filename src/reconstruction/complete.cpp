@@ -20,7 +20,7 @@ std::string to_string(Origin origin) { return word_for(origin, {"observed", "int
 
 namespace {
 
-/// Sum of the area vectors of the faces around each vertex that are no fracture.
+/// Per vertex, sum of the area vectors of its faces that are not fracture.
 std::vector<Vector> outer_normals(const PlacedFragment& fragment) {
     std::vector<Vector> normals(fragment.mesh.number_of_vertices(), Vector(0, 0, 0));
     for (const Face face : fragment.mesh.faces()) {
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    /// Where each vertex of the fragment lies on the object, as far as that is still the template's.
+    /// The projection of each vertex of the fragment onto the object, where that is still the template's surface.
     std::vector<std::optional<SurfaceHit>> places(int number, const std::vector<Vector>& normals) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const SurfaceSearch search(object_.mesh);
@@ -95,7 +95,7 @@ private:
         for (const Face face : fragment.mesh.faces()) {
             if (!fragment.facets.empty() && fragment.facets[face] == Facet::fracture) continue;
             const auto c = corners(fragment.mesh, face);
-            // A face that lies across the surface would fold when projected.
+            // A face across the surface would fold when projected.
             keep[face] = std::all_of(c.begin(), c.end(), [&](Vertex v) {
                 return hits[v] && area_vector(fragment.mesh, face) * area_vector(object_.mesh, Face(hits[v]->face)) > 0;
             });
@@ -125,7 +125,7 @@ private:
         object_ = std::move(next);
     }
 
-    /// Vertices of what fragments have given.
+    /// Vertices of faces that come from fragments.
     [[nodiscard]] std::vector<bool> frozen() const {
         std::vector<bool> marks(object_.mesh.number_of_vertices(), false);
         for (const Face face : object_.mesh.faces())
@@ -134,7 +134,7 @@ private:
         return marks;
     }
 
-    /// A fragment that cannot be joined is shown by the template's faces under it.
+    /// For a fragment that cannot be joined, marks the template's faces under it as observed.
     void show(int number, const PlacedFragment& fragment, const std::vector<std::optional<SurfaceHit>>& hits) {
         for (const Face face : fragment.mesh.faces()) {
             const auto c = corners(fragment.mesh, face);

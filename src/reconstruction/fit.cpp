@@ -47,7 +47,7 @@ struct TemplateFitter::State {
     State(const Mesh& of, const AnnotationSet& with, const TemplateCage* around)
         : mesh(of), set(with), cage(around), diagonal(box_diagonal(of)), fine(of) {}
 
-    /// Simplifies the template where that is worth while.
+    /// Simplifies the template if it is large enough.
     void prepare() {
         if (coarse || mesh.number_of_vertices() <= 2 * few) return;
         coarse = std::make_unique<Coarse>(coarsened(mesh, few));
@@ -59,7 +59,7 @@ struct TemplateFitter::State {
                      [&](std::size_t i) { nearest[i] = search.closest(mesh.point(Vertex(static_cast<Index>(i)))); });
     }
 
-    /// Coordinates of the vertices that levels in cage space are solved with.
+    /// Coordinates of the vertices used in cage space levels.
     [[nodiscard]] const CageWeights& weights() {
         if (!coarse) return cage->coordinates.vertex;
         if (coarse_weights.size() == 0)
@@ -67,7 +67,7 @@ struct TemplateFitter::State {
         return coarse_weights;
     }
 
-    /// The fine mesh moved with the surroundings of the nearest place of the coarse one.
+    /// Moves the fine mesh with the neighbourhood of the nearest point of the coarse mesh.
     [[nodiscard]] Points follow(const Fitter& fitter) const {
         const std::vector<Matrix3d> rotations = fitter.rotations();
         Points points(3, static_cast<Eigen::Index>(mesh.number_of_vertices()));
@@ -84,7 +84,7 @@ struct TemplateFitter::State {
         return points;
     }
 
-    /// Over the coarse mesh, or the template where there is none.
+    /// On the coarse mesh, or on the template if there is none.
     [[nodiscard]] Fitter smooth_fitter(const MatchSearch& search, const NonRigidOptions& options) {
         std::vector<CorrespondenceConstraint> correspondences = search.correspondences();
         if (!coarse) return {fine, search, search.labels(mesh, {}), std::move(correspondences), diagonal, options};
@@ -103,7 +103,7 @@ struct TemplateFitter::State {
             diagonal, options};
     }
 
-    /// Levels through the cage; gives the first one that is left for the template's vertices.
+    /// Solves levels in cage space; returns the first level left for the template's vertices.
     int fit_cage(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
         if (cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
         const Points at_rest = columns_of(cage->cage);
@@ -119,9 +119,9 @@ struct TemplateFitter::State {
         return level;
     }
 
-    /// Levels that are smooth on the coarse mesh; gives the first one that is not.
+    /// Solves the levels that are smooth on the coarse mesh; returns the first one that is not.
     int fit_coarse(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
-        constexpr double edges = 0.8;  // least smoothing length, in edges of the coarse mesh
+        constexpr double edges = 0.8;  // min smoothing length, in edges of the coarse mesh
         int level = 0;
         while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
         Fitter over = smooth_fitter(search, options);
@@ -139,8 +139,8 @@ struct TemplateFitter::State {
     CageWeights coarse_weights;
     std::unique_ptr<Coarse> coarse;
     std::unique_ptr<LevelSystem> smooth;  ///< of the coarse mesh
-    double edge = 0;                      ///< mean length of its edges
-    std::vector<SurfaceHit> nearest;      ///< of each vertex on it
+    double edge = 0;                      ///< its mean edge length
+    std::vector<SurfaceHit> nearest;      ///< per vertex, nearest point on it
 };
 
 TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage) {
@@ -180,7 +180,7 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
     else if (s.coarse) level = s.fit_coarse(search, options, fine, fit);
     fine.run(level, options.levels, fit);
     fit.matches = fine.match(options.last_search_radius * s.diagonal, fit);
-    // So far all was in the template's unit.
+    // Converts from the template's unit.
     for (VertexMatch& match : fit.matches) {
         match.place *= scale;
         match.distance *= scale;

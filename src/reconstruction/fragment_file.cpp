@@ -15,7 +15,7 @@ bool has_border(const Mesh& mesh) {
     return std::any_of(mesh.edges().begin(), mesh.edges().end(), [&](Edge e) { return mesh.is_border(e); });
 }
 
-/// Names the file in errors of what is done with its contents.
+/// Adds the file name to errors about its contents.
 template <class Work>
 auto of_file(const Path& file, Work&& work) {
     try {
@@ -79,7 +79,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
         };
         std::vector<Facet> stated = from_file(Facet::outer);
         if (by_shape) {
-            // Faces that no annotation names come out as either of two.
+            // Faces without an annotation differ between the two results.
             const std::vector<Facet> again = from_file(Facet::fracture);
             for (std::size_t f = 0; f < stated.size(); ++f)
                 if (stated[f] == again[f]) fragment.facets[f] = stated[f];

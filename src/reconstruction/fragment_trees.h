@@ -1,4 +1,4 @@
-// Search trees over the faces of a fragment, by what they are to be matched with, in the fragment's own coordinates.
+// Search trees over the faces of a fragment, one per label, in the fragment's own coordinates.
 #pragma once
 
 #include "ostraka/fracture/fragment.h"
@@ -10,26 +10,26 @@
 
 namespace ostraka {
 
-/// The faces of a fragment that carry one label, but for its breaks.
+/// The faces of a fragment with one label, without fractures.
 struct FragmentPart {
-    std::vector<Index> faces;  ///< of the fragment, for each of the part
+    std::vector<Index> faces;  ///< per face of the part, its face of the fragment
     Mesh mesh;
     std::unique_ptr<SurfaceSearch> search;
-    std::vector<bool> edge_breaks, vertex_breaks;  ///< of the part's edges and vertices: where the outer surface ends
+    std::vector<bool> edge_breaks, vertex_breaks;  ///< per edge and vertex of the part: where the outer surface ends
 };
 
-/// Trees of one fragment, kept for as long as its labels are the same.
+/// Trees of one fragment, kept while its labels are unchanged.
 class FragmentTrees {
 public:
     using Parts = std::map<int, FragmentPart>;  ///< by label
 
-    /// `mesh` and `facets` (of each face; empty: all outer) outlive it and do not change.
+    /// `mesh` and `facets` (per face; empty: all outer) must outlive it unchanged.
     FragmentTrees(const Mesh& mesh, const std::vector<Facet>& facets) : mesh_(mesh), facets_(facets) {}
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
-    /// Of vertices: where the outer surface ends.
+    /// Per vertex, whether the outer surface ends there.
     [[nodiscard]] const std::vector<bool>& breaks();
-    /// One part a label that any face has which is no fracture; valid until asked for with other labels.
+    /// One part per label of the faces that are not fracture; valid until queried with other labels.
     [[nodiscard]] const Parts& parts(const std::vector<int>& labels);
 
 private:

@@ -1,4 +1,4 @@
-// Where annotations meet on fragments: the curves to which the template's vertices go that lie where the same two meet.
+// Curves on fragments where two annotations meet: targets of the template's vertices where the same two annotations meet.
 #pragma once
 
 #include "ostraka/fracture/fragment.h"
@@ -12,19 +12,19 @@
 
 namespace ostraka {
 
-/// Edges of fragments between faces of two labels.
+/// Edges of fragments between faces with different labels.
 class JointCurves {
 public:
-    /// Adds those of a fragment. `labels` is of its faces, `breaks` of its vertices; lengths are divided by `scale`. Edges beside
-    /// a fracture are none.
+    /// Adds the edges of a fragment. `labels` is per face, `breaks` per vertex; lengths are divided by `scale`. Edges beside a
+    /// fracture are skipped.
     void add(int fragment, const Mesh& mesh, const std::vector<int>& labels, const std::vector<Facet>& facets,
              const std::vector<bool>& breaks, double scale);
 
     struct Place {
-        VertexMatch match;        ///< fragment -1: nearest is where the fragment ends
+        VertexMatch match;        ///< fragment -1: the nearest point is an end of the fragment
         Eigen::Vector3d along{};  ///< unit direction of the curve
     };
-    /// The nearest place on curves where any two of the labels (ascending) meet, if one is within `search_radius`. O(edges).
+    /// The nearest point on curves where any two of the labels (ascending) meet, if it is within `search_radius`. O(edges).
     [[nodiscard]] std::optional<Place> nearest(const Eigen::Vector3d& place, const std::vector<int>& labels,
                                                double search_radius) const;
 
@@ -33,7 +33,7 @@ private:
         int fragment = 0;
         Index face = no_index;
         Eigen::Vector3d from, to;
-        bool from_ends = false, to_ends = false;  ///< where the fragment ends
+        bool from_ends = false, to_ends = false;  ///< the fragment ends there
     };
     std::map<std::pair<int, int>, std::vector<Segment>> segments_;  ///< by labels, the lower one first
 };

@@ -40,7 +40,7 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
                     weight += 0.5 * cotangent(rest.col(static_cast<Eigen::Index>(v)), rest.col(static_cast<Eigen::Index>(n)),
                                               rest.col(static_cast<Eigen::Index>(mesh.target(mesh.next(side)))));
             rings.neighbour.push_back(static_cast<int>(n.idx()));
-            // Obtuse angles would make the displacement unstable; needles, the weights endless.
+            // Obtuse angles would make the displacement unstable; needle triangles would make the weights unbounded.
             rings.weight.push_back(std::clamp(weight, 0.05, 20.0));
             rings.sum[v] += rings.weight.back();
         }
@@ -163,8 +163,8 @@ std::vector<std::unique_ptr<Constraint>> LevelSystem::constraints() {
 }
 
 Solver& LevelSystem::renewed_solver() {
-    // Where so many weights change the factors are made anew, and nothing is left of what they were; a small system is made
-    // anew as a whole.
+    // With so many changed weights the factors are recomputed, without any remainder of the old ones; a small system is rebuilt
+    // completely.
     constexpr std::size_t many = 2000;
     if (!solver_ || match_.size() < many) {
         solver_ = std::make_unique<MeshSpaceSolver>(constraints(), rest);

@@ -1,4 +1,4 @@
-// The linear system of a fit's levels on one mesh of the template: made once, used by every fit.
+// The linear system of a fit's levels on one mesh of the template: built once, used by every fit.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// Each vertex's neighbours at rest with their cotangent weights, and the area around it.
+/// Each vertex's neighbours at rest with their cotangent weights, and its area.
 struct Rings {
     std::vector<std::size_t> begin;
     std::vector<int> neighbour;
@@ -25,27 +25,28 @@ std::vector<Eigen::Matrix3d> local_rotations(const Rings& rings, const Points& r
 /// that the solution gave to them says nothing of them, and would be carried on from there.
 std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now, const std::vector<bool>& observed);
 
-/// What the three costs of equation 5.2 are made of, over the vertices of a mesh. Nothing here depends on fragments.
+/// The terms of the three costs of equation 5.2, over the vertices of a mesh. Independent of fragments.
 class LevelSystem {
 public:
-    /// The mesh outlives it and does not change.
+    /// The mesh must outlive it unchanged.
     explicit LevelSystem(const Mesh& of);
 
     const Mesh& mesh;
     Points rest;
     Rings rings;
     double mean_area = 1;  ///< of the areas around vertices
-    /// Positions in the solver of what draws a vertex to a place, to where it was, and to its Laplacian displacement.
+    /// Indices of the solver's constraints that attract a vertex to a point, to its earlier position, and to its Laplacian
+    /// displacement.
     [[nodiscard]] std::size_t match(std::size_t vertex) const { return match_[vertex]; }
     [[nodiscard]] std::size_t stay(std::size_t vertex) const { return stay_[vertex]; }
     [[nodiscard]] std::size_t laplacian(std::size_t vertex) const { return laplacian_[vertex]; }  ///< no_constraint: isolated
     static constexpr std::size_t no_constraint = static_cast<std::size_t>(-1);
 
-    /// The solver for a new fit, whose weights have yet to be set. Of an earlier one the order of the unknowns and the symbolic
-    /// factorisation are kept, which depend on the mesh alone, and no numbers: results are those of a new solver to the bit.
+    /// The solver for a new fit, whose weights are not set yet. Keeps the fill-reducing order and the symbolic factorisation of
+    /// an earlier fit, which depend on the mesh alone, but no numbers: results equal those of a new solver to the bit.
     Solver& renewed_solver();
 
-    /// The constraints of a solver, in the positions above; matches weigh nothing yet.
+    /// The constraints of a solver, with the indices above; matches have weight 0.
     std::vector<std::unique_ptr<Constraint>> constraints();
 
 private:

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Some face at a vertex that has one, also at a border.
+/// Any face at a vertex that has one, also at a border.
 Face face_at(const Mesh& mesh, Vertex vertex) {
     for (const Face face : mesh.faces_around_target(mesh.halfedge(vertex)))
         if (face != Mesh::null_face()) return face;
@@ -23,7 +23,7 @@ Face face_at(const Mesh& mesh, Vertex vertex) {
 
 constexpr int no_label = -1;
 
-/// For each face the number that comes with the smallest of the regions that hold it.
+/// For each face the number of the smallest region that contains it.
 std::vector<int> face_labels(const Mesh& mesh, const std::vector<std::pair<const Annotation*, int>>& regions) {
     std::vector<int> labels(mesh.number_of_faces(), no_label);
     std::vector<std::pair<double, std::size_t>> order;
@@ -47,7 +47,7 @@ MatchSearch::MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::
     : scale_(scale), template_(mesh), fragments_(fragments) {
     Motion unit;
     unit.scale = 1 / scale;
-    // Regions that any fragment has.
+    // Regions present on any fragment.
     std::vector<std::pair<const Annotation*, int>> ours;
     for (std::size_t k = 0; k < fragments.size(); ++k) {
         const PlacedFragment& fragment = fragments[k];
@@ -104,7 +104,7 @@ void MatchSearch::add_path_correspondences(const AnnotationSet& set) {
             if (!broken.empty()) std::erase_if(outer.faces, [&](Index f) { return broken[f]; });
             for (const OutlineCorrespondence& correspondence :
                  outline_correspondences(template_, *a, fragment.mesh, outer, broken, landmarks, scale_)) {
-                // Of parts in parts the inner one decides.
+                // Of nested parts the innermost one decides.
                 const auto ring = template_.faces_around_target(template_.halfedge(Vertex(correspondence.vertex)));
                 const bool ours = a->type == AnnotationType::line || std::any_of(ring.begin(), ring.end(), [&](Face face) {
                                       return face != Mesh::null_face() && face_labels_[face] == a->id;
@@ -173,7 +173,7 @@ MatchSearch::Labels MatchSearch::labels(const Mesh& mesh, const std::vector<Inde
 std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& connectivity, const Labels& labels,
                                               double search_radius, double min_cosine) const {
     const std::size_t n = labels.of_vertex.size();
-    // Normals of the shape as it is now.
+    // Normals of the current shape.
     std::vector<Vector3d> normals(n, Vector3d::Zero());
     for (const Face face : connectivity.faces()) {
         const auto c = corners(connectivity, face);
@@ -198,7 +198,7 @@ std::vector<VertexMatch> MatchSearch::matches(const Points& now, const Mesh& con
                 const auto hit = part.search->closest_compatible(
                     point_of(there(place)), vector_of(there.rotation * normals[i] / length), min_cosine, nearest * there.scale);
                 if (!hit) continue;
-                // Beyond the end of what is there, everything is nearest to its rim.
+                // Beyond the fragment's end, its rim would be the nearest point for all vertices.
                 constexpr double on_edge = 1e-6;
                 const Face face(hit->face);
                 const auto c = corners(part.mesh, face);
@@ -227,7 +227,7 @@ std::vector<VertexMatch> MatchSearch::sliding_matches(const Points& now, const M
     parallel_for(found.size(), [&](std::size_t i) {
         const Vector3d place = now.col(static_cast<Eigen::Index>(i));
         if (!labels.shared.empty()) {
-            // Who is on such a fragment is known, and who is not.
+            // For such a fragment it is known which vertices are on it.
             const bool elsewhere = found[i].fragment >= 0 && !shared_[static_cast<std::size_t>(found[i].fragment)].empty();
             if (const VertexMatch& shared = labels.shared[i]; shared.fragment >= 0) {
                 found[i] = shared;
@@ -304,7 +304,7 @@ void MatchSearch::assign(const Points& now, const Mesh& connectivity, const Labe
         for (std::size_t i = 0; i < found.vertices.size(); ++i) {
             const Index v = found.vertices[i], there = found.counterpart[i];
             VertexMatch& match = matches[v];
-            // Of several fragments that have the part the nearest counts.
+            // Of several fragments with the part, the nearest one is used.
             const bool ours = match.fragment == other.fragment || match.fragment < 0;
             if (there == no_index || trees_[static_cast<std::size_t>(other.fragment)]->breaks()[there]) {
                 if (ours) match = VertexMatch();

@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Does what the search left open hold a rotation about the axis? On a small or nearly round part it is one of several motions.
+/// Whether the motions that the search left open include a rotation about the axis. For a small or nearly round part it is one
+/// of several.
 bool rotates_about(const SlippableMotions& slippable, const Vector3d& direction) {
     switch (slippable.kind) {
         case SlippableKind::none:

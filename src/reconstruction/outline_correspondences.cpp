@@ -22,7 +22,7 @@ std::vector<VertexPath> vertex_paths_of(const Mesh& mesh, const Annotation& part
     const auto ends_object = [&](Halfedge h) { return mesh.is_border(h) || (!broken.empty() && broken[mesh.face(h)]); };
     for (const Outline& loop : extract_outlines(mesh, part.faces)) {
         const std::size_t n = loop.size();
-        std::vector<bool> ends(n, false);  // the edge that begins here is none of the annotation's
+        std::vector<bool> ends(n, false);  // the edge that begins here does not belong to the annotation
         for (std::size_t i = 0; i < n; ++i) {
             const Halfedge h = find_halfedge(mesh, Vertex(loop[i]), Vertex(loop[(i + 1) % n]));
             ends[i] = h == Mesh::null_halfedge() || ends_object(h) || ends_object(mesh.opposite(h));
@@ -56,7 +56,7 @@ struct ArcLengthPath {
             if (i + 1 < places.size() || vertex_path.closed) length += (places[(i + 1) % places.size()] - places[i]).norm();
         }
     }
-    /// The place so far along; of a closed path going on at the start.
+    /// The point at an arc length; a closed path continues at its start.
     [[nodiscard]] Vector3d place(double way) const {
         if (vertex_path.closed) way -= length * std::floor(way / length);
         const auto after = std::upper_bound(at.begin(), at.end(), way);
@@ -84,7 +84,7 @@ std::vector<ArcLengthPath> arc_length_paths_of(const Mesh& mesh, std::vector<Ver
     return ways;
 }
 
-/// Where a vertex is on one of the paths: which, and how far along; -1 where it is on none.
+/// The path on which a vertex lies and its arc length there; -1 if it is on none.
 std::pair<int, double> on_vertex_path(const std::vector<ArcLengthPath>& ways, const Vector3d& place) {
     std::pair<int, double> found{-1, 0};
     double minimum = std::numeric_limits<double>::infinity();
@@ -100,10 +100,11 @@ std::pair<int, double> on_vertex_path(const std::vector<ArcLengthPath>& ways, co
 
 struct PathCorrespondences {
     std::vector<OutlineCorrespondence> correspondences;
-    std::size_t pieces = 0;  ///< between landmarks that follow each other on both
+    std::size_t pieces = 0;  ///< number of intervals between consecutive landmarks on both paths
 };
 
-/// Correspondences of one path by the landmarks on it (way along ours, along theirs). A way of ours is `scale` of theirs.
+/// Correspondences of one path from the landmarks on it (arc lengths on ours and theirs). Lengths on theirs are `scale` times
+/// those on ours.
 PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLengthPath& theirs,
                                           std::vector<std::pair<double, double>> marks, double scale) {
     constexpr double share_beyond = 0.25;
@@ -123,7 +124,7 @@ PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLe
         auto [c, d] = marks[(k + 1) % n];
         if (last) c += ours.length;
         if (theirs.vertex_path.closed && (d < b || (n == 1 && d <= b))) d += theirs.length;
-        if (!(d > b)) continue;  // cut on their side
+        if (!(d > b)) continue;  // interrupted on their side
         if ((d - b) > 2 * scale * (c - a) || scale * (c - a) > 2 * (d - b)) continue;
         pieces.push_back({a, c, b, d});
         known += c - a;
@@ -149,7 +150,7 @@ PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLe
             }
         }
         if (!found) {
-            // From the nearest landmark, either way.
+            // From the nearest landmark, in either direction.
             double nearest = std::numeric_limits<double>::infinity(), there = 0;
             for (const auto& [a, b] : marks)
                 for (const double turn : {-1.0, 0.0, 1.0}) {
@@ -160,7 +161,7 @@ PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLe
                     there = b + ratio * off;
                 }
             if (!std::isfinite(nearest) || (!theirs.vertex_path.closed && (there < 0 || there > theirs.length))) continue;
-            // Half a turn away nothing is known.
+            // Near the opposite point of a closed path the position is unreliable.
             if (ours.vertex_path.closed && nearest > 0.4 * ours.length) continue;
             correspondence.place = theirs.place(there);
             if (nearest > 0) correspondence.length *= share_beyond;

@@ -1,4 +1,4 @@
-// A part of a surface whose borders are simple loops.
+// Part of a surface bounded by simple loops.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -10,30 +10,30 @@ namespace ostraka {
 /// Faces of a mesh whose borders are simple loops.
 class Patch {
 public:
-    /// Of the faces marked, pieces with at least the share `minimum` of the mesh's area. The mesh outlives it.
+    /// Keeps pieces of the marked faces with at least the share `minimum` of the mesh's area. The mesh must outlive it.
     Patch(const Mesh& mesh, std::vector<bool> keep, double minimum);
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] bool has(Index face) const { return keep_[face]; }
-    [[nodiscard]] std::size_t size() const;  ///< faces
+    [[nodiscard]] std::size_t size() const;  ///< number of faces
     /// Border loops as vertices, with the patch to the left.
     [[nodiscard]] const std::vector<std::vector<Vertex>>& loops() const { return loops_; }
-    /// A face of each piece that has no border.
+    /// One face of each piece without a border.
     [[nodiscard]] const std::vector<Face>& closed() const { return closed_; }
-    /// Takes away all faces at these vertices, and so on for as many rings.
+    /// Removes all faces at these vertices, repeated for `rings` rings.
     void erode(std::vector<Vertex> vertices, int rings);
 
 private:
-    /// Connected ones of faces that are kept.
+    /// Connected components of the kept faces.
     struct Pieces {
         std::vector<int> of_face;  ///< -1: none
         std::vector<double> area;
     };
     [[nodiscard]] bool keeps(Halfedge h) const;
     [[nodiscard]] bool is_border(Halfedge h) const { return keeps(h) && !keeps(mesh_.opposite(h)); }
-    /// `stack`: vertices whose faces may be in several fans.
+    /// `stack`: vertices whose faces may form several fans.
     void regularise(std::vector<Vertex> stack);
-    /// Vertices at which the patch has several fans lose their faces, which may make others such.
+    /// Removes the faces of vertices at which the patch has several fans; this may create further such vertices.
     void open_fans(std::vector<Vertex> stack);
     Pieces drop_small_pieces();
     void find_closed(const Pieces& pieces);

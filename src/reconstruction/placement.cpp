@@ -64,7 +64,7 @@ namespace {
 
 constexpr std::size_t max_triples = 4000;
 
-/// What the landmarks of one fragment say.
+/// The landmarks of one fragment.
 class Landmarks {
 public:
     Landmarks(const std::vector<LandmarkPair>& pairs, const PlacementOptions& options) : pairs_(pairs), options_(options) {
@@ -76,7 +76,7 @@ public:
 
     std::vector<bool> used;
 
-    /// Centroids, and the cross-covariance of the template's places with the fragment's.
+    /// Centroids, and the cross-covariance of the template's landmarks with the fragment's.
     struct Moments {
         Vector3d from = Vector3d::Zero(), to = Vector3d::Zero();
         Matrix3d cross = Matrix3d::Zero();  ///< sum of (p - from) (f - to)^T
@@ -104,7 +104,7 @@ public:
         return m;
     }
 
-    /// The similarity of the template onto the fragment, of those used; without `proper` also a mirror image.
+    /// The similarity from the template to the fragment, from the landmarks used; without `proper` possibly a reflection.
     [[nodiscard]] Motion similarity(bool proper = true) const {
         const Moments m = moments();
         Motion motion;
@@ -133,7 +133,7 @@ public:
         return count > 0 ? sum / static_cast<double>(count) : 0;
     }
 
-    /// Second extent over first of the places used, the less of both sides.
+    /// Ratio of second to first extent of the landmarks used, the smaller of both sides.
     [[nodiscard]] double flatness() const {
         double minimum = 1;
         for (const bool ours : {true, false}) {
@@ -150,11 +150,11 @@ public:
         return minimum;
     }
 
-    /// Sets `used` by the similarity through three landmarks that explains most of the others.
+    /// Sets `used` from the similarity through three landmarks that explains most of the others.
     void find_wrong() {
         const std::size_t n = pairs_.size();
         if (n < 5) return;
-        // Shapes differ from their template, and what differs is no mistake: a few may be wrong, not half of them.
+        // Shapes differ from their template without error: a few landmarks may be wrong, not half of them.
         const std::size_t max_wrong = std::max<std::size_t>(1, n / 6), quantile = n - max_wrong;
         double best = -1;
         Motion chosen;
@@ -171,7 +171,7 @@ public:
         });
         std::fill(used.begin(), used.end(), true);
         if (best < 0) return;
-        // Beside those that agree, a wrong one is off by far more than they are.
+        // A wrong landmark is off by far more than those that agree.
         const double spread = std::sqrt(moments().spread_from / static_cast<double>(n));
         for (int round = 0; round < 10; ++round) {
             check_cancelled();
@@ -189,7 +189,7 @@ public:
         }
     }
 
-    /// Pairs of landmarks of which one at least was left out and that would fit each other's places.
+    /// Pairs of landmarks, at least one of them left out, that would fit each other's positions.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> swapped() const {
         const Motion motion = similarity();
         const auto off = [&](std::size_t i, std::size_t j) {
@@ -261,7 +261,7 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
                 one.own_scale = proper.scale;
                 const double spread = landmarks.moments().spread_to / static_cast<double>(count);
                 const double with = landmarks.mean_square(proper), without = landmarks.mean_square(any);
-                // Three landmarks fit their mirror image as well as themselves, and nearly flat ones nearly so.
+                // Three landmarks fit their mirror image equally well, nearly flat configurations nearly so.
                 one.mirrored = count > 3 && any.rotation.determinant() < 0 && with > 1e-4 * spread && without < with / 9;
                 if (one.mirrored)
                     one.problem = "its mirror image fits the template, and itself it does not (residual " +
@@ -272,7 +272,7 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
         placement.fragments.push_back(std::move(one));
     }
 
-    // Who is of another unit than most.
+    // Finds fragments in another unit than most.
     std::vector<double> scales;
     for (const auto& one : placement.fragments)
         if (one.problem.empty()) scales.push_back(one.own_scale);

@@ -69,7 +69,7 @@ JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
                        std::move(slippable), "ways", json_list(result.ways, allocator, of_way));
 }
 
-// The schema has been seen to before these.
+// The input is already validated against the schema.
 Eigen::Vector3d vector_from(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
 Motion motion_from(const JsonValue& entry) {
     Motion motion;

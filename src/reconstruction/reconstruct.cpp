@@ -19,7 +19,7 @@ namespace ostraka {
 
 namespace {
 
-/// Of a closed mesh: its volume is negative.
+/// Whether a closed mesh has a negative volume.
 bool inside_out(const Mesh& mesh) {
     if (mesh.number_of_faces() == 0 || !CGAL::is_closed(mesh)) return false;
     const Point origin = mesh.point(*mesh.vertices().begin());
@@ -45,7 +45,7 @@ double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const 
     return vertices.empty() ? 0 : static_cast<double>(count) / static_cast<double>(vertices.size());
 }
 
-/// Proportions whose first part was observed better than the second, the other way round.
+/// Swaps the parts of proportions whose first part was observed better than the second.
 RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& stated,
                                          const std::vector<bool>& seen) {
     RelationGraph graph;
@@ -73,7 +73,7 @@ RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& 
 
 }  // namespace
 
-/// A fragment, and what is known of it already.
+/// A fragment with its cached results.
 struct KnownFragment {
     const Fragment* fragment = nullptr;
     std::vector<StatedMatch> stated;
@@ -81,7 +81,7 @@ struct KnownFragment {
     std::vector<std::string> notes;
     std::shared_ptr<FragmentTrees> trees;
 
-    /// A pose that was refined: from where, to where.
+    /// A refined pose with its inputs.
     struct Refined {
         double scale = 0;
         Motion start;
@@ -89,7 +89,7 @@ struct KnownFragment {
         PartAlignment alignment;
     };
     std::optional<Refined> refined;
-    /// Annotations that were matched in a pose.
+    /// The matched annotations for a pose.
     struct Matched {
         double scale = 0;
         Motion pose;
@@ -98,7 +98,7 @@ struct KnownFragment {
     std::optional<Matched> matched;
 };
 
-/// The template and its fragments, with what is kept of them from one reconstruction to the next.
+/// The template and its fragments, with the data kept between reconstructions.
 struct KnownObject {
     KnownObject(const Mesh& of, const AnnotationSet& with, const RelationGraph& relations, const ReconstructOptions& how,
                 const ShapePrior* of_class, const TemplateCage* cage)
@@ -123,7 +123,7 @@ struct KnownObject {
 
 namespace {
 
-/// One reconstruction from the fragments there are, phase by phase.
+/// One reconstruction from the current fragments, phase by phase.
 class ReconstructionRun {
 public:
     explicit ReconstructionRun(KnownObject& known) : prepared_(known) {
@@ -164,9 +164,10 @@ private:
             if (result_.searched[k] && result_.searched[k]->decided) ask_landmarks(k);
     }
 
-    /// What the search of a pose left open is decided by the landmarks there are; those that contradict it are named.
+    /// Determines motions that the pose search left open from the available landmarks, and reports landmarks that contradict
+    /// the pose.
     void ask_landmarks(std::size_t k) {
-        constexpr double far_off = 0.1;  // of the template's diagonal
+        constexpr double far_off = 0.1;  // share of the template's diagonal
         const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(prepared_.mesh);
         FragmentPlacement& placed = result_.placement.fragments[k];
         if (close_by_landmarks(pairs_[k], scale, limit, *result_.searched[k], placed)) {
@@ -181,7 +182,7 @@ private:
         }
     }
 
-    /// The fragments where they are on the template, and what is matched there.
+    /// Registers the fragments to the template and matches their annotations.
     void pose() {
         scaled_ = scaled_by(prepared_.mesh, result_.placement.scale);
         diagonal_ = box_diagonal(scaled_);
@@ -194,10 +195,10 @@ private:
         if (prepared_.prior != nullptr) timed("class", [&] { take_shape_of_class(); });
     }
 
-    /// The template where the fragments and its constraints have it.
+    /// Deforms the template to the fragments and its constraints.
     void fit() {
         timed("fit", [&] {
-            // The shape of the class is another one each time.
+            // The shape of the class changes with each reconstruction.
             result_.fit = prepared_.prior != nullptr
                               ? fit_template(scaled_, prepared_.set, placed_, prepared_.options.fit)
                               : prepared_.fitter.fit(result_.placement.scale, placed_, prepared_.options.fit);
@@ -243,10 +244,10 @@ private:
         }
     }
 
-    /// The place of a landmark on the template as it is now.
+    /// The current position of a landmark on the template.
     [[nodiscard]] Eigen::Vector3d on_scaled(const LandmarkPair& pair) const { return eigen(scaled_.point(Vertex(pair.vertex))); }
 
-    /// The fragments stay the template's frame: the shape of the class comes to them, then they are registered to it.
+    /// The fragments keep the template's frame: the shape of the class is fitted to them, then they are registered to it.
     void take_shape_of_class() {
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
@@ -283,7 +284,7 @@ private:
                                   result_.annotations[k],
                                   placement.pose,
                                   prepared_.fragments[k].trees};
-            // A landmark that was found to be a wrong one constrains nothing.
+            // A landmark found to be wrong constrains nothing.
             std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
                 const Annotation* a = prepared_.set.find(one.of_template);
                 return a != nullptr && a->type == AnnotationType::point &&
@@ -295,7 +296,7 @@ private:
         }
     }
 
-    /// Which vertices were observed: matched within the tolerance.
+    /// Determines the observed vertices: those matched within the tolerance.
     void see() {
         const std::size_t n = prepared_.mesh.number_of_vertices();
         std::vector<bool> near(n, false);
@@ -345,7 +346,7 @@ private:
                                      [](const Relationship& one) { return one.is_constraint; });
         if (!any || !prepared_.options.restore) return;
         DeformOptions options;
-        options.handles = 1e5;  // what was observed is not given up for a constraint
+        options.handles = 1e5;  // constraints must not move the observed part
         DeformResult restored = restore_constraints(
             scaled_, prepared_.set, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, held_),
             result_.points, held_, options, {}, "the template's graph");
@@ -356,12 +357,12 @@ private:
 
     KnownObject& prepared_;
     std::vector<const Fragment*> fragments_;
-    std::vector<std::vector<LandmarkPair>> pairs_;  ///< of each fragment
+    std::vector<std::vector<LandmarkPair>> pairs_;  ///< per fragment
     Mesh scaled_;
-    bool shaped_ = false;  ///< `scaled_` is no longer the template's shape, but that of its class
+    bool shaped_ = false;  ///< `scaled_` has the shape of the class, no longer that of the template
     double diagonal_ = 0;
     std::vector<PlacedFragment> placed_;
-    std::vector<int> number_;  ///< of each placed fragment
+    std::vector<int> number_;  ///< index of each placed fragment
     std::vector<bool> held_;
     Reconstruction result_;
 };

@@ -21,7 +21,7 @@ std::string to_string(Compatibility compatibility) {
 
 namespace {
 
-/// Sum of squares of the template's landmarks about their mean: what a fragment weighs in the common scale.
+/// Sum of squares of the template's landmarks about their mean: the weight of a fragment in the common scale.
 double weight_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement, bool on_fragment) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double count = 0, sum = 0;
@@ -46,16 +46,16 @@ std::array<std::vector<Eigen::Vector3d>, 2> used_landmarks(const std::vector<Lan
     return used;
 }
 
-/// How many times as large the template is by the landmarks used that move rigidly together.
+/// The scale of the template from the used landmarks that move rigidly together.
 double rigid_scale_of(const std::vector<LandmarkPair>& pairs, const FragmentPlacement& placement) {
     const auto [from, to] = used_landmarks(pairs, placement);
     return rigid_scale(from, to);
 }
 
-/// Per cent by which the larger of two sizes is above the other.
+/// Per cent by which the larger of two sizes exceeds the smaller.
 double per_cent_apart(double a, double b) { return 100 * (std::max(a, b) / std::min(a, b) - 1); }
 
-/// Weighs what speaks against the fragments of one reconstruction.
+/// Evaluates the evidence against the fragments of one reconstruction.
 class Judge {
 public:
     Judge(Reconstruction& result, const std::vector<std::vector<LandmarkPair>>& pairs, const std::vector<int>& placed,
@@ -112,7 +112,7 @@ private:
             result_.objections.push_back({kind, fragment, constraint, strain, text});
     }
 
-    /// A fragment's size against that of the others, and its landmarks against the template's.
+    /// Compares a fragment's size with that of the others, and its landmarks with the template's.
     void judge_fragment(std::size_t k) {
         const FragmentPlacement& one = result_.placement.fragments[k];
         double sum = 0, rigid_sum = 0, weights = 0;
@@ -131,16 +131,15 @@ private:
         if (spread > 0) judge_landmarks(k, one.residual / spread);
     }
 
-    /// Whether its own landmarks tell a fragment's size. One that was found by its shape lies at the size that the others gave
-    /// it.
+    /// Whether a fragment's own landmarks determine its size. A fragment placed by its shape has the size given by the others.
     [[nodiscard]] bool has_size(std::size_t k) const {
         const FragmentPlacement& one = result_.placement.fragments[k];
         return one.own_scale > 0 && std::count_if(one.landmarks.begin(), one.landmarks.end(),
                                                   [](const LandmarkResidual& mark) { return mark.used; }) >= 3;
     }
 
-    /// How far landmarks are off the template's. Where distances between those that move rigidly together, which posture does not
-    /// change, differ by no more than sizes may, another posture explains it as well as another shape.
+    /// Residuals of the landmarks. If the distances between landmarks that move rigidly together, which posture preserves,
+    /// deviate by no more than the tolerance of sizes, a different posture explains the residuals as well as a different shape.
     void judge_landmarks(std::size_t k, double off) {
         const FragmentPlacement& one = result_.placement.fragments[k];
         const double strain_of_all = off / std::max(options_.residual, 1e-9);
@@ -157,9 +156,8 @@ private:
                       " % only, which a posture unlike the template's explains as well as another shape";
     }
 
-    /// Two sizes are compared: that of all landmarks, and that of those that move rigidly together, which posture does not
-    /// change. Where one of them contradicts the others and the other does not, the size is not known well enough to speak
-    /// against it.
+    /// Compares two sizes: from all landmarks, and from those that move rigidly together, which posture preserves. If only one
+    /// of them contradicts the others, the size is too uncertain to be evidence against the fragment.
     void judge_size(std::size_t k, double others, double rigid, double rigid_others) {
         const double own = result_.placement.fragments[k].own_scale, off = per_cent_apart(own, others),
                      tolerance = std::max(options_.scale_tolerance, 1e-9);
@@ -173,7 +171,7 @@ private:
                       " % by those that move together, which a posture unlike the template's explains as well as another size";
     }
 
-    /// Whether a fragment lies on the template, and where no other one does.
+    /// Whether a fragment lies on the template, and does not overlap others.
     void judge_surface(std::size_t i) {
         const double lying = 100 * result_.object.lying[i], shared = 100 * result_.object.shared[i];
         const int k = placed_[i];
@@ -206,7 +204,7 @@ private:
     const std::vector<std::vector<LandmarkPair>>& pairs_;
     const std::vector<int>& placed_;
     const ReconstructOptions& options_;
-    std::string unsure_;  ///< why sizes or landmarks are neither right nor wrong
+    std::string unsure_;  ///< why sizes or landmarks are inconclusive
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Weighted {
     double value = 0, weight = 0;
 };
 
-/// How many times as long distances between near landmarks are, with how long they are in `from`.
+/// Ratios of the distances between nearby landmarks, weighted by their distance in `from`.
 std::vector<Weighted> near_ratios(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to) {
     constexpr std::size_t neighbours = 3;
     const std::size_t n = from.size();
@@ -41,7 +41,7 @@ std::vector<Weighted> near_ratios(const std::vector<Eigen::Vector3d>& from, cons
     return ratios;
 }
 
-/// 0 of nothing.
+/// 0 for an empty list.
 double weighted_median(std::vector<Weighted> list) {
     std::sort(list.begin(), list.end(), [](const Weighted& a, const Weighted& b) {
         return std::make_pair(a.value, a.weight) < std::make_pair(b.value, b.weight);

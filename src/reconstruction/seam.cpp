@@ -16,11 +16,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A patch's border drawn on the surface, loop by loop.
+/// A patch's border traced on the surface, loop by loop.
 struct Drawing {
-    std::vector<SurfaceCurve> curves;             ///< the first node comes once more at the end
-    std::vector<std::vector<std::size_t>> first;  ///< of each loop: the node at each vertex, and the last node
-    std::vector<Vertex> failed;                   ///< vertices from which there is no way to the next
+    std::vector<SurfaceCurve> curves;             ///< the first node is repeated at the end
+    std::vector<std::vector<std::size_t>> first;  ///< per loop: the node at each vertex, and the last node
+    std::vector<Vertex> failed;                   ///< vertices without a path to the next one
 };
 
 Drawing draw(const Mesh& surface, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
@@ -56,7 +56,7 @@ Drawing draw(const Mesh& surface, const Patch& patch, const std::vector<std::opt
     return drawing;
 }
 
-/// Vertices of the border beside pieces that meet other pieces, or are no edges of the cut surface.
+/// Border vertices at segments that meet other segments, or are no edges of the cut surface.
 std::vector<Vertex> crossed(const InsertedCurves& cut, const Patch& patch, const Drawing& drawing) {
     std::vector<Vertex> failed;
     std::vector<int> uses(cut.mesh.number_of_vertices(), 0);
@@ -77,19 +77,19 @@ std::vector<Vertex> crossed(const InsertedCurves& cut, const Patch& patch, const
     return failed;
 }
 
-/// The surface parted by the curves: faces to their left and to their right.
+/// Partition of the surface by the curves: faces to their left and to their right.
 struct Sides {
-    std::vector<bool> left;      ///< marks of faces, among them the whole pieces of the surface under pieces without a border
-    std::vector<Vertex> failed;  ///< of borders that have a region on another side than its longest border has it
+    std::vector<bool> left;      ///< marks of faces, including whole components of the surface under pieces without a border
+    std::vector<Vertex> failed;  ///< of borders with a region on a different side than the longest border of that region
 };
 
-/// The halfedge of a piece of a curve that was inserted.
+/// The halfedge of a segment of an inserted curve.
 Halfedge curve_halfedge(const InsertedCurves& cut, std::size_t curve, std::size_t i) {
     const auto& nodes = cut.node_vertex[curve];
     return find_halfedge(cut.mesh, Vertex(nodes[i]), Vertex(nodes[i + 1]));
 }
 
-/// Regions of faces, parted by the curves.
+/// Connected regions of faces, separated by the curves.
 FacePieces regions_between(const InsertedCurves& cut) {
     const Mesh& mesh = cut.mesh;
     std::vector<bool> fence(mesh.number_of_edges(), false);
@@ -138,15 +138,15 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
 struct CutSurface {
     const Mesh& mesh;
     const std::vector<bool>& gone;
-    /// Whether a face beside the edge is left.
+    /// Whether a face beside the edge remains.
     [[nodiscard]] bool has(Halfedge h) const { return is_left(h) || is_left(mesh.opposite(h)); }
 
 private:
     [[nodiscard]] bool is_left(Halfedge h) const { return !mesh.is_border(h) && !gone[mesh.face(h)]; }
 };
 
-/// Marks in `near` the vertices within so many rings of those of `front`, which it marks, over edges that `joins(halfedge)` lets
-/// pass; gives those that were not in `front`.
+/// Marks in `near` the vertices within `rings` rings of those of `front`, including these, over edges for which
+/// `joins(halfedge)` holds; returns those that were not in `front`.
 template <class Joins>
 std::vector<Vertex> rings_around(const Mesh& mesh, std::vector<Vertex> front, int rings, std::vector<bool>& near, Joins&& joins) {
     std::vector<Vertex> found;
@@ -166,8 +166,8 @@ std::vector<Vertex> rings_around(const Mesh& mesh, std::vector<Vertex> front, in
     return found;
 }
 
-/// Vertices of the surface near the seam shifted by displacements that are harmonic between the seam and those `fixed`.
-/// Gives marks of those vertices.
+/// Moves the vertices of the surface near the seam by displacements that are harmonic between the seam and the `fixed`
+/// vertices. Returns marks of those vertices.
 std::vector<bool> follow(const CutSurface& surface, const std::map<Index, Vector3d>& seam, double width,
                          const std::vector<bool>& frozen, std::vector<Vector3d>& points) {
     const Mesh& mesh = surface.mesh;
@@ -200,7 +200,7 @@ std::vector<bool> follow(const CutSurface& surface, const std::map<Index, Vector
 
 using Splits = std::map<std::pair<Index, Index>, std::vector<Index>>;
 
-/// The triangle cut so that the further vertices on its edges are corners.
+/// Triangulates the triangle with the additional vertices on its edges.
 void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std::array<Index, 3>>& out) {
     for (int k = 0; k < 3; ++k) {
         const auto found = splits.find({t[0], t[1]});
@@ -218,7 +218,7 @@ void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std:
     out.push_back(t);
 }
 
-/// Vertices of the patch that few edges part from its border.
+/// Vertices of the patch within a few edges of its border.
 std::vector<bool> near_border(const Patch& patch) {
     constexpr int rings = 4;
     std::vector<bool> near(patch.mesh().number_of_vertices(), false);
@@ -228,21 +228,22 @@ std::vector<bool> near_border(const Patch& patch) {
     return near;
 }
 
-/// Two surfaces with a seam, and what they are near it.
+/// Two surfaces joined along a seam.
 struct Stitched {
     Joint joint;
     std::vector<bool> near;  ///< marks of the faces near the seam
-    /// Border vertices at edges that patch and surface both have, on either side of the seam: there is no joint.
+    /// Border vertices at edges that both patch and surface have, on either side of the seam: these prevent a joint.
     std::vector<Vertex> failed;
 };
 
-/// Crossings of faces near the seam that neither the patch nor the surface had by itself: the border vertices nearest to them.
+/// The border vertices nearest to new intersections of faces near the seam, i.e. those that neither the patch nor the surface
+/// had.
 std::vector<Vertex> crossings_at_seam(const Mesh& surface, const Stitched& stitched, const Patch& patch) {
     const Joint& joint = stitched.joint;
     const SubMesh near = keep_faces(joint.mesh, stitched.near);
     const auto pairs = self_intersections(to_soup(near.mesh)).pairs;
     if (pairs.empty()) return {};
-    // Which of the surface's own faces crossed before.
+    // Finds the earlier intersections among the surface's own faces.
     std::vector<bool> old(surface.number_of_faces(), false);
     for (const Index face : near.faces)
         if (joint.old_face[face] != no_index) old[joint.old_face[face]] = true;
@@ -268,7 +269,7 @@ std::vector<Vertex> crossings_at_seam(const Mesh& surface, const Stitched& stitc
     return found;
 }
 
-/// Puts the patch and what is left of the surface together along the patch's border.
+/// Joins the patch and the rest of the surface along the patch's border.
 class Stitching {
 public:
     Stitching(const Patch& patch, const InsertedCurves& cut, const Drawing& drawing)
@@ -300,7 +301,7 @@ private:
         return static_cast<Index>(soup_.points.size() - 1);
     }
 
-    /// An edge of the patch's border, and the nodes that its curve has between its ends: they come to lie on the edge.
+    /// Moves the nodes of the curve between the ends of a border edge of the patch onto that edge.
     void lay_seam(std::size_t l, std::size_t i) {
         const Mesh& surface = cut_.mesh;
         const auto& loop = patch_.loops()[l];
@@ -377,14 +378,14 @@ private:
     const InsertedCurves& cut_;
     const Drawing& drawing_;
     TriangleSoup soup_;
-    std::vector<Index> of_patch_, of_surface_;  ///< their vertices -> new ones
+    std::vector<Index> of_patch_, of_surface_;  ///< from their vertices to the new ones
     Splits splits_;
     std::map<Index, Vector3d> seam_;
-    std::map<Index, Vertex> border_;  ///< new vertex -> border vertex of the patch that it is, or after which it comes
+    std::map<Index, Vertex> border_;  ///< from a new vertex to the border vertex of the patch that it is, or that precedes it
     Stitched result_;
 };
 
-/// Without a joint where there are border vertices that `failed`.
+/// Without a joint if any border vertices `failed`.
 Stitched attempt_seam(const Mesh& surface, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
                       const std::vector<bool>& frozen) {
     Stitched none;
@@ -424,7 +425,7 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
             }
             if (failed.empty() || ++crossed_attempts == max_crossed) return best;
         }
-        // Where little does not help, more is taken: a ring of a fine mesh is next to nothing.
+        // If small steps do not help, larger ones are taken: a ring of a fine mesh is almost nothing.
         patch.erode(std::move(failed), 1 << (attempt / 8));
     }
     if (crossed_attempts > 0) return best;

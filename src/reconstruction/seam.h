@@ -1,4 +1,4 @@
-// A patch of one surface put in the place of what it covers of another.
+// Replaces the part of a surface that a patch of another surface covers by that patch.
 #pragma once
 
 #include "patch.h"
@@ -13,15 +13,16 @@ namespace ostraka {
 
 struct Joint {
     Mesh mesh;
-    std::vector<Index> old_face;    ///< of the surface, which each face is or is cut from; no_index: the patch's
-    std::vector<Index> patch_face;  ///< the same of the patch
-    std::size_t patch_faces = 0;    ///< of the patch that are left
-    std::string problem;            ///< why there is none
+    std::vector<Index> old_face;    ///< per face, the surface's face of which it is the whole or a part; no_index: from the patch
+    std::vector<Index> patch_face;  ///< the same for the patch
+    std::size_t patch_faces = 0;    ///< number of faces of the patch that remain
+    std::string problem;            ///< why there is no joint
 };
 
-/// The surface with the patch in place of what it covers. `places` of the patch's vertices on the surface; vertices of the
-/// surface within `width` of the seam follow it but for those `frozen`. Erodes the patch where its border is not simple, and
-/// where faces near the seam cross; where that does not end, the joint with the fewest crossings is taken.
+/// The surface with the covered part replaced by the patch. `places`: projections of the patch's vertices onto the surface.
+/// Vertices of the surface within `width` of the seam follow it, except those `frozen`. Erodes the patch where its border is
+/// not simple and where faces near the seam intersect; if this does not converge, returns the joint with the fewest
+/// intersections.
 Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
                  const std::vector<bool>& frozen);
 

@@ -60,7 +60,7 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(PoseSearches& searc
             one.mirrored = false;
             one.pose = results[k]->candidates.front().pose;
             if (!(one.own_scale > 0)) one.own_scale = scale;
-            // Landmarks, if it has one or two, are shown but did not speak.
+            // One or two landmarks are reported, but were not used.
             for (LandmarkResidual& landmark : one.landmarks) landmark.used = false;
         }
     }

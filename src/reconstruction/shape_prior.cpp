@@ -36,7 +36,7 @@ void ShapePrior::check(std::size_t vertices) const {
 
 namespace {
 
-/// A place of the class's shape and how far the fragment lies off its plane.
+/// A point of the class's shape and the fragment's distance from its plane.
 struct Residual {
     Vector3d place, normal;
     double off = 0, weight = 0;
@@ -44,10 +44,10 @@ struct Residual {
     std::array<double, 3> barycentric{};
 };
 
-/// As how many independent places residuals count, `minimum` at least: those of a rough surface are independent of each other,
-/// those of a shape that the class does not have agree with their neighbours. The surface is halved across its longest side until
-/// there are patches enough; the mean residual of a patch varies by as much less than one residual does as the patch has
-/// independent ones.
+/// Effective number of independent samples of the residuals, at least `minimum`: residuals of a rough surface are independent,
+/// those of a shape outside the class are correlated with their neighbours. Bisects the surface across its longest side until
+/// there are enough patches; the ratio of the variance of a single residual to that of a patch mean is the number of
+/// independent residuals of the patch.
 double independent_samples(std::vector<Residual> residuals, std::size_t unknowns, double minimum) {
     const auto wanted = std::max(static_cast<std::size_t>(minimum), 2 * unknowns);
     std::erase_if(residuals, [](const Residual& one) { return !(one.weight > 0); });
@@ -81,7 +81,7 @@ double independent_samples(std::vector<Residual> residuals, std::size_t unknowns
         if (weight > 0) of_means += sum * sum / weight;
     }
     const auto count = static_cast<double>(patches.size());
-    // What is fitted takes its share of the means' variance.
+    // The fitted parameters reduce the variance of the means.
     of_means *= count / (count - static_cast<double>(unknowns));
     const double maximum = static_cast<double>(residuals.size());
     return of_means > 0 ? std::clamp(count * squares / of_means, minimum, std::max(minimum, maximum)) : minimum;
@@ -137,7 +137,7 @@ private:
         return points;
     }
 
-    /// Where the fragments' samples are on the class's shape, in its planes: that is smooth, and they are not.
+    /// Distances of the fragments' samples from the planes of the class's shape, which is smooth while the fragments are not.
     [[nodiscard]] std::vector<Residual> residuals(const Points& now) {
         std::vector<Residual> found;
         const double cosine = std::cos(options_.angle * pi / 180), search_radius = options_.search_radius * diagonal_;
@@ -168,12 +168,12 @@ private:
         return found;
     }
 
-    /// False where nothing is matched.
+    /// False if nothing is matched.
     bool step(const Points& now, PriorFit& fit) {
         std::vector<Residual> matches = residuals(now);
         fit.matched = matches.size();
         if (matches.size() < 3) return false;
-        // Who is off by far more than most does not count (Tukey's biweight).
+        // Outliers far beyond the typical residual get no weight (Tukey's biweight).
         std::vector<double> sizes;
         for (const Residual& one : matches) sizes.push_back(std::abs(one.off));
         const double min_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), min_error);
@@ -194,7 +194,7 @@ private:
         for (const Residual& one : matches) spread += one.weight * (one.place - centre).squaredNorm();
         spread = std::sqrt(spread);
         if (!(spread > 0)) return false;
-        // Unknown: rotation and scale (times the spread), translation, coefficients (in deviations).
+        // Unknowns: rotation and scale (times the spread), translation, coefficients (in deviations).
         const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
         MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
         VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
@@ -217,7 +217,7 @@ private:
             if (one.weight > 0) add(one);
         fit.residual = std::sqrt(squares);
         fit.samples = independent_samples(matches, static_cast<std::size_t>(unknowns), options_.samples);
-        // A landmark is one place more, less sure where the landmarks are off by more than the surface.
+        // A landmark counts as one more sample, with less weight if the landmarks have larger residuals than the surface.
         double apart = 0;
         for (const CorrespondenceConstraint& correspondence : correspondences_)
             apart += (correspondence.place - now.col(static_cast<Eigen::Index>(correspondence.vertex))).squaredNorm() /
@@ -234,8 +234,8 @@ private:
                      {1, 0, 0}});
         }
         normal = normal.selfadjointView<Eigen::Lower>();
-        // The observed surface counts as so many places with the residual as their error, which is never taken for less than
-        // what registration leaves; each coefficient is off by one deviation at will.
+        // The observed surface counts as `samples` measurements with the residual as their error, at least the error of the
+        // registration; each coefficient has a prior of one standard deviation.
         const double error = std::max(fit.residual, min_error), stiffness = error * error / fit.samples;
         for (Eigen::Index k = 0; k < modes; ++k) {
             const double b = coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)];
@@ -245,7 +245,7 @@ private:
         normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
         const VectorXd x = solve_ldlt<Eigen::Dynamic>(normal, right);
         if (!x.allFinite()) return false;
-        // The same motion of what the modes give: first the coefficients, then the motion about the centre.
+        // The same motion applied to the modes: first the coefficients, then the motion about the centre.
         for (Eigen::Index k = 0; k < modes; ++k) {
             const double deviation = prior_.deviations[static_cast<std::size_t>(k)];
             coefficients_[k] =

@@ -12,12 +12,12 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::size_t neighbourhood = 30;   // vertices by whose degrees an edge is recognised
-constexpr std::size_t most_seeds = 64;      // edges that are looked for: one bit of a mask each
-constexpr std::size_t least_faces = 50;     // of a piece
-constexpr std::size_t most_places = 64;     // in which an edge may be: symmetries
-constexpr std::size_t most_tries = 8;       // seeds that are followed
-using Degrees = std::vector<std::uint8_t>;  // 0: at a border or a break
+constexpr std::size_t neighbourhood = 30;   // number of vertices whose degrees identify an edge
+constexpr std::size_t most_seeds = 64;      // max number of edges that are searched: one bit of a mask each
+constexpr std::size_t least_faces = 50;     // min faces of a piece
+constexpr std::size_t most_places = 64;     // max candidate positions of an edge, for symmetries
+constexpr std::size_t most_tries = 8;       // max number of seeds that are followed
+using Degrees = std::vector<std::uint8_t>;  // 0: at a border or a fracture
 
 Degrees degrees_of(const Mesh& mesh, const std::vector<bool>& broken) {
     Degrees degrees(mesh.number_of_vertices(), 0);
@@ -34,10 +34,11 @@ Degrees degrees_of(const Mesh& mesh, const std::vector<bool>& broken) {
     return degrees;
 }
 
-/// The vertices around a halfedge, each once, in an order that depends on the faces alone; `visit` says whether to go on.
+/// Visits the vertices around a halfedge, each once, in an order that depends on the connectivity alone; `visit` returns
+/// whether to continue.
 template <class Visit>
 void walk(const Mesh& mesh, Halfedge start, Visit&& visit) {
-    std::vector<Halfedge> entries{mesh.opposite(start), start};  // each into a vertex that was visited
+    std::vector<Halfedge> entries{mesh.opposite(start), start};  // each points to a visited vertex
     std::vector<Vertex> visited{mesh.source(start), mesh.target(start)};
     if (!visit(visited[0]) || !visit(visited[1])) return;
     for (std::size_t next = 0; next < entries.size(); ++next) {
@@ -59,7 +60,7 @@ void walk(const Mesh& mesh, Halfedge start, Visit&& visit) {
 struct Seed {
     Halfedge edge;
     Degrees degrees;
-    std::vector<Halfedge> there;  ///< where it may be; one more than `most_places`: too many
+    std::vector<Halfedge> there;  ///< candidate positions; more than `most_places`: too many
 };
 
 std::optional<Seed> seed_at(const Mesh& mesh, const Degrees& degrees, Halfedge edge) {
@@ -75,7 +76,7 @@ std::optional<Seed> seed_at(const Mesh& mesh, const Degrees& degrees, Halfedge e
     return seed;
 }
 
-/// Seeds spread over the faces of one piece, the most irregular ones first.
+/// Seeds spread over the faces of one piece, most irregular first.
 std::vector<Seed> seeds_of(const Mesh& mesh, const Degrees& degrees, const std::vector<Index>& faces) {
     constexpr std::size_t tried = 512;
     constexpr std::uint8_t regular = 6;
@@ -91,7 +92,7 @@ std::vector<Seed> seeds_of(const Mesh& mesh, const Degrees& degrees, const std::
     return seeds;
 }
 
-/// Where on `mesh` each seed may be; then those that are in few places, the fewest first.
+/// Finds the candidate positions of each seed on `mesh`; keeps the seeds with few positions, fewest first.
 void find_seeds(const Mesh& mesh, const Degrees& degrees, std::vector<Seed>& seeds) {
     std::vector<std::uint64_t> found(mesh.number_of_halfedges(), 0);
     const std::uint64_t all = seeds.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << seeds.size()) - 1;
@@ -123,18 +124,18 @@ void find_seeds(const Mesh& mesh, const Degrees& degrees, std::vector<Seed>& see
 
 using Pairs = std::vector<std::pair<Index, Index>>;  // vertices of the fragment and of the mesh
 
-/// One piece of the fragment, with room for what walks over it.
+/// One piece of the fragment, with buffers for the traversal.
 struct Piece {
     const Mesh& fragment;
-    const std::vector<Index>& piece_of;  ///< of each face
+    const std::vector<Index>& piece_of;  ///< per face
     std::size_t faces = 0;
-    std::vector<Index> vertices;  ///< of the fragment: that of the mesh; left as it was found
-    std::vector<bool> done;       ///< of its faces; left as it was found
+    std::vector<Index> vertices;  ///< per vertex of the fragment, that of the mesh; restored after use
+    std::vector<bool> done;       ///< per face; restored after use
 
     Piece(const Mesh& of, const std::vector<Index>& pieces)
         : fragment(of), piece_of(pieces), vertices(of.number_of_vertices(), no_index), done(of.number_of_faces(), false) {}
 
-    /// The vertices by walking over both meshes from an edge; none where faces differ.
+    /// Vertex pairs from traversing both meshes from an edge; empty if the faces differ.
     Pairs follow(const Mesh& mesh, Halfedge edge, Halfedge edge_there) {
         Pairs pairs;
         std::vector<Face> walked;
@@ -170,7 +171,7 @@ private:
         }
         return true;
     }
-    /// Two vertices of the fragment may not be one of the mesh's.
+    /// Two vertices of the fragment must not map to one of the mesh.
     static bool each_once(const Pairs& pairs) {
         std::vector<Index> used;
         for (const auto& [v, there] : pairs) used.push_back(there);
@@ -179,7 +180,7 @@ private:
     }
 };
 
-/// Of the places where the seeds may be the one at which the piece lies nearest.
+/// The candidate position of the seeds at which the piece lies nearest.
 Pairs nearest_place(Piece& piece, const Mesh& mesh, double scale, const std::vector<Seed>& seeds) {
     Pairs best;
     double least = 0;

@@ -1,4 +1,4 @@
-// Fragments whose faces are the template's: which vertex is which follows from how faces join.
+// Detects fragments whose faces are the template's, and identifies their vertices by connectivity.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -7,13 +7,12 @@
 
 namespace ostraka {
 
-/// For each vertex of `fragment` the vertex of `mesh` that it is, where the fragment is a piece of that mesh in another shape (a
-/// member of a class made from its template, a copy that was edited). `broken` marks faces that are no part of it (of each face;
-/// empty: none). Pieces of the fragment are recognised by the numbers of neighbours of some thirty vertices around an edge, and
-/// followed from there over all their faces; a piece counts only if every one of its faces then is one of `mesh`. Where it is in
-/// several places of `mesh`, since that is symmetric, the one counts where it lies nearest to the mesh made `scale` times as
-/// large. Nothing for meshes so regular that no neighbourhood is found in few places, and for pieces too small for one
-/// (`no_index`). O(n).
+/// For each vertex of `fragment` the corresponding vertex of `mesh`, if the fragment is a piece of that mesh in another shape
+/// (a member of a class derived from its template, an edited copy). `broken` marks faces to ignore (per face; empty: none).
+/// Pieces of the fragment are recognised by the degrees of some thirty vertices around an edge, and traversed from there over
+/// all their faces; a piece counts only if every one of its faces is a face of `mesh`. If a symmetric `mesh` has several
+/// candidate positions, the one nearest to the mesh scaled by `scale` is used. `no_index` for meshes so regular that no
+/// neighbourhood is distinctive, and for pieces that are too small. O(n).
 std::vector<Index> shared_vertices(const Mesh& mesh, const Mesh& fragment, double scale = 1,
                                    const std::vector<bool>& broken = {});
 

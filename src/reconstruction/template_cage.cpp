@@ -26,7 +26,7 @@ std::optional<TemplateCage> cage_of(const Template& known) {
             try {
                 Coordinates coordinates = read_coordinates(part->file, mesh, *cage);
                 if (!coordinates.has_normals()) return TemplateCage{*cage, std::move(coordinates)};
-            } catch (const Error& error) {  // those of another cage: they are computed
+            } catch (const Error& error) {  // they belong to another cage: new ones are computed
                 if (error.kind() == ErrorKind::cancelled) throw;
                 continue;
             }

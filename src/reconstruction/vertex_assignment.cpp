@@ -17,19 +17,19 @@ namespace ostraka {
 
 namespace {
 
-/// The vertices of a part, which of them are on an outline, and where.
+/// The vertices of a part, with their positions on outlines.
 struct Part {
     std::vector<Index> vertices;
     std::vector<Point> places;
     std::vector<Vector> normals;
     std::vector<bool> boundary;
-    std::vector<int> inner, outer;  ///< positions in `vertices` of those inside and on outlines
-    /// For each vertex on an outline and each landmark the way along the outline; negative: none.
+    std::vector<int> inner, outer;  ///< positions in `vertices` of interior and outline vertices
+    /// Arc length along the outline for each outline vertex and each landmark; negative: none.
     std::vector<std::vector<double>> ways;
 };
 
-/// Distances from each vertex of a path onwards to one of them, going on at the start of a closed one; negative where there is
-/// no way.
+/// Arc lengths from each vertex of a path onwards to one of them, continuing at the start of a closed path; negative if there
+/// is no path.
 std::vector<double> ways_to(const Mesh& mesh, const VertexPath& vertex_path, std::size_t goal) {
     const std::size_t n = vertex_path.vertices.size();
     std::vector<double> ways(n, -1);
@@ -84,7 +84,7 @@ Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<I
     return part;
 }
 
-/// |difference of ways|, summed over the landmarks that both have a way to.
+/// Sum of |difference of arc lengths| over the landmarks that both reach.
 double outline_cost(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0;
     for (std::size_t l = 0; l < a.size(); ++l)
@@ -92,7 +92,7 @@ double outline_cost(const std::vector<double>& a, const std::vector<double>& b) 
     return sum;
 }
 
-/// A cost brought to 0 to 1.
+/// Normalises a cost to 0 to 1.
 struct Scale {
     double minimum = 0, maximum = 0;
     [[nodiscard]] double operator()(double value) const {
@@ -168,7 +168,7 @@ private:
                ours_.normals[static_cast<std::size_t>(i)] * theirs_.normals[static_cast<std::size_t>(j)] >= min_cosine_;
     }
 
-    /// Least and greatest of each cost over all pairs.
+    /// Min and max of each cost over all pairs.
     void find_scales() {
         std::vector<double> nearest(ours_.vertices.size()), farthest(ours_.vertices.size());
         parallel_for(
@@ -197,14 +197,14 @@ private:
                 }
             },
             16);
-        const bool zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with one inside cost nothing
+        const bool zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with an interior vertex cost nothing
         if (!ours_.outer.empty() && !theirs_.outer.empty())
             outline_ = {zero ? 0.0 : *std::min_element(minimum.begin(), minimum.end()),
                         *std::max_element(maximum.begin(), maximum.end())};
     }
 
-    /// The best counterparts of a vertex that are allowed, best first; more than wanted of each kind are looked at where some are
-    /// not allowed.
+    /// The best admissible counterparts of a vertex, best first; examines more than wanted of each kind if some are not
+    /// admissible.
     [[nodiscard]] std::vector<std::pair<double, int>> best(int i, std::size_t wanted) const {
         std::vector<std::pair<double, int>> list;
         for (const int kind : {0, 1}) {
@@ -235,7 +235,7 @@ private:
     Part ours_, theirs_;
     const VertexAssignmentOptions& options_;
     double min_cosine_;
-    std::array<PointTree, 2> trees_;  ///< of the fragment's vertices inside, and on outlines
+    std::array<PointTree, 2> trees_;  ///< of the fragment's interior and outline vertices
     Scale distance_, boundary_, outline_;
 };
 

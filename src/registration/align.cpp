@@ -45,7 +45,7 @@ AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_uni
         s.normals.push_back(normal);
         s.border.push_back(mesh.is_border(v));
     }
-    // Each sample stands for the same area: the faces' areas in a row, cut into equal lengths.
+    // Each sample represents the same area: the cumulative face areas are cut at equal steps.
     double sum = 0, next = 0.5 * area / samples;
     Matrix3d second = Matrix3d::Zero();
     for (const Face face : mesh.faces()) {
@@ -95,7 +95,7 @@ public:
     }
 
 private:
-    /// Pairs under a motion, trimmed; their root mean square.
+    /// Trimmed pairs under a motion; their root mean square.
     detail::PoseFit measure(const Motion& motion) {
         pairs_.list.clear();
         const Motion back = motion.inverse();
@@ -103,7 +103,7 @@ private:
         collect(b_, a_, back, motion, false);
         const std::size_t all = a_.sample_points.size() + b_.sample_points.size(), met = pairs_.list.size();
         const std::size_t wanted = pairs_.trim(options_.trim, all);
-        // A pose in which few points find a partner is no better for it: who has none is as far off as the farthest that counts.
+        // Points without a partner count with the largest kept distance, so that a pose with few pairs does not score better.
         double sum = pairs_.squares();
         if (met > 0) sum += static_cast<double>(wanted - pairs_.list.size()) * pairs_.list.back().squared;
         const double rms = met > 0 ? std::sqrt(sum / static_cast<double>(wanted)) : b_.size;
@@ -116,7 +116,7 @@ private:
             const Vector3d p = there(from.sample_points[i]), n = there.rotation * from.sample_normals[i];
             const std::size_t v = to.nearest(p);
             if (v == no_index || to.border[v] || n.dot(to.normals[v]) < cosine_) continue;  // none: the pose is not finite
-            // Lengths and planes are compared where the second surface is.
+            // Distances and planes are compared in the frame of the second surface.
             if (forward) {
                 pairs_.list.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm()});
             } else {
@@ -127,7 +127,7 @@ private:
         }
     }
 
-    /// The first surface is turned by w, shifted by t and scaled by 1 + s about the pairs' centre, linearised.
+    /// Rotates the first surface by w, translates it by t and scales it by 1 + s about the centre of the pairs, linearised.
     Motion step(const Motion& motion) {
         const bool scaled = options_.shrinkage > 0;
         const PlaneMotion planes = pairs_.planes(b_.size);

@@ -28,7 +28,7 @@ public:
           taken_a_(points(a)),
           taken_b_(points(b)) {}
 
-    /// The matches that the motion explains, each salient point once: the first match of those it has.
+    /// The matches consistent with the motion; the first match of each salient point.
     const std::vector<std::size_t>& explained(const Motion& motion) {
         explained_.clear();
         ++stamp_;

@@ -30,7 +30,7 @@ double score_on(const NearestGrid& grid, const SurfacePoints& part, const Motion
         const auto k = static_cast<std::size_t>(j);
         const Vector3d& m = grid.points().normals[k];
         const Vector3d d = p - grid.points().places[k];
-        // The distance from the tangent plane, unless the point is off to the side: beyond a border.
+        // The distance from the tangent plane, unless the point is off to the side, beyond a border.
         const double off = d.dot(m), aside = (d - off * m).norm();
         sum += near(std::hypot(off, std::max(0.0, aside - grid.points().spacing))) * std::clamp(2 * n.dot(m) - 1, 0.0, 1.0);
     }

@@ -1,5 +1,4 @@
-// How well points lie on a surface in a pose, and the pose improved, by a grid of the surface's points: for the many poses of a
-// search.
+// Scores and refines poses of points on a surface with a grid of its points, for searches over many poses.
 #pragma once
 
 #include "nearest_grid.h"
@@ -13,7 +12,7 @@ namespace ostraka::detail {
 /// At most `count` of the points, evenly chosen.
 SurfacePoints thinned(const SurfacePoints& points, std::size_t count);
 
-/// How near is near, on a logarithmic scale.
+/// Nearness score of a distance, on a logarithmic scale.
 struct Nearness {
     double low, high;
     explicit Nearness(double tolerance) : low(0.25 * tolerance), high(2.5 * tolerance) {}
@@ -22,11 +21,11 @@ struct Nearness {
     }
 };
 
-/// Mean over the points of how near they lie to the surface's; 0 where normals differ by more than 60 degrees.
+/// Mean nearness of the points to the surface; 0 where normals differ by more than 60 degrees.
 double score_on(const NearestGrid& grid, const SurfacePoints& part, const Motion& pose, const Nearness& near);
 
-/// Iterative closest points, point to plane, on the grid, in a search radius that falls to 1.5 times the tolerance; with `scale`
-/// that as well.
+/// ICP, point to plane, on the grid, with a search radius that falls to 1.5 times the tolerance; with `scale`, the scale is
+/// refined too.
 Motion refined_on(const NearestGrid& grid, const SurfacePoints& part, Motion pose, double tolerance, int rounds, bool scale);
 
 }  // namespace ostraka::detail

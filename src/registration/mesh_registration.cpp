@@ -30,17 +30,17 @@ constexpr double min_cosine = 0.3;  // of the normals of a pair
 constexpr int all_rotations = 16384;
 constexpr std::size_t judged_points = 250, refined_points = 500, refined_on_grid = 48, refined_on_faces = 8;
 
-/// A point of a surface with its normal, and how far a flat face there lies from the curved surface it stands for.
+/// A point of a surface with its normal, and the local distance of the flat face from the curved surface that it approximates.
 struct AreaSample {
     Vector3d place, normal;
     double sagitta = 0;
 };
 
-/// A mesh in a place and size of its own.
+/// A mesh normalised to unit size at the origin.
 struct UnitSurface {
-    std::unique_ptr<Mesh> mesh;  ///< where the search looks for it
-    Motion to_unit;              ///< from the mesh as it was given
-    double face_area = 0;        ///< mean
+    std::unique_ptr<Mesh> mesh;  ///< kept alive for `search`
+    Motion to_unit;              ///< from the frame of the given mesh
+    double face_area = 0;        ///< mean face area
     SurfacePoints points;
     std::unique_ptr<SurfaceSearch> search;
 };
@@ -83,13 +83,13 @@ AreaMoments area_moments(const Mesh& mesh, const std::string& name) {
     return moments;
 }
 
-/// `size`: what becomes 1.
+/// `size`: the length that becomes 1.
 UnitSurface unit_surface(const Mesh& mesh, const AreaMoments& moments, double size) {
     UnitSurface unit;
     unit.to_unit.scale = 1 / size;
     unit.to_unit.translation = -moments.centre / size;
     unit.mesh = std::make_unique<Mesh>(mesh);
-    // The centre first: far from the origin a difference is more exact than one of products.
+    // Subtracts the centre first: far from the origin this is more precise than a difference of products.
     for (const Vertex v : mesh.vertices()) unit.mesh->point(v) = point_of((eigen(mesh.point(v)) - moments.centre) / size);
     const double area = moments.area / (size * size);
     unit.face_area = area / static_cast<double>(mesh.number_of_faces());
@@ -99,7 +99,7 @@ UnitSurface unit_surface(const Mesh& mesh, const AreaMoments& moments, double si
     return unit;
 }
 
-/// Height of a curved surface over a flat face, by the angles with its neighbours.
+/// Height of the curved surface over a flat face, from the dihedral angles of its edges.
 double sagitta_of(const Mesh& mesh, const SurfaceSearch& search, Face face) {
     double sum = 0;
     int edges = 0;
@@ -115,7 +115,7 @@ double sagitta_of(const Mesh& mesh, const SurfaceSearch& search, Face face) {
     return edges > 0 ? 0.25 * std::sqrt(sum / edges) : 0;
 }
 
-/// Each stands for the same area. Of those on small faces `corner_share` are taken at a corner, the others inside.
+/// Each sample represents the same area. On small faces a share `corner_share` of the samples is at a corner, the rest inside.
 std::vector<AreaSample> area_samples(const UnitSurface& surface, int count, double corner_share) {
     constexpr double small = 16;
     const Mesh& mesh = *surface.mesh;
@@ -145,15 +145,15 @@ std::vector<AreaSample> area_samples(const UnitSurface& surface, int count, doub
     return samples;
 }
 
-/// How the source is taken: as it is or mirrored, its faces as they are or turned round.
+/// Variants of the source: as given or mirrored, faces as given or flipped.
 struct Handedness {
     bool mirrored = false, turned_round = false;
     [[nodiscard]] Vector3d place(const Vector3d& p) const { return mirrored ? Vector3d(-p.x(), p.y(), p.z()) : p; }
     [[nodiscard]] Vector3d normal(const Vector3d& n) const { return (turned_round ? -1.0 : 1.0) * place(n); }
 };
 
-/// Rotations spread evenly over all: super-Fibonacci spirals (Alexa, "Super-Fibonacci spirals: fast, low-discrepancy sampling of
-/// SO(3)", CVPR 2022).
+/// Rotations evenly spread over SO(3): super-Fibonacci spirals (Alexa, "Super-Fibonacci spirals: fast, low-discrepancy sampling
+/// of SO(3)", CVPR 2022).
 Matrix3d spread_rotation(int i, int count) {
     constexpr double phi = 1.4142135623730951, psi = 1.533751168755204288118041;
     const double s = i + 0.5, t = s / count, d = 2 * pi * s;
@@ -167,7 +167,7 @@ double angle_apart_of(const Motion& a, const Motion& b) {
     return std::acos(std::clamp(((a.rotation.transpose() * b.rotation).trace() - 1) / 2, -1.0, 1.0));
 }
 
-/// Poses by their scores, the best first, each at least `apart` from those before.
+/// Poses in the order of their scores, best first, each at least `apart` from the previous ones.
 std::vector<Motion> best_apart(const std::vector<Motion>& poses, const std::vector<double>& scores, std::size_t count,
                                double apart) {
     std::vector<std::size_t> order(poses.size());
@@ -182,7 +182,8 @@ std::vector<Motion> best_apart(const std::vector<Motion>& poses, const std::vect
     return kept;
 }
 
-/// Rotations, and what of place and size the moments leave open, that the grid of the target's points likes best.
+/// The best-scoring rotations, and residual translations and scales not fixed by the moments, on the grid of the target's
+/// points.
 std::vector<Motion> poses_on_grid(const UnitSurface& source, const detail::NearestGrid& grid, const Handedness& hand,
                                   bool scaled) {
     SurfacePoints points = detail::thinned(source.points, refined_points);
@@ -210,7 +211,7 @@ std::vector<Motion> poses_on_grid(const UnitSurface& source, const detail::Neare
     return best_apart(poses, scores, refined_on_faces, 5 * degree);
 }
 
-/// Iterative closest points, point to plane, both ways.
+/// ICP, point to plane, in both directions.
 class UnitAligner {
 public:
     UnitAligner(const UnitSurface& a, const UnitSurface& b, const Handedness& hand, bool scaled, int samples, double corner_share)
@@ -229,7 +230,7 @@ public:
             });
     }
 
-    /// The nearest place of the other surface that faces the same way, and the pair as it stands where the target is.
+    /// The nearest compatible point of the other surface, as a pair in the target's frame.
     [[nodiscard]] std::optional<detail::PlanePair> partner(const AreaSample& sample, bool of_source, const Motion& pose,
                                                            const Motion& back) const {
         if (of_source) {
@@ -276,12 +277,12 @@ private:
     detail::PlanePairs pairs_;
 };
 
-// Of either surface: what must lie within the tolerance of the other, and within a third of it, the sagitta itself. Of meshes of
-// 5000 vertices and more of one object 96 and 79 % do at least; of two heads that differ by 0.23 % of the diagonal, at 1000
-// vertices, 98 and 69 %.
+// Min shares of either surface within the tolerance of the other, and within a third of it (the sagitta itself). Meshes of 5000
+// or more vertices of one object reach at least 96 and 79 %; two heads that differ by 0.23 % of the diagonal, at 1000 vertices,
+// reach 98 and 69 %.
 constexpr double min_share = 0.96, min_close = 0.75;
 
-/// A pose of the source in the unit frame, and what it leaves.
+/// A pose of the source in the unit frame, and its residual.
 struct UnitPose {
     Motion pose;
     double residual = 0;
@@ -300,14 +301,14 @@ public:
         fixed_tolerance_ = options.tolerance * b_.search->diagonal();
     }
 
-    /// The best poses, best first; only roughly refined if even the best leaves more than `bound`. A mesh that was made anew lies
-    /// on its surface with its corners, a decimated one with neither corners nor faces: samples of both kinds count by the
-    /// inverse of the squares they leave.
+    /// The best poses, best first; only roughly refined if even the best residual exceeds `bound`. A remeshed object has its
+    /// vertices on the surface, a decimated one neither vertices nor faces: samples of both kinds are weighted by the inverse
+    /// of their squared residuals.
     [[nodiscard]] std::vector<UnitPose> search(const Handedness& hand, double bound) const {
         std::vector<UnitPose> found;
         UnitAligner coarse(a_, b_, hand, options_.scale, std::min(1000, options_.samples), 1);
         std::vector<Motion> starts = poses_on_grid(a_, *grid_, hand, options_.scale);
-        starts.emplace_back();  // of symmetric objects it may be the one that is meant
+        starts.emplace_back();  // may be the intended pose of a symmetric object
         for (const Motion& start : starts) {
             const detail::Registration one = coarse.run(start, 20, 1e-2);
             found.push_back({one.pose, one.fit.residual});
@@ -326,7 +327,7 @@ public:
         return found;
     }
 
-    /// Samples of either mesh against the other, each with a tolerance of its own.
+    /// Tests the samples of either mesh against the other, each with its own tolerance.
     [[nodiscard]] SurfaceAgreement judge(const Motion& pose, const Handedness& hand, double* mean_tolerance = nullptr) const {
         const UnitAligner pairs(a_, b_, hand, options_.scale, 10, 1);
         const Motion back = pose.inverse();
@@ -366,7 +367,7 @@ public:
         return agreement.share >= min_share && (fixed_tolerance_ > 0 || agreement.close >= min_close);
     }
 
-    /// A pose of the unit frame as one from file to file.
+    /// Converts a pose in the unit frame to one between the files.
     [[nodiscard]] Motion in_files(const Motion& pose) const {
         Motion motion{pose.rotation, Vector3d::Zero(), pose.scale * a_.to_unit.scale * unit_};
         const Vector3d a = -a_.to_unit.translation / a_.to_unit.scale, b = -unit_ * b_.to_unit.translation;
@@ -394,7 +395,8 @@ private:
         std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.residual < b.residual; });
     }
 
-    /// By the angles of the faces here and where the other mesh is nearest: how far flat faces leave a curved surface, threefold.
+    /// Three times the distance of flat faces from the curved surface, from the dihedral angles here and at the nearest point
+    /// of the other mesh.
     [[nodiscard]] double tolerance_at(const AreaSample& sample, bool of_source, const Handedness& hand, const Motion& pose,
                                       const Motion& back) const {
         constexpr double least = 3e-4, most = 0.03;
@@ -412,11 +414,12 @@ private:
     std::vector<AreaSample> of_a_, of_b_;
 };
 
-constexpr double max_rough_residual = 0.05;  // residual of a rough registration beyond which nothing is aligned
-constexpr double mirrored_gain = 0.5;   // residual of the mirror image over that of the object, for the object to be mirrored
-constexpr double equal_residual = 1.5;  // of poses that fit equally, beside a ten-thousandth
+constexpr double max_rough_residual = 0.05;  // residual of a rough registration beyond which the meshes count as different
+constexpr double mirrored_gain =
+    0.5;  // max residual of the mirror image relative to that of the object, for the verdict "mirrored"
+constexpr double equal_residual = 1.5;  // max residual ratio of poses that fit equally, besides an absolute 1e-4
 
-/// Takes the pose that moves the source least among those that fit as well as the best, and names the others.
+/// Selects, among the poses that fit as well as the best, the one that moves the source least, and stores the others.
 void choose_pose(const MeshRegistrar& registrar, const std::vector<UnitPose>& found, MeshRegistration& result) {
     const SlippableMotions open = registrar.slippable();
     result.slippable = registrar.in_target(open);

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A level of the scale space: the smoothed surface and what the descriptors take from it.
+/// A level of the scale space: the smoothed surface and the inputs of the descriptors.
 struct Level {
     double sigma = 0;
     Mesh mesh;
@@ -30,7 +30,7 @@ Level smoothed_level(const Mesh& mesh, const Diffusion& diffusion, const Eigen::
     level.sigma = sigma;
     level.mesh = mesh;
     set_positions(level.mesh, diffusion.smoothed(start, sigma, 2));
-    // Curvature averaged over a radius that grows with the scale: blind to how the surface is cut into triangles.
+    // Curvature is averaged over a radius that grows with the scale, so that it does not depend on the triangulation.
     CurvatureOptions options;
     const double diagonal = box_diagonal(level.mesh);
     options.scale = diagonal > 0 ? std::min(1.0, 1.5 * sigma / diagonal) : 0;
@@ -68,7 +68,8 @@ struct Salient {
     std::size_t level;
 };
 
-/// Vertices at which the difference of two levels is larger, or smaller, than at all neighbours on this level and the two beside.
+/// Vertices where the difference of two levels is larger, or smaller, than at all neighbours on this and the two adjacent
+/// levels.
 std::vector<Salient> extrema(const Mesh& mesh, const std::vector<Level>& levels, const std::vector<double>& to_border,
                              const SiftOptions& options) {
     std::vector<std::vector<double>> differences;
@@ -97,9 +98,9 @@ std::vector<Salient> extrema(const Mesh& mesh, const std::vector<Level>& levels,
     return found;
 }
 
-/// What lies around a salient point: places in its tangent plane, with weights.
+/// Neighbours of a salient point, projected to its tangent plane, with weights.
 struct TangentNeighbourhood {
-    std::vector<Vector2d> place, tilt;  ///< in units of sigma; the normal's projection
+    std::vector<Vector2d> place, tilt;  ///< in units of sigma; projection of the normal
     std::vector<Index> vertex;
 };
 
@@ -123,7 +124,7 @@ public:
         });
     }
 
-    /// Peaks of the histogram of the directions in which the normals lean, the highest first.
+    /// Peaks of the histogram of the directions in which the normals are tilted, highest first.
     [[nodiscard]] std::vector<double> directions(double share) const {
         constexpr int bins = 360;
         std::vector<double> histogram(bins, 0), smooth(bins, 0);
@@ -177,7 +178,7 @@ public:
                 if (squared >= disc_radius * disc_radius) continue;
                 covered[disc] += area;
                 const double weight = area * std::exp(-squared / (2 * 0.25 * disc_radius * disc_radius));
-                // Shape index from -1 to 1, slant angle around the circle; shared between the two nearest bins.
+                // Shape index from -1 to 1, slant angle around the circle; distributed over the two nearest bins.
                 const double s =
                     std::clamp((level_.shape_index[w] + 1) / 2 * FeatureSet::bins - 0.5, 0.0, FeatureSet::bins - 1.0);
                 const int low = std::min(static_cast<int>(s), FeatureSet::bins - 2);

@@ -1,4 +1,4 @@
-// The nearest of a surface's points, looked up in a grid: for the many poses of a search.
+// Grid lookup of the nearest point of a surface, for searches over many poses.
 #pragma once
 
 #include "ostraka/registration/surface_points.h"
@@ -7,13 +7,13 @@
 
 namespace ostraka::detail {
 
-/// Each cell within `search_radius` of a point knows the nearest point of its middle, and the nearest one that faces another way:
-/// on a thin wall the other side.
+/// Each cell within `search_radius` of a point stores the point nearest to its centre, and the nearest point with a different
+/// normal direction: on a thin wall, the other side.
 class NearestGrid {
 public:
     NearestGrid(const SurfacePoints& points, double search_radius);
 
-    /// The nearest point of the surface whose normal is less than a right angle from `normal`; -1 if none is near.
+    /// The nearest point of the surface whose normal has a cosine of more than 0.3 with `normal`; -1 if there is none near.
     [[nodiscard]] int find(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const {
         const Eigen::Vector3d at = (place - low_) / side_;
         if (!(at.minCoeff() >= 0 && at.x() < count_[0] && at.y() < count_[1] && at.z() < count_[2])) return -1;

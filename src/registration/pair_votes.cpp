@@ -18,7 +18,7 @@ namespace {
 
 constexpr int angles = 12;                    ///< bins from 0 to pi
 constexpr int rotation_bins = 36;             ///< bins of the rotation about a normal
-constexpr std::size_t max_entries = 1000000;  ///< that one reference point of the part looks at
+constexpr std::size_t max_entries = 1000000;  ///< max table entries visited per reference point of the part
 
 /// A frame whose third axis is the normal.
 Matrix3d frame(const Vector3d& normal) {
@@ -30,7 +30,7 @@ Matrix3d frame(const Vector3d& normal) {
     return m;
 }
 
-/// Bins of angles by their cosines, looked up: bounds of bins are off by less than the table's steps.
+/// Table of angle bins by cosine: bin bounds are exact to the step of the table.
 class AngleBins {
 public:
     AngleBins() {
@@ -114,7 +114,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
             }
             const Matrix3d axes = frame(part.normals[i]);
             std::vector<float> votes(whole * rotation_bins, 0.0F);
-            // Rare kinds of pairs first, as many as there is time for: on a ball or a plane all pairs are of few kinds.
+            // Rare features first, within the budget: on a sphere or a plane all pairs have few distinct features.
             struct Kind {
                 std::size_t begin, end, partner;
             };
@@ -143,7 +143,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                         weight;
                 }
             }
-            // The best turn of each point of the whole (with its neighbours' votes), then the best points.
+            // The best rotation for each point of the whole (with the votes of adjacent bins), then the best points.
             struct ReferencePeak {
                 float votes;
                 std::uint32_t reference;

@@ -21,7 +21,7 @@ struct Sample {
     Vector3d place, normal;
 };
 
-/// Centroids of faces, each for the same area.
+/// Centroids of faces, each representing the same area.
 std::vector<Sample> samples_of(const Mesh& part, const std::vector<bool>& of_part, int count) {
     const double area = marked_area(part, of_part);
     if (!(area > 0)) fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
@@ -51,7 +51,7 @@ public:
     }
 
 private:
-    /// Pairs under a pose, trimmed; what is minimised, anchors and samples without a partner included.
+    /// Trimmed pairs under a pose; the objective includes anchors and samples without a partner.
     detail::PoseFit measure(const Motion& pose) {
         std::vector<std::optional<detail::PlanePair>> found(samples_.size());
         const double search_radius = options_.search_radius * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
@@ -70,7 +70,7 @@ private:
         const std::size_t wanted = pairs_.trim(options_.trim, samples_.size()), met = pairs_.list.size();
         double sum = pairs_.squares();
         fit.residual = met == 0 ? search_radius : std::sqrt(sum / static_cast<double>(met));
-        // Who has no partner is as far off as can be: a pose in which few find one is no better for it.
+        // A sample without a partner counts with the search radius, so that a pose with few pairs does not score better.
         sum += static_cast<double>(wanted - met) * search_radius * search_radius;
         weight_ = anchors_.empty() ? 0 : options_.anchors * static_cast<double>(wanted) / static_cast<double>(anchors_.size());
         for (const Anchor& anchor : anchors_) sum += weight_ * (pose(anchor.of_part) - anchor.of_whole).squaredNorm();
@@ -78,7 +78,7 @@ private:
         return fit;
     }
 
-    /// Turned by w and shifted by t about the pairs' centre, linearised.
+    /// Rotation by w and translation by t about the centre of the pairs, linearised.
     [[nodiscard]] Motion step(const Motion& pose) const {
         PlaneMotion planes = pairs_.planes(whole_.diagonal());
         for (const Anchor& anchor : anchors_) {

@@ -26,10 +26,10 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double scale_step = 1.0 / 12;
-// Places that differ by less are one: radians, shares of the part's size, logarithm of the ratio.
+// Poses that differ by less are equal: radians, shares of the part's size, logarithm of the scale ratio.
 constexpr double angle_apart = pi / 15, length_apart = 0.1, scale_apart = 0.15;
 
-/// Middle and size of a cloud of points: three times the root mean square distance from the middle, near its diameter.
+/// Centroid and size of a point cloud: three times the root mean square distance from the centroid, close to its diameter.
 struct Extent {
     Vector3d middle = Vector3d::Zero();
     double size = 0;
@@ -44,7 +44,7 @@ Extent extent_of(const SurfacePoints& points) {
     return extent;
 }
 
-/// Diagonal of the box of the marked faces, of all if there are no marks.
+/// Diagonal of the bounding box of the marked faces, or of all faces if there are no marks.
 double marked_diagonal(const Mesh& mesh, const std::vector<bool>& marks) {
     Eigen::AlignedBox3d box;
     for (const Face face : mesh.faces())
@@ -54,11 +54,11 @@ double marked_diagonal(const Mesh& mesh, const std::vector<bool>& marks) {
 }
 
 struct Proposal {
-    Motion pose;  ///< of the part, made as small as the whole's scale asks, onto the whole as it is
+    Motion pose;  ///< maps the part, scaled down by the scale of the whole, onto the unscaled whole
     double scale = 1, score = 0;
 };
 
-/// A pose on the scaled whole as one on the whole as it is.
+/// Converts a pose on the scaled whole to one on the unscaled whole.
 Motion on_unscaled(Motion pose, double scale) {
     pose.scale /= scale;
     pose.translation /= scale;
@@ -69,8 +69,8 @@ double angle_between(const Motion& a, const Motion& b) {
     return std::acos(std::clamp(((a.rotation.transpose() * b.rotation).trace() - 1) / 2, -1.0, 1.0));
 }
 
-// How often the best place was the right one among pieces broken off objects, off others of their class and off strangers
-// (ostraka_experiments pose-search; doc/pose-search.md), by logistic regression on the margin and the score.
+// Logistic regression of whether the best pose is right, on the margin and the score, for fragments of the same object, of
+// other objects of its class and of out-of-class objects (ostraka_experiments pose-search; doc/pose-search.md).
 constexpr double confidence_at_rest = -6.5, confidence_of_margin = 14, confidence_of_score = 6, max_margin = 3;
 
 }  // namespace
@@ -93,7 +93,7 @@ struct PoseSearch::State {
         return list;
     }
 
-    /// The part's points in its own unit, as dense as the whole's, about its middle.
+    /// The part's points in its own unit, about its centroid, with the density of the whole's points.
     [[nodiscard]] SurfacePoints points_of(const Mesh& part, const std::vector<bool>& of_part, double scale) const {
         constexpr double minimum = 300;
         const double own = std::sqrt(0.7 * marked_area(part, of_part) / minimum);
@@ -132,7 +132,7 @@ struct PoseSearch::State {
             8);
     }
 
-    /// Whether two places of the part are really different ones.
+    /// Whether two poses of the part are distinct.
     [[nodiscard]] static bool differ(const Motion& a, const Motion& b, const Vector3d& middle, double size) {
         return angle_between(a, b) > angle_apart || (a(middle) - b(middle)).norm() > length_apart * size ||
                std::abs(std::log(a.scale / b.scale)) > scale_apart;
@@ -172,13 +172,13 @@ struct PoseSearch::State {
         one.residual = on > 0 ? scale * std::sqrt(squares / static_cast<double>(on)) : 0;
     }
 
-    /// Registered to the faces, if that is better.
+    /// Registers the part to the faces, if this improves the score.
     void settle(const Mesh& part, const std::vector<bool>& of_part, const SurfacePoints& judges, double tolerance,
                 PoseCandidate& one) const {
         PartAlignmentOptions how;
         how.samples = 500;
         how.iterations = 12;
-        how.angle = 95;  // faces of a rough scan lean any way; only the other side of a wall must stay out
+        how.angle = 95;  // normals of a rough scan vary widely; only the other side of a wall must be excluded
         how.search_radius = std::min(10.0, 2.5 * tolerance / one.scale / whole.diagonal());
         const Motion start = on_unscaled(one.pose, one.scale);
         PoseCandidate other = one;
@@ -189,8 +189,8 @@ struct PoseSearch::State {
         if (other.score > one.score) one = other;
     }
 
-    /// What the shape of the part leaves open and the whole bears out from this place on: in the part's frame. `ways`, if asked
-    /// for, are on the scaled whole.
+    /// Slippable motions of the part that the whole confirms from this pose on, in the part's frame. `ways`, if not null, gets
+    /// the ranges on the scaled whole.
     [[nodiscard]] SlippableMotions slippable_from(const SurfacePoints& points, const PoseCandidate& at, double tolerance,
                                                   std::vector<SlippableRange>* ways) const {
         constexpr double min_rotation = pi / 12;
@@ -198,7 +198,7 @@ struct PoseSearch::State {
         const Extent extent = extent_of(points);
         const Nearness near(tolerance / at.scale);
         const Motion onto = on_unscaled(at.pose, at.scale);
-        // Told by the whole's points under the part: those are many, and smoother than what a scan of a sherd is.
+        // Estimated from the whole's points under the part: more points, and smoother than the scan of a sherd.
         std::vector<Vector3d> places, normals;
         const Motion back = onto.inverse();
         for (std::size_t i = 0; i < some.size(); ++i) {
@@ -209,7 +209,7 @@ struct PoseSearch::State {
             normals.push_back(back.rotation * grid->points().normals[static_cast<std::size_t>(j)]);
         }
         SlippableMotions slippable;
-        // A flat bowl is nearly a plane and nearly a sphere: what it leaves open at all is seen by looking closer.
+        // A flat bowl is nearly a plane and nearly a sphere: a stricter threshold reveals which motions are slippable.
         for (const double slide : {0.1, 0.06, 0.035}) {
             slippable = slippable_motions_of(places, normals, slide);
             if (slippable.kind != SlippableKind::more) break;
@@ -228,7 +228,7 @@ struct PoseSearch::State {
             if (std::abs(reached) >= (rotates ? min_rotation : length_apart * extent.size))
                 (rotates ? any_rotation : any_translation) = true;
             if (ways == nullptr) continue;
-            // Ways come for one sign, then for the other.
+            // The ways of positive sign come first, then those of negative sign.
             const auto number = static_cast<std::size_t>(&way - list.data());
             if (number >= list.size() / 2) {
                 (*ways)[number - list.size() / 2].minimum = reached;
@@ -319,8 +319,8 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
                    " faces");
     if (!(marked_area(part, of_part) > 0))
         fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
-    // A part is no larger than its whole, and one that is next to nothing of it cannot be distinguished from noise.
-    constexpr double too_large = 1.8, too_small = 0.01;  // diagonals of boxes, which turn
+    // A part is no larger than its whole, and a tiny part cannot be distinguished from noise.
+    constexpr double too_large = 1.8, too_small = 0.01;  // ratios of box diagonals, which vary with rotation
     const double ratio = marked_diagonal(part, of_part) / s.whole.diagonal();
     if (ratio > too_large * max_scale || ratio < too_small * min_scale) {
         PoseSearchResult result;
@@ -347,7 +347,8 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     }
     std::stable_sort(all.begin(), all.end(), [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
 
-    // Proposals are about the part's middle and in the whole's unit: back to the part's file, onto the scaled whole.
+    // Proposals are relative to the part's centroid and in the whole's unit: converts them to the part's file and the scaled
+    // whole.
     const auto in_file = [&](const Motion& proposal, double scale) {
         Motion pose;
         pose.rotation = proposal.rotation;
@@ -362,7 +363,8 @@ PoseSearchResult PoseSearch::find(const Mesh& part, const std::vector<bool>& of_
     const auto pose_of = [&](const Proposal& one) {
         return PoseCandidate{in_file(one.pose, one.scale), one.scale, one.score, 0, 0, 0};
     };
-    // What the part's shape leaves open, as far as the place proposed first bears it out: those places are one.
+    // Poses that differ by a slippable motion of the part, as far as the whole confirms it at the first proposal, count as
+    // equal.
     const SlippableMotions open = s.slippable_from(middling, pose_of(all.front()), tolerance, nullptr);
     const auto another = [&](const PoseCandidate& one, const PoseCandidate& than) {
         if (!really_different(one, than)) return false;

@@ -18,7 +18,7 @@ namespace {
 constexpr int max_iterations = 10000;
 
 Eigen::RowVector3d centroid_of(const Landmarks& landmarks) {
-    // About the first one, so that nothing is lost far from the origin.
+    // Relative to the first landmark, to avoid cancellation far from the origin.
     return landmarks.row(0) + (landmarks.rowwise() - landmarks.row(0)).colwise().mean();
 }
 
@@ -33,7 +33,7 @@ void check(const Landmarks& landmarks, Eigen::Index count, const std::string& wh
     if (!(centroid_size(landmarks) > 0)) fail_input(where, "all landmarks are in one place", "leave it out");
 }
 
-/// The rotation R that makes trace(R A) largest for A = from^T to of centred configurations (rows), and the trace.
+/// The rotation R that maximises trace(R A) for A = from^T to of centred configurations (rows), and the trace.
 struct BestRotation {
     Eigen::Matrix3d rotation;
     double trace = 0;
@@ -60,7 +60,7 @@ SimilarityMap procrustes(const Landmarks& from, const Landmarks& to, const Procr
     check(from, from.rows(), "the landmarks to be moved");
     check(to, from.rows(), "the landmarks of the goal");
     const Eigen::RowVector3d a = centroid_of(from), b = centroid_of(to);
-    // Of size 1 each, so that products neither overflow nor vanish.
+    // Normalised to size 1, so that products neither overflow nor underflow.
     const double from_size = centroid_size(from), to_size = centroid_size(to);
     const Landmarks x = (from.rowwise() - a) / from_size, y = (to.rowwise() - b) / to_size;
     const BestRotation best = best_rotation(x, y, options.reflection);
@@ -106,7 +106,7 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
         for (const Landmarks& x : result.aligned) mean += x / static_cast<double>(n);
         double sum = 0;
         for (const Landmarks& x : result.aligned) sum += (x - mean).squaredNorm();
-        // At the end the mean moves by the root of what the sum still falls.
+        // Near convergence the mean moves by the square root of the remaining decrease of the sum.
         const double moved = (mean - result.mean).squaredNorm() * static_cast<double>(n);
         result.converged = std::abs(before - sum) <= 1e-15 * all && (n == 1 || moved <= 1e-26 * all);
         before = sum;

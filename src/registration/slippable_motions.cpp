@@ -128,7 +128,7 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
         slippable.kind = SlippableKind::more;
         return slippable;
     }
-    // The square along the normals against that of the whole motion: a generalised eigenvalue problem.
+    // Generalised eigenvalue problem: square of the motion along the normals against that of the whole motion.
     using Matrix6 = Eigen::Matrix<double, 6, 6>;
     Matrix6 along = Matrix6::Zero(), whole = Matrix6::Zero();
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -147,13 +147,13 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
     while (open < 6 && solver.eigenvalues()[open] < tolerance * tolerance) ++open;
     if (open == 0) return slippable;
     const auto motions = solver.eigenvectors().leftCols(open).eval();
-    // Which of the open motions are translations: those whose rotation vanishes.
+    // Translations among the slippable motions are those without a rotational part.
     const SvdX rotational(motions.topRows(3), true);
     const auto& singular = rotational.singularValues();
     const double part = 0.15 * motions.colwise().norm().maxCoeff();
     const int rotations = static_cast<int>((singular.array() > part).count()), translations = open - rotations;
     const auto motion_of = [&](int k) -> Eigen::Matrix<double, 6, 1> { return motions * rotational.matrixV().col(k); };
-    // The line of a motion: w about it, v at the middle.
+    // The axis of a motion: w about it, v at the middle.
     const auto line_of = [&](const Eigen::Matrix<double, 6, 1>& motion) {
         const Vector3d w = motion.head<3>(), v = motion.tail<3>();
         slippable.direction = w.normalized();
@@ -172,7 +172,7 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
         slippable.kind = SlippableKind::cylinder;
         slippable.pitch = 0;
     } else if (open == 3 && rotations == 3) {
-        // The centre stays: v + w x c = 0 for each of the three.
+        // The centre is fixed: v + w x c = 0 for each of the three.
         Eigen::Matrix<double, 9, 3> A;
         Eigen::Matrix<double, 9, 1> b;
         for (int k = 0; k < 3; ++k) {

@@ -14,14 +14,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Points as faces give them, more than are wanted: each stands for an area.
+/// Dense samples of the faces, more than needed: each represents an area.
 struct DenseSamples {
     std::vector<Vector3d> places, normals;
     std::vector<double> areas;
 };
 
 DenseSamples dense_samples(const Mesh& mesh, const std::vector<bool>& faces, double patch) {
-    constexpr double maximum = 4096;  // of one face
+    constexpr double maximum = 4096;  // per face
     DenseSamples dense;
     for (const Face face : mesh.faces()) {
         if (!faces.empty() && !faces[face]) continue;
@@ -32,7 +32,7 @@ DenseSamples dense_samples(const Mesh& mesh, const std::vector<bool>& faces, dou
         const Vector3d a = eigen(mesh.point(c[0])), u = eigen(mesh.point(c[1])) - a, v = eigen(mesh.point(c[2])) - a;
         const auto count = static_cast<int>(std::clamp(std::ceil(area / patch), 1.0, maximum));
         for (int k = 0; k < count; ++k) {
-            // A sequence of low discrepancy (Roberts 2018), folded into the triangle; the first point is the centroid.
+            // A low-discrepancy sequence (Roberts 2018), folded into the triangle; the first point is the centroid.
             double s = 1.0 / 3, t = 1.0 / 3;
             if (k > 0) {
                 double whole = 0;
@@ -48,7 +48,7 @@ DenseSamples dense_samples(const Mesh& mesh, const std::vector<bool>& faces, dou
     return dense;
 }
 
-/// Points by cells of a grid, not more cells than points call for.
+/// Points by the cells of a grid, with the number of cells bounded by that of the points.
 class Cells {
 public:
     Cells(const std::vector<Vector3d>& places, double side) : places_(places) {
@@ -66,7 +66,7 @@ public:
         for (std::size_t i = 0; i < places.size(); ++i) members_[next[cell[i]]++] = static_cast<Index>(i);
     }
 
-    /// Points nearer than `radius`, which is at most the side asked for.
+    /// Visits the points nearer than `radius`, which must not exceed the requested side of a cell.
     template <class Visit>
     void near(const Vector3d& p, double radius, Visit&& visit) const {
         const Eigen::Vector3i c = at(p);

@@ -1,4 +1,4 @@
-// Trimmed iterative closest points, point to plane: what is the same whatever is paired with what.
+// Trimmed ICP, point to plane: the part that does not depend on how points are paired.
 #pragma once
 
 #include "ostraka/geom/plane_motion.h"
@@ -8,13 +8,13 @@
 
 namespace ostraka::detail {
 
-/// A moved point and the plane at its partner.
+/// A moved point and the tangent plane at its partner.
 struct PlanePair {
     Eigen::Vector3d point, place, normal;
-    double squared = 0;  ///< distance of the two
+    double squared = 0;  ///< squared distance of the two points
 };
 
-/// How well a pose fits.
+/// Quality of a pose.
 struct PoseFit {
     double minimised = 0, residual = 0, overlap = 0;
 };
@@ -23,7 +23,8 @@ class PlanePairs {
 public:
     std::vector<PlanePair> list;
 
-    /// Keeps the nearest, at most `share` of `samples`, and at least one; how many that would be if all had a partner.
+    /// Keeps the nearest pairs, at most `share` of `samples` and at least one; returns the number if every sample had a
+    /// partner.
     std::size_t trim(double share, std::size_t samples) {
         const auto wanted = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(samples)));
         std::stable_sort(list.begin(), list.end(), [](const PlanePair& a, const PlanePair& b) { return a.squared < b.squared; });
@@ -39,7 +40,7 @@ public:
         }
         return sum;
     }
-    /// The small motion onto the planes, about the pairs' centre.
+    /// Linearised motion of the points onto the planes, about the centre of the pairs.
     [[nodiscard]] PlaneMotion planes(double unit) const {
         Eigen::Vector3d centre = Eigen::Vector3d::Zero();
         for (const PlanePair& pair : list) centre += pair.point / static_cast<double>(list.size());
@@ -53,11 +54,12 @@ struct Registration {
     Motion pose;
     PoseFit fit;
     int iterations = 0;
-    bool settled = false;  ///< the last step moved nothing any more
+    bool settled = false;  ///< the last step changed nothing
 };
 
-/// From `start`: measure(pose) fills `pairs` and judges, step(pose) gives the next pose. The pairs change from step to step, so
-/// that what is minimised may rise for a while: the best pose met is kept. Ends after some steps without a gain of `min_gain`.
+/// From `start`: measure(pose) fills `pairs` and returns the fit, step(pose) returns the next pose. As the pairs change from
+/// step to step, the objective may rise for a while: the best pose encountered is kept. Stops after several steps without a
+/// gain of `min_gain`.
 template <class Measure, class Step>
 Registration register_from(const Motion& start, int iterations, double min_gain, const PlanePairs& pairs, Measure&& measure,
                            Step&& step) {

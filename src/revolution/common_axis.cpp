@@ -1,4 +1,4 @@
-// The axis that all sherds make most likely, and how each is tilted and shifted where it lies.
+// Maximum likelihood estimate of the common axis of all sherds, and of the tilt and offset of each in the layout.
 #include "stages.h"
 
 #include "ostraka/axis/axis_evidence.h"
@@ -23,9 +23,10 @@ using Eigen::Vector4d;
 
 namespace {
 
-/// Of the area, about the common axis: less is no wall that lies there. Breaks that are not known take up to half.
+/// Min share of a sherd's area that is rotationally symmetric about the common axis. Unknown fractures take up to half of the
+/// area.
 constexpr double least_round = 0.35;
-/// Standard deviations beyond which an axis contradicts the others.
+/// Max disagreement of a sherd's axis with the others, in standard deviations.
 constexpr double most_disagreement = 6;
 
 class AxisConsensus {
@@ -52,10 +53,10 @@ public:
     }
 
 private:
-    /// What each sherd tells, linear about where its axis is now.
+    /// The observation of one sherd, linearised at its current axis.
     struct Told {
         Matrix4d information = Matrix4d::Zero(), layout = Matrix4d::Zero();
-        Vector4d target = Vector4d::Zero();  ///< information x axis, relative to the common one
+        Vector4d target = Vector4d::Zero();  ///< information x axis, relative to the common axis
         double round = 0;
     };
 
@@ -66,7 +67,7 @@ private:
         return list;
     }
 
-    /// Each sherd's own axis, and what it is asked by later.
+    /// Estimates each sherd's own axis, and prepares its witness.
     void ask_each() {
         witnesses_.resize(sherds_.size());
         const std::vector<std::size_t> list = remaining();
@@ -104,11 +105,11 @@ private:
         return rotation_axis(some.mesh, some.faces(), options_.axis);
     }
 
-    /// By its size, but none outvotes three of most.
+    /// Weight by size, bounded by three times the median.
     [[nodiscard]] double vote(std::size_t k) const { return std::min(size(k), 3 * median_size_); }
     [[nodiscard]] double size(std::size_t k) const { return std::sqrt(witnesses_[k]->area()); }
 
-    /// In another unit than most.
+    /// Drops sherds in another unit than most.
     void drop_other_units() {
         std::vector<double> sizes;
         for (const std::size_t k : remaining()) sizes.push_back(size(k));
@@ -120,7 +121,7 @@ private:
                           "is it in another unit than the others? then scale it");
     }
 
-    /// How many sherds are round about it, larger ones counting for more.
+    /// Number of sherds that are rotationally symmetric about the axis, weighted by size.
     double agreement(const Axis& axis) const {
         const AxisFrame frame = frame_of(axis);
         double sum = 0;
@@ -131,8 +132,8 @@ private:
         return sum;
     }
 
-    /// Of the axis of all, those of single sherds, and, where most agree on none of these, of all but one and of pairs: the one
-    /// about which most sherds are round.
+    /// Candidates are the axis of all sherds, those of single sherds and, if most sherds agree with none of these, those of all
+    /// but one and of pairs. Returns the candidate about which most sherds are rotationally symmetric.
     std::optional<Axis> first_axis() {
         const std::vector<std::size_t> list = remaining();
         std::vector<Axis> candidates;
@@ -179,7 +180,7 @@ private:
         const AxisEvidence evidence = witnesses_[k]->at(line(common_ + own_[k]));
         Told told;
         told.round = evidence.round;
-        // Steps are about the sherd's place; here about the foot of the frame.
+        // Steps refer to the sherd's own position; converts them to the foot of the frame.
         Matrix4d there = Matrix4d::Identity();
         there.topRightCorner<2, 2>() = frame_.height(evidence.place) * Eigen::Matrix2d::Identity();
         if (sherds_[k].axis) {
@@ -192,12 +193,12 @@ private:
         return told;
     }
 
-    /// Common axis and the tilt and shift of each sherd that are most likely together. For each sherd its own axis x has
-    /// information I about m, and the layout information P about the common axis c; x left out, c has J = I - I (I + P)^-1 I
-    /// about m.
+    /// Maximum likelihood of the common axis and of the tilt and offset of each sherd together. The own axis x of a sherd has
+    /// information I about m, and the layout information P about the common axis c; with x eliminated, c has J = I - I (I +
+    /// P)^-1 I about m.
     void settle(const Axis& start) {
         const std::vector<std::size_t> list = remaining();
-        // Where the frame lies: next to the middle of all.
+        // The origin of the frame: near the centroid of all.
         Vector3d middle = Vector3d::Zero();
         double area = 0;
         const AxisFrame about = frame_of(start);
@@ -254,7 +255,7 @@ private:
         spread_ = list.size() < 4 ? covariance_ : jackknife(list);
     }
 
-    /// Covariance of the common axis by what it would be without each sherd: it needs no assumption on how well they were laid.
+    /// Jackknife covariance of the common axis: needs no assumption on the accuracy of the layout.
     [[nodiscard]] Matrix4d jackknife(const std::vector<std::size_t>& list) const {
         Matrix4d all = Matrix4d::Zero();
         Vector4d sum = Vector4d::Zero(), mean = Vector4d::Zero();
@@ -276,7 +277,7 @@ private:
         return result;
     }
 
-    /// How far a sherd's own axis is off the common one.
+    /// Deviation of a sherd's own axis from the common axis.
     void measure_own(std::size_t k) {
         SherdOnProfile& one = result_.sherds[k];
         if (!one.axis.found) return;
@@ -290,8 +291,8 @@ private:
         one.aside = (off - off.dot(common.direction) * common.direction).norm();
     }
 
-    /// An own axis far from the common one, as a share of what is admitted: the equations are linear near the common one, and may
-    /// not see it.
+    /// Deviation of an own axis from the common one, relative to the limits: the linearised equations are valid near the common
+    /// axis only and may miss a large deviation.
     [[nodiscard]] double own_off(const SherdOnProfile& one) const {
         if (!one.axis.found) return 0;
         const double tilt = most_disagreement * options_.layout_angle + 3 * one.axis.figure("direction error")->value,
@@ -299,7 +300,7 @@ private:
         return std::max(one.lean / tilt, one.aside / shift);
     }
 
-    /// The one that contradicts the others most goes, then the axis is found anew.
+    /// Drops the sherd that contradicts the others most; the axis is then estimated again.
     bool drop_one_that_disagrees() {
         const std::vector<std::size_t> list = remaining();
         if (list.size() < 2) return false;
@@ -378,10 +379,10 @@ private:
     RevolutionTemplate& result_;
     std::vector<std::unique_ptr<AxisWitness>> witnesses_;
     AxisFrame frame_;
-    double diagonal_ = 0;                 ///< of what lies about the axis
+    double diagonal_ = 0;                 ///< of the sherds around the axis
     double median_size_ = 0;              ///< of the sherds: square roots of their areas
-    Vector4d common_ = Vector4d::Zero();  ///< shift and tilt of the common axis against the frame
-    std::vector<Vector4d> own_;           ///< of each sherd's against the common one
+    Vector4d common_ = Vector4d::Zero();  ///< offset and tilt of the common axis relative to the frame
+    std::vector<Vector4d> own_;           ///< of each sherd's axis relative to the common one
     std::vector<Matrix4d> contribution_ = std::vector<Matrix4d>(sherds_.size(), Matrix4d::Zero());
     std::vector<double> round_ = std::vector<double>(sherds_.size(), 0);
     std::vector<Vector4d> pulls_ = std::vector<Vector4d>(sherds_.size(), Vector4d::Zero());

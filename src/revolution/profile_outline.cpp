@@ -87,7 +87,7 @@ void ProfileImage::smooth(double deviation) {
 
 namespace {
 
-/// The longest part of a loop at radii above 0, its ends on the axis; the loop itself if it does not meet the axis.
+/// The longest part of a loop at positive radii, with its ends on the axis; the whole loop if it does not meet the axis.
 Outline right_of_axis(const std::vector<Vector2d>& loop) {
     const std::size_t n = loop.size();
     Outline result;
@@ -114,8 +114,8 @@ Outline right_of_axis(const std::vector<Vector2d>& loop) {
 }  // namespace
 
 Outline ProfileImage::outline() const {
-    // The whole cross-section, both sides of the axis. Nodes are the cells' middles; a crossing lies on the edge from a node to
-    // the next one to the right (0) or above (1). Pieces lead from crossing to crossing, the wall on the left.
+    // The full cross-section, both sides of the axis. Nodes are cell centres; a crossing lies on the edge from a node to the
+    // next one to the right (0) or above (1). Segments lead from crossing to crossing, with the wall on the left.
     using Crossing = std::array<long, 3>;
     const long low = -static_cast<long>(columns) - 1, right = static_cast<long>(columns) + 1, top = static_cast<long>(rows) + 1;
     std::map<Crossing, Crossing> next;
@@ -126,7 +126,8 @@ Outline ProfileImage::outline() const {
             const bool corner[4] = {in(row, column), in(row, column + 1), in(row + 1, column + 1), in(row + 1, column)};
             const Crossing side[4] = {{row, column, 0}, {row, column + 1, 1}, {row + 1, column, 0}, {row, column, 1}};
             for (int k = 0; k < 4; ++k) {
-                // The curve enters the square where, counter-clockwise, wall ends, and leaves where it begins again behind it.
+                // In counter-clockwise order, the curve enters the square where the wall ends and leaves it where the next wall
+                // begins.
                 if (!(corner[k] && !corner[(k + 1) % 4])) continue;
                 int j = (k + 1) % 4;
                 while (!(!corner[j] && corner[(j + 1) % 4])) j = (j + 1) % 4;
@@ -157,7 +158,7 @@ Outline ProfileImage::outline() const {
             area += 0.5 * (a.x() * b.y() - a.y() * b.x());
             radius += a.x() / static_cast<double>(loop.size());
         }
-        // Holes run the other way; of two pieces that mirror each other the one at positive radii is meant.
+        // Holes have the opposite orientation; of two mirrored pieces the one at positive radii is used.
         Outline piece = right_of_axis(loop);
         if (piece.closed ? radius < 0 : area <= 0) continue;
         if (piece.closed) area *= 2;

@@ -17,7 +17,7 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
     const auto& line = result.profile;
     const auto higher = [](const Vector2d& a, const Vector2d& b) { return a.y() < b.y(); };
     const auto top = static_cast<std::size_t>(std::max_element(line.begin(), line.end(), higher) - line.begin());
-    // From the foot outside up, inside down.
+    // The profile runs from the foot up the outside, then down the inside.
     std::size_t widest = 0, foot = 0;
     const double height = line[top].y();
     for (std::size_t i = 0; i <= top; ++i) {

@@ -1,4 +1,4 @@
-// What the stages of a vessel's template hand on: sherds on one axis, the wall, its profile, the profile swept, annotations.
+// Interfaces between the stages of the template construction: registered sherds, wall, profile, swept profile, annotations.
 #pragma once
 
 #include "ostraka/axis/axis.h"
@@ -12,44 +12,44 @@
 
 namespace ostraka::detail {
 
-/// A curve around the wall right of the axis, the wall on its left: from the axis to the axis, or closed.
+/// Outline of the wall at positive radii, with the wall on its left: from axis to axis, or closed.
 struct Outline {
     std::vector<Eigen::Vector2d> points;  ///< radius, height
     bool closed = false;                  ///< the wall does not reach the axis
 };
 
-/// Square cells: rows are heights, columns radii from the axis on.
+/// Image with square cells: rows are heights, columns are radii.
 struct ProfileImage {
     double step = 0;
     std::size_t rows = 0, columns = 0;
-    std::vector<double> wall_share;  ///< share of the rays that tell that is inside the wall
-    std::vector<double> telling;     ///< rays that tell whether there is wall
-    std::vector<double> present;     ///< rays that meet anything, of each row
+    std::vector<double> wall_share;  ///< share of the informative rays that are inside the wall
+    std::vector<double> telling;     ///< number of informative rays: those that determine whether there is wall
+    std::vector<double> present;     ///< per row, number of rays that hit anything
 
-    /// To the cells of a row between two radii, of one of the two above.
+    /// Adds to the cells of a row between two radii; `cells` is one of the two arrays above.
     void add(std::vector<double>& cells, std::size_t row, double from, double to) const;
     void clear(std::size_t row);
-    /// In a row from `first` to before `end`.
+    /// Whether the wall reaches the axis in a row from `first` to before `end`.
     [[nodiscard]] bool reaches_axis(std::size_t first, std::size_t end) const;
-    /// Rows without wall between others get the wall between those, straight.
+    /// Fills rows without wall between others by linear interpolation.
     void bridge(std::vector<std::string>* notes);
-    /// Gaussian of a standard deviation in cells, mirrored at the axis.
+    /// Gaussian smoothing with a standard deviation in cells, mirrored at the axis.
     void smooth(double deviation);
-    /// The level line of one half of the largest piece (marching squares).
+    /// The level line of one half of the largest component (marching squares).
     [[nodiscard]] Outline outline() const;
 
 private:
     [[nodiscard]] double at(long row, long column) const;
 };
 
-/// `count` points evenly along the curve (of an open one both ends too).
+/// `count` points at equal distances along the curve (including both ends of an open curve).
 std::vector<Eigen::Vector2d> resampled(const std::vector<Eigen::Vector2d>& line, bool closed, int count);
 
 }  // namespace ostraka::detail
 
 namespace ostraka {
 
-/// Everything in the frame of the axis: height along it, directions across it.
+/// Frame of the axis: height along it, directions across it.
 struct AxisFrame {
     Eigen::Vector3d foot = Eigen::Vector3d::Zero(), up = Eigen::Vector3d::UnitZ(), u = Eigen::Vector3d::UnitX(),
                     w = Eigen::Vector3d::UnitY();
@@ -60,29 +60,29 @@ struct AxisFrame {
 
 AxisFrame frame_of(const Axis& axis);
 
-/// A sherd on its way into the template.
+/// A sherd with its state in the template construction.
 struct LaidSherd {
     const Fragment* fragment = nullptr;
-    bool inside_out = false;   ///< its faces count the other way round
-    bool walls = true;         ///< it is closed, so that where its clay is can be told
-    bool axis = true;          ///< what it tells of the axis counts
-    bool contradicts = false;  ///< it was left out because of what it tells of the axis
-    Motion motion;             ///< to where its axis and height are those of all
+    bool inside_out = false;   ///< its faces are oriented inwards
+    bool walls = true;         ///< it is closed, so that the inside of its wall is known
+    bool axis = true;          ///< its axis is used
+    bool contradicts = false;  ///< it was left out because its axis contradicts the others
+    Motion motion;             ///< to where its axis and height agree with the common ones
 };
 
 struct JoinedSherds {
     Mesh mesh;
-    std::vector<std::vector<Index>> of_fragment;  ///< faces that are not of a break, sherd by sherd
+    std::vector<std::vector<Index>> of_fragment;  ///< per sherd, its faces that are not fracture
     [[nodiscard]] std::vector<Index> faces() const;
-    [[nodiscard]] std::vector<bool> broken() const;  ///< of each face of the mesh
+    [[nodiscard]] std::vector<bool> broken() const;  ///< per face of the mesh
 };
 
-/// The sherds for which `take` is true, moved; of the others no face.
+/// The moved sherds for which `take` is true; the others contribute no faces.
 JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& take);
 
-/// The axis of all sherds that are not left out, and how each has to be moved so that its own is that: fills in axis, errors and
-/// sherds of the template, and the motions. Leaves out what tells nothing or contradicts the others. Throws Error (input) where
-/// no sherd is left.
+/// Estimates the axis of all sherds that are not left out, and the motion that aligns each sherd's own axis with it: fills in
+/// axis, errors and sherds of the template, and the motions. Leaves out sherds without information and those that contradict
+/// the others. Throws Error (input) if no sherd is left.
 void find_common_axis(std::vector<LaidSherd>& sherds, const RevolutionOptions& options, RevolutionTemplate& result);
 
 void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::string& remedy = {});
@@ -91,28 +91,29 @@ void leave_out(SherdOnProfile& sherd, const std::string& reason, const std::stri
 
 struct WallSection {
     detail::ProfileImage image;
-    std::vector<double> tops;  ///< in each direction: the highest wall, above the lowest row; none: -1
+    std::vector<double> tops;  ///< per direction, height of the highest wall above the lowest row; none: -1
 
-    /// Heights with too little wall do not count.
+    /// Clears heights with too little wall.
     void drop_rare(const RevolutionOptions& options);
-    /// A rim: where there is wall near the top, it ends at one height.
+    /// Whether there is a rim: all wall near the top ends at one height.
     [[nodiscard]] bool has_rim(const RevolutionOptions& options) const;
 };
 
-/// How much of the wall rays from the axis meet, by height and radius. A ray that leaves the clay, or enters it, by a break
-/// (`broken` of its face, or a normal far from the plane through the axis) does not tell whether there was wall beyond.
+/// The share of rays from the axis that are inside the wall, by height and radius. A ray that enters or leaves the solid
+/// through a fracture (`broken` of its face, or a normal far from the plane through the axis) gives no information on the wall
+/// beyond.
 WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
                          double high, double far, const RevolutionOptions& options);
 
-/// Rings of vertices around the axis, each with as many as its size asks for, sewn together.
+/// Rings of vertices around the axis, with a vertex count proportional to their circumference, connected by triangles.
 class ProfileSweep {
 public:
-    /// Heights are above `lowest`; the triangles' edges are about as long as `edge`.
+    /// Heights are above `lowest`; the mean edge length is about `edge`.
     ProfileSweep(const AxisFrame& frame, double lowest, double edge) : frame_(frame), lowest_(lowest), edge_(edge) {}
 
-    /// At this radius and height; one vertex where the radius is 0.
+    /// Adds a ring at this radius and height; a single vertex for radius 0.
     void ring(const Eigen::Vector2d& at);
-    /// Triangles between two rings.
+    /// Connects two rings by triangles.
     void sew(std::size_t a, std::size_t b);
     [[nodiscard]] TriangleSoup soup() const;
 
@@ -130,7 +131,7 @@ private:
     std::vector<std::array<Index, 3>> triangles_;
 };
 
-/// The rings of vertices of the template, one a point of its profile.
+/// The rings of vertices of the template, one per point of its profile.
 struct ProfileRings {
     std::vector<std::vector<Vertex>> vertices;
     std::vector<std::size_t> of_vertex;

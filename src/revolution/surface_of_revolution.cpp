@@ -53,9 +53,9 @@ public:
 
 private:
     static constexpr int height_rounds = 4;
-    /// Of a sherd's area, on the template that it is part of: less lies elsewhere. Breaks that are not known take up to half.
+    /// Min share of a sherd's area that lies on the template. Unknown fractures take up to half of the area.
     static double least_on_template(const Fragment& sherd) { return sherd.facets.empty() ? 0.3 : 0.5; }
-    /// Enough for one whose own axis says something else.
+    /// Min share for a sherd whose own axis contradicts the others.
     static constexpr double enough_on_template = 0.6;
 
     void look_at_each() {
@@ -97,8 +97,8 @@ private:
         return std::find(take.begin(), take.end(), true) != take.end();
     }
 
-    /// The template of the sherds that are not left out. Heights are mended by what the template, made of all, says to each.
-    /// False where they have no profile.
+    /// Builds the template from the sherds that are not left out, and refines the heights of the sherds by registering each to
+    /// it. False if they have no profile.
     bool turn() {
         const std::vector<bool> take = of_walls();
         const auto count = std::count(take.begin(), take.end(), true);
@@ -116,7 +116,7 @@ private:
         }
     }
 
-    /// The one of which the least lies on the template.
+    /// Drops the sherd with the smallest share on the template.
     bool drop_one_off_the_template() {
         const std::vector<bool> take = of_walls();
         std::size_t worst = 0;
@@ -134,8 +134,8 @@ private:
         return true;
     }
 
-    /// Sherds whose own axis contradicts the others (a short arc, breaks that are not known), but whose walls lie on the vessel
-    /// that the others make: their axis does not count, their walls do.
+    /// Takes back sherds whose own axis contradicts the others (a short arc, unknown fractures), but whose walls lie on the
+    /// vessel formed by the others: their walls are used, their axis is not.
     bool take_back() {
         bool any = false;
         const SurfaceSearch surface(result_.mesh);
@@ -157,7 +157,7 @@ private:
         return any;
     }
 
-    /// At no height do most of the walls lie at one radius: the sherd that tells least of the axis goes.
+    /// If the walls have no common radius at any height, drops the sherd with the least information on the axis.
     bool drop_the_least_sure() {
         const std::vector<bool> take = of_walls();
         std::size_t least = take.size();
@@ -196,7 +196,7 @@ private:
                 offs.push_back(std::abs(places.back().off));
             }
             if (places.empty()) continue;
-            // A break that is not known may face the template, far from it: Tukey's weights.
+            // An unknown fracture may face the template from far away: Tukey's weights.
             const double limit = std::max(4.685 * 1.4826 * upper_median(std::move(offs)), 0.002 * surface.diagonal());
             double a = 0, b = 0, area = 0;
             for (const Place& place : places) {
@@ -208,17 +208,17 @@ private:
                 b += weight * place.up * place.off;
             }
             if (!(area > 0)) continue;
-            // Radii are right to about 0.2 % of the diagonal: a wall without slope does not tell its height, the layout does.
+            // Radii are accurate to about 0.2 % of the diagonal: the layout determines the height of a wall without slope.
             const double hold = area * std::pow(0.002 / options_.layout_shift, 2);
             double& height = heights_[k];
-            // More than the step: part of the template there is the sherd itself.
+            // Over-relaxed: the sherd itself is part of the template there.
             const double step = std::clamp(1.3 * (b - hold * height) / (a + hold), -search_radius, search_radius);
             height += step;
             sherds_[k].motion.translation += step * frame_.up;
         }
     }
 
-    /// False where there is none.
+    /// False if there is no profile.
     bool profile(const SurfaceSearch& search, const JoinedSherds& all) {
         double low = 1e300, high = -1e300, far = 0;
         bridged_.clear();
@@ -238,7 +238,7 @@ private:
             result_.rim = section.has_rim(options_);
             image_ = std::move(section.image);
             result_.base = image_.reaches_axis(0, image_.rows / 2);
-            // The foot is where the wall reaches the axis; of an open tube the narrower end.
+            // The foot is where the wall reaches the axis; for an open tube, the narrower end.
             const bool upside_down = !result_.base && image_.reaches_axis(image_.rows / 2, image_.rows);
             if (attempt == 1 || !upside_down) break;
             result_.axis.direction = -result_.axis.direction;
@@ -308,7 +308,7 @@ private:
     }
 
     struct OnTemplate {
-        double share = 0, distance = 0;  ///< of the area; root mean square of that
+        double share = 0, distance = 0;  ///< share of the area; its root mean square distance
     };
     static OnTemplate on_template(const SurfaceSearch& surface, const Mesh& mesh, const std::vector<Index>& faces) {
         const double tolerance = 0.02 * surface.diagonal();
@@ -318,7 +318,7 @@ private:
             if (!(n.norm() > 0)) continue;
             all += n.norm();
             const auto hit = surface.closest_compatible(centroid(mesh, Face(f)), vector_of(n.normalized()), 0.8, tolerance);
-            if (!hit) continue;  // of a break
+            if (!hit) continue;  // fracture
             on += n.norm();
             squares += n.norm() * hit->distance * hit->distance;
         }
@@ -329,7 +329,7 @@ private:
     std::vector<LaidSherd> sherds_;
     const RevolutionOptions& options_;
     AxisFrame frame_;
-    std::vector<double> heights_;  ///< by which each sherd was raised
+    std::vector<double> heights_;  ///< vertical shift of each sherd
     std::vector<std::string> bridged_;
     ProfileImage image_;
     double lowest_ = 0;

@@ -29,10 +29,10 @@ bool WallSection::has_rim(const RevolutionOptions& options) const {
 
 namespace {
 
-/// Sine of the angle between a wall's normal and the plane through the axis, at most.
+/// Max sine of the angle between a wall's normal and the plane through the axis.
 constexpr double most_around = 0.6;
 
-/// Space narrower than this share of the largest radius, at a break, is what was worn off.
+/// A gap at a fracture that is narrower than this share of the largest radius counts as abraded material.
 constexpr double worn_off = 0.02;
 
 struct RayHit {
@@ -40,17 +40,17 @@ struct RayHit {
     bool leaving, broken;
 };
 
-/// One ray from the axis outwards: where it is inside the clay, and where it tells that there is none. Sherds of a layout may
-/// overlap: it is inside as long as it is in any of them. Returns whether it met any.
+/// Follows one ray from the axis outwards: records where it is inside the wall, and where it shows that there is none. Sherds
+/// of a layout may overlap: the ray is inside while it is in any of them. Returns whether it hit any sherd.
 bool follow(const std::vector<RayHit>& hits, detail::ProfileImage& image, std::size_t row, double far) {
     int depth = 0, least = 0;
     for (const RayHit& hit : hits) {
         depth += hit.leaving ? -1 : 1;
         least = std::min(least, depth);
     }
-    depth = -least;  // of sherds around the axis
+    depth = -least;  // number of sherds around the axis
     bool any = false, known = false;
-    double begin = 0;  // of the clay or the space that it is in
+    double begin = 0;  // start of the current interval, wall or gap
     const auto clay = [&](double from, double to) {
         image.add(image.wall_share, row, from, to);
         image.add(image.telling, row, from, to);
@@ -92,7 +92,7 @@ WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& b
         [&](std::size_t row) {
             const Vector3d origin = frame.foot + (low + (static_cast<double>(row) + 0.5) * image.step) * frame.up;
             for (int k = 0; k < half; ++k) {
-                // Not along symmetric directions, which edges of synthetic meshes like.
+                // Avoids symmetric directions, along which synthetic meshes often have edges.
                 const Vector3d direction = frame.direction(pi * (k + 0.37) / half);
                 const auto hits = search.line_hits(point_of(origin), vector_of(direction), 1.01 * far);
                 const Vector3d around = frame.up.cross(direction);

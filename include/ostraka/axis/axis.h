@@ -1,4 +1,4 @@
-// Axes of objects and of annotated parts: principal, of slices, of rotation, of the skeleton; or the answer that there is none.
+// Axes of objects and of annotated parts: principal, of slices, of rotation, of the skeleton; or the reason why there is none.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -33,49 +33,49 @@ struct AxisFigure {
 
 struct Axis {
     bool found = false;
-    std::string reason;                     ///< why there is none
-    Point point{0, 0, 0};                   ///< of the straight axis: the place nearest to the part's centroid
+    std::string reason;                     ///< why there is no axis
+    Point point{0, 0, 0};                   ///< point of the straight axis nearest to the part's centroid
     Vector direction{0, 0, 1};              ///< unit vector whose largest component is positive
-    std::vector<std::vector<Point>> lines;  ///< the curved axis, or the branches of a skeleton with the longest way first
-    double quality = 0;                     ///< 0 to 1; what it means depends on the method
+    std::vector<std::vector<Point>> lines;  ///< the curved axis, or the branches of a skeleton with the longest path first
+    double quality = 0;                     ///< 0 to 1; its meaning depends on the method
     std::vector<AxisFigure> figures;
     [[nodiscard]] const AxisFigure* figure(const std::string& name) const;
 };
 
-/// The axis of a set of faces by the method named in the options. Throws Error (input) if there are no faces with area.
+/// The axis of a set of faces by the method in the options. Throws Error (input) if there are no faces with area.
 Axis find_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Axis of the surface of revolution that fits best. Every normal of such a surface meets the axis: the linear line complex of
+/// Axis of the best-fitting surface of revolution. Every normal of such a surface meets the axis: the linear line complex of
 /// Pottmann and Wallner (Computational Line Geometry, 2001) is fitted to random sets of normals (RANSAC), then to all with
-/// reweighting; the result is refined so that radii agree along parallels (robust least squares over heights), which needs no
-/// normals; steps start from the axis of the normals and from along their principal directions, and the best end counts. Quality:
-/// the share of the area (without parts that face along the axis) within `tolerance` of the turned profile. No axis: flat parts,
-/// spheres (infinitely many), what is not round, what fits about several lines or tells its diameter to no better than half
-/// (short arcs). Figures: largest diameter, per cent of the circle preserved, rms distance, standard errors of the direction and
-/// of the diameter. Linear in faces.
+/// reweighting. The result is refined so that radii agree along parallels (robust least squares over heights), which needs no
+/// normals; the refinement starts from the axis of the normals and from their principal directions, and the best result is
+/// kept. Quality: the share of the area (without parts that face along the axis) within `tolerance` of the revolved profile. No
+/// axis: flat parts, spheres (infinitely many), shapes that are not rotationally symmetric, that fit about several lines, or
+/// whose relative error of the diameter exceeds half (short arcs). Figures: largest diameter, per cent of the circle preserved,
+/// rms distance, standard errors of the direction and of the diameter. Linear in faces.
 Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Centroids of slices across the longest principal direction, then once more across the local tangent: for tubular parts. A
-/// slice that covers less than 300 degrees gives the centre of its circle. The straight axis is fitted to the centres. Quality: 1
-/// - mean radius / length. No axis: parts that are not longer than wide. Figures: length, mean radius, rms distance of the
-/// centres from the straight axis. O(slices x faces).
+/// For tubular parts: centroids of slices across the longest principal direction, then again across the local tangent. For a
+/// slice that covers less than 300 degrees, the centre of its circle is used. The straight axis is fitted to the centres.
+/// Quality: 1 - mean radius / length. No axis: parts that are not longer than wide. Figures: length, mean radius, rms distance
+/// of the centres from the straight axis. O(slices x faces).
 Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the largest piece, capped where it is open. The axis is the
-/// longest way through the skeleton, or its loop. Quality: the share of the skeleton's length on that way. No axis: what shrinks
-/// to a point. Figures: length, branches, rms distance from the straight axis. At most 200 000 faces.
+/// Mean curvature skeleton (Tagliasacchi et al. 2012, CGAL) of the largest component, with its holes filled. The axis is the
+/// longest path in the skeleton, or its loop. Quality: the share of the skeleton's length on that path. No axis: parts that
+/// contract to a point. Figures: length, branches, rms distance from the straight axis. At most 200 000 faces.
 Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Principal axes of the area: the longest one as direction; `lines` holds all three, longest first, as long as the part along
-/// them. Quality: 1 - (second / first variance). No axis: the first two variances agree within a tenth.
+/// Principal axes of the area: the longest one as direction; `lines` holds all three, longest first, each with the extent of
+/// the part along it. Quality: 1 - (second / first variance). No axis: the first two variances agree within a tenth.
 Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOptions& options = {});
 
-/// Circle through the vertices of a curve (the rim of a sherd, say): its axis, diameter with its 95 % interval (`fit_arc`; no
-/// upper end where a straight line fits too) and the per cent of it that is there. Quality: 1 - rms distance / radius. No axis:
-/// fewer than three vertices, or all on one line.
+/// Circle through the vertices of a curve (for example the rim of a sherd): its axis, its diameter with the 95 % interval
+/// (`fit_arc`; without an upper bound if a straight line fits too) and the per cent of the circle that is preserved. Quality: 1
+/// - rms distance / radius. No axis: fewer than three vertices, or collinear vertices.
 Axis circle_axis(const std::vector<Point>& points);
 
-/// The poly-lines of an axis as a Wavefront OBJ file: exact coordinates, one element "l" each.
+/// The poly-lines of an axis as a Wavefront OBJ file: exact coordinates, one "l" element each.
 std::string to_obj(const Axis& axis);
 
 /// Centroid and covariance of the area of the faces, exact for triangles.
@@ -83,7 +83,7 @@ struct AreaMoments {
     double area = 0;
     Point centroid{0, 0, 0};
     std::array<double, 3> variances{};  ///< descending
-    std::array<Vector, 3> directions;   ///< unit vectors of the variances, right-handed
+    std::array<Vector, 3> directions;   ///< unit eigenvectors of the variances, right-handed
 };
 AreaMoments area_moments(const Mesh& mesh, const std::vector<Index>& faces);
 

@@ -1,4 +1,4 @@
-// What a part tells of an axis of rotation that is known nearly: where it would move it, and how surely.
+// Evidence of a part on an approximately known axis of rotation: the best correction, with its information matrix.
 #pragma once
 
 #include "ostraka/axis/axis.h"
@@ -10,23 +10,23 @@
 
 namespace ostraka {
 
-/// A line near which evidence is asked for, with two unit vectors across it that name the directions of steps.
+/// A line at which the evidence is evaluated, with two orthogonal unit vectors across it that define the directions of steps.
 struct AxisGuess {
     Eigen::Vector3d point, direction, u, w;
 };
 
 struct AxisEvidence {
-    double round = 0;     ///< share of the area that the line can be an axis of: on the profile about it, normals that meet it
+    double round = 0;     ///< share of the area consistent with the axis: on the profile about it, with normals that meet it
     double residual = 0;  ///< standard deviation from that profile after the best step, in the mesh's unit
-    double samples = 0;   ///< independent places on the surface that this rests on
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the line, next to the part's centroid: steps are about it
-    /// Normal equations: `information` x step = -`gradient` is solved by the best step, whose inverse covariance is
-    /// `information`. A step shifts the line along u and w, in the mesh's unit, and tilts it towards u and w, in radians.
+    double samples = 0;   ///< effective number of independent samples of the surface
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< point of the line nearest to the part's centroid: origin of the steps
+    /// Normal equations: the best step solves `information` x step = -`gradient`; `information` is its inverse covariance. A
+    /// step translates the line along u and w, in the mesh's unit, and tilts it towards u and w, in radians.
     Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
 };
 
-/// A part prepared once, asked about many lines.
+/// A part prepared once for queries with many lines.
 class AxisWitness {
 public:
     /// Throws Error (input) if there are no faces with area, (usage) for options out of range.
@@ -34,12 +34,13 @@ public:
     ~AxisWitness();
     AxisWitness(AxisWitness&&) noexcept;
 
-    /// The equations that `rotation_axis` refines an axis by, weighted by what lies off the profile: deviations that neighbouring
-    /// places share (a wall that is not quite round) count once, by the ratio of the variance of means over patches to that of
-    /// single places. Parts that are no surface of revolution about any line near give little `round`.
+    /// The equations by which `rotation_axis` refines an axis, weighted by the variance of the distance from the profile.
+    /// Correlated deviations of neighbouring samples (a wall that is not quite round) count once, by the ratio of the variance
+    /// of patch means to that of single samples. `round` is small for parts that are no surface of revolution about any nearby
+    /// line.
     [[nodiscard]] AxisEvidence at(const AxisGuess& guess) const;
 
-    /// Enough faces for `at`.
+    /// Whether there are enough faces for `at`.
     [[nodiscard]] bool enough() const;
     [[nodiscard]] const Eigen::Vector3d& centroid() const;
     [[nodiscard]] double area() const;

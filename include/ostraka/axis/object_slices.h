@@ -1,4 +1,4 @@
-// Objects cut into slices along their axes, and the axes that slices are compared with.
+// Slices objects along their axes, and finds the axes with which slices are compared.
 #pragma once
 
 #include "ostraka/axis/axis.h"
@@ -7,30 +7,30 @@
 namespace ostraka {
 
 struct CutOptions {
-    /// None: across `up`; else across the axis that this method finds, which points upwards as far as it does at all, or across
-    /// the curve of the skeleton.
+    /// None: across `up`; otherwise across the axis found by this method, oriented upwards as far as possible, or across the
+    /// curve of the skeleton.
     std::optional<AxisMethod> direction;
     Vector up{0, 0, 1};
-    SlicePlaces places;  ///< across a curve its count alone
+    SlicePlaces places;  ///< only the count applies across a curve
     AxisOptions axis;
 };
 
-/// Cuts the mesh, or the given faces of it, along its own axis; heights are those over its lowest place. Where the object has no
-/// such axis the result has a reason and no slices. Throws Error (input) for a mesh without surface or one that find_axis cannot
-/// take, and as slice_mesh.
+/// Slices the mesh, or the given faces of it, along its own axis; heights are above its lowest point. If the object has no such
+/// axis, the result has a reason and no slices. Throws Error (input) for a mesh without surface or one that find_axis rejects,
+/// and as slice_mesh.
 CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const CutOptions& options = {});
 
-/// An axis that the barycentres of slices are compared with.
+/// An axis with which the barycentres of slices are compared.
 struct ComparedAxis {
     std::string name;
-    std::string reason;  ///< why there is none; empty: it was found
+    std::string reason;  ///< why it does not exist; empty: it was found
     SliceLine line;
-    std::vector<Point> polyline;  ///< of a bent one
+    std::vector<Point> polyline;  ///< of a curved axis
     Straightness straightness;
 };
 
-/// The mean of the barycentres along the normal (of parallel slices), their regression, and the curve that was cut across; with
-/// `by_shape` also what `find_axis` finds: rotation, principal, slices, skeleton. None for fewer than two barycentres.
+/// The mean of the barycentres along the normal (of parallel slices), their regression line, and the curve of the slices; with
+/// `by_shape` also the axes of `find_axis`: rotation, principal, slices, skeleton. Empty for fewer than two barycentres.
 std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const CutObject& cut, bool by_shape,
                                         const AxisOptions& options = {});
 

@@ -12,9 +12,9 @@ namespace ostraka {
 /// Throws Error (usage) for a face that the mesh does not have.
 void check_region(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// A map with one value a vertex over a region: each selected face gives a third of its area to each of its corners.
-/// Throws Error (input) if the map has not one value a vertex or one in the region is not finite, and Error (usage) for a region
-/// without faces or a face out of range.
+/// Statistics of a vertex map over a region: each selected face gives a third of its area to each of its corners. Throws Error
+/// (input) unless the map has one value per vertex, finite on the region, and Error (usage) for a region without faces or a
+/// face out of range.
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
                              const std::string& where = "map");
 

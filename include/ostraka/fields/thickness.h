@@ -9,21 +9,22 @@
 namespace ostraka {
 
 struct ThicknessOptions {
-    int rays = 30;        ///< in the cone under each face
+    int rays = 30;        ///< number of rays in the cone under each face
     double cone = 60;     ///< opening of the cone, degrees
-    double scale = 0.01;  ///< radius over which normals are averaged to find the cone's axis, as a share of the box diagonal
+    double scale = 0.01;  ///< radius over which normals are averaged for the cone's axis, as a share of the box diagonal
 
     void describe(OptionList& visit);
 };
 
-/// The shape diameter (Shapira, Shamir and Cohen-Or 2008) of each face in the mesh's unit: rays inside a cone around the inward
-/// normal run to the first face that they leave the solid through; those farther from the median than a standard deviation are
-/// left out and the others averaged with weights that fall with the angle. Between parallel walls t apart the value is up to some
-/// per cent above t, in a ball some per cent below its diameter; a narrower cone is nearer. NaN where fewer than half of the rays
-/// meet anything (open meshes). Rays start at the face's centroid. Throws Error (usage) for options out of range.
+/// The shape diameter (Shapira, Shamir and Cohen-Or 2008) of each face in the mesh's unit: rays in a cone around the inward
+/// normal are cast to the first face through which they leave the solid; lengths farther from the median than a standard
+/// deviation are dropped and the others averaged with weights that fall with the angle. Between parallel walls at distance t
+/// the value is some per cent above t, in a sphere some per cent below its diameter; a narrower cone is more accurate. NaN if
+/// fewer than half of the rays hit anything (open meshes). Rays start at the face's centroid. Throws Error (usage) for options
+/// out of range.
 std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options = {});
 
-/// Per vertex: the mean of its faces' values, weighted by their areas; NaN where no face has one.
+/// Per vertex: the mean of the values of its faces, weighted by their areas; NaN if no face has a value.
 std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<double>& face_values);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Outer, inner and fracture surface of a fragment classified by its shape.
+// Classifies the surface of a fragment by its shape: outer, inner or fracture surface.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -11,32 +11,32 @@
 namespace ostraka {
 
 struct FacetOptions {
-    double edge = 40;        ///< degrees by which a surface turns over an edge that may be where a break begins
-    double wall = 0.25;      ///< a shell is thinner than this share of the square root of its area
-    double coherence = 0.3;  ///< how much neighbours count against what a face shows by itself
+    double edge = 40;        ///< dihedral angle in degrees at which an edge may bound a fracture
+    double wall = 0.25;      ///< max wall thickness of a shell, as a share of the square root of its area
+    double coherence = 0.3;  ///< weight of the neighbours relative to the evidence of a face itself
 
     void describe(OptionList& visit);
 };
 
-/// Faces of one kind joined over edges.
+/// A connected component of faces with the same facet.
 struct FacetSegment {
     Facet facet = Facet::outer;
     std::vector<Index> faces;  ///< ascending
     double area = 0;
-    double confidence = 0;  ///< 0 to 1: how far the faces themselves show what they are taken for, mean over the area
+    double confidence = 0;  ///< 0 to 1: how well the evidence of the faces supports the label, mean over the area
 };
 
 struct Facets {
-    /// Whether there is a break: one is found; none is seen anywhere; it cannot be told, what is called one may be none, or what
-    /// is not may be one.
+    /// Whether the object is broken: a fracture was found; there is no evidence of one; undecided (the fracture that was found
+    /// may be none, or one may have been missed).
     enum class Answer { broken, whole, unclear };
 
     std::vector<Facet> of_face;
-    std::vector<double> probability;     ///< of each face, that it is of a break, by what it shows itself
+    std::vector<double> probability;     ///< per face, probability of being fracture, from the face's own evidence
     std::vector<FacetSegment> segments;  ///< largest first
     Answer answer = Answer::unclear;
     bool shell = false;     ///< a wall with two sides
-    double thickness = 0;   ///< of the wall, where there is one
+    double thickness = 0;   ///< thickness of the wall, if there is one
     double confidence = 0;  ///< mean over the area
     std::vector<std::string> notes;
     [[nodiscard]] double area(Facet facet) const;
@@ -44,15 +44,15 @@ struct Facets {
 
 std::string to_string(Facets::Answer answer);
 
-/// Faces are seen together in at most about 24 000 patches. A model (data/facets.model.json) learnt from broken objects, made and
-/// scanned, gives each the probability that it is of a break. Labels minimise what patches show plus the length of their
-/// boundaries, which cost little along sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). Where most of what
-/// is intact lies over a thin wall whose other side is intact too, it has an outer and an inner side: the outer one looks away
-/// from the axis of rotation (axis/axis.h), or, where there is none, from the point nearest to the lines along all normals.
-/// Throws Error (input) for a mesh without area.
+/// Groups the faces into at most about 24 000 patches. A model (data/facets.model.json) trained on broken objects, synthetic
+/// and scanned, gives each patch its probability of being fracture. The labels minimise the data cost of the patches plus the
+/// length of their boundaries, which is cheap along sharp convex edges (alpha expansion; Boykov, Veksler and Zabih 2001). If
+/// most of the intact surface lies over a thin wall whose other side is intact too, it is split into an outer and an inner
+/// side: the outer side faces away from the axis of rotation (axis/axis.h) or, without an axis, from the point nearest to the
+/// lines along all normals. Throws Error (input) for a mesh without area.
 Facets find_facets(const Mesh& mesh, const FacetOptions& options = {});
 
-/// As above, with log odds of each patch from elsewhere.
+/// As above, with given log odds of each patch.
 Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds,
                    const FacetOptions& options = {});
 

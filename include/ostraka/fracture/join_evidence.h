@@ -1,4 +1,4 @@
-// What would be seen of two breaks if they belonged together, and how likely that makes it.
+// Features of a candidate join and its learnt probability.
 #pragma once
 
 #include <array>
@@ -8,61 +8,61 @@
 
 namespace ostraka {
 
-/// Of two breaks laid against each other. Lengths are shares of the tolerance (the last search radius), areas of its square,
-/// unless they are shares of something else.
+/// Features of two fractures in a given relative pose. Lengths are divided by the tolerance (the last search radius), areas by
+/// its square, unless they are ratios of something else.
 struct JoinEvidence {
-    double area = 0;       ///< in contact: within the tolerance, facing each other; mean of both sides
-    double share = 0;      ///< of the smaller fracture
-    double coverage = 0;   ///< contact by the area that could touch: within three tolerances of the other's fracture
-    double residual = 0;   ///< root mean square distance along the normals
-    double relief = 0;     ///< root mean square deviation of what is in contact from a quadric
-    double bending = 0;    ///< from a plane
-    double grip = 0;       ///< how firmly contact and rim hold the pose: smallest eigenvalue of their normal equations over the
-                           ///< mean one (Gelfand et al. 2003), 0 where they slide on each other
-    double facing = 0;     ///< mean cosine between opposite normals in contact
-    double rim = 0;        ///< length of the rim whose side the other continues
-    double rim_share = 0;  ///< of the shorter rim
-    double rim_coverage = 0;  ///< continued by what could be: within three tolerances of the other's rim
+    double area = 0;      ///< contact area: within the tolerance, facing each other; mean of both sides
+    double share = 0;     ///< contact area as a share of the smaller fracture
+    double coverage = 0;  ///< contact area divided by the area within three tolerances of the other's fracture
+    double residual = 0;  ///< root mean square distance along the normals
+    double relief = 0;    ///< root mean square deviation of the contact area from a quadric
+    double bending = 0;   ///< root mean square deviation of the contact area from a plane
+    double grip = 0;  ///< how firmly contact and rim constrain the pose: smallest eigenvalue of their normal equations divided by
+                      ///< the mean one (Gelfand et al. 2003); 0 where the fragments can slide
+    double facing = 0;        ///< mean cosine between opposite normals in contact
+    double rim = 0;           ///< length of the rim whose side the other fragment continues
+    double rim_share = 0;     ///< the same as a share of the shorter rim
+    double rim_coverage = 0;  ///< the same divided by the length within three tolerances of the other's rim
     double rim_step = 0;      ///< root mean square step across the side where it is continued
-    double penetration = 0;   ///< area deeper in the other than the tolerance, both ways, by the contact
-    double depth = 0;         ///< of the deepest point
-    double widths = 0;        ///< absolute logarithm of the ratio of the two fractures' widths
-    // The sides beside the rims, which wear leaves as they were: over what rim could continue.
-    double side_turn = 1;    ///< root mean square sine between their normals
-    double side_step = 1;    ///< root mean square offset from each other's planes, by the distance between their middles
-    double side_length = 0;  ///< length of the rim that this is seen of
+    double penetration = 0;  ///< area deeper inside the other than the tolerance, in both directions, divided by the contact area
+    double depth = 0;        ///< depth of the deepest point
+    double widths = 0;       ///< absolute logarithm of the ratio of the two fractures' widths
+    // The intact sides beside the rims, which wear preserves: measured over the rim that could continue.
+    double side_turn = 1;  ///< root mean square sine of the angle between their normals
+    double side_step = 1;  ///< root mean square offset from each other's planes, divided by the distance between their centroids
+    double side_length = 0;  ///< length of the rim over which this is measured
 
-    // How well anything is seen of the two, wherever they are laid.
-    double noise = 0;   ///< of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
-    double edge = 0;    ///< mean length of the edges of the coarser mesh
-    double breaks = 0;  ///< root mean square deviation of the smoother one's break from a quadric
+    // Quality of the data, independent of the pose.
+    double noise = 0;   ///< noise of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
+    double edge = 0;    ///< mean edge length of the coarser mesh
+    double breaks = 0;  ///< root mean square deviation of the smoother fracture from a quadric
 
-    // Of a vessel the normals of the intact surfaces meet its axis, whatever wear took from the breaks: root mean square
-    // distances from the best axis, shares of the smaller fragment's size.
-    double axis = 0;      ///< of both together, beyond that of each from its own
-    double own_axis = 0;  ///< of both, each from its own
+    // On a vessel the normals of the intact surfaces meet its axis, however worn the fractures are: root mean square distances
+    // of the normals from the best axis, as shares of the smaller fragment's size.
+    double axis = 0;      ///< excess of both together, from one common axis, over each from its own
+    double own_axis = 0;  ///< of both, each from its own axis
 
-    static constexpr std::size_t numbers = 23;  ///< above
-    static constexpr std::size_t count = 24;    ///< features
-    /// What the model is told: logarithms and shares, each of the order of 1.
+    static constexpr std::size_t numbers = 23;  ///< number of members above
+    static constexpr std::size_t count = 24;    ///< number of features
+    /// Input of the model: logarithms and shares, each of the order of 1.
     [[nodiscard]] std::array<double, count> features() const;
     static const std::array<std::string, count>& names();
-    /// Whether a feature speaks for or against a join, not only of how well anything is seen.
+    /// Whether a feature is evidence about the join, rather than about the quality of the data.
     static bool of_the_join(std::size_t feature) { return feature != 18 && feature != 19 && feature != 23; }
 };
 
-/// Of the evidence alone: that two fragments were joined so, against what is seen by chance, as learnt from breaks whose truth is
-/// known (data/joins.model.json).
+/// Log odds of a true join against chance from the evidence alone, learnt from fractures with known truth
+/// (data/joins.model.json).
 double join_log_odds(const JoinEvidence& seen);
-/// Calibrated: that a candidate is right, by its log odds and how far they are ahead of the best other candidate of its pair
+/// Calibrated probability that a candidate is right, from its log odds and their lead over the best other candidate of its pair
 /// (below 0: behind).
 double join_probability(double log_odds, double lead);
-/// What is added to the log odds of a pair among so many fragments: a fragment has about four neighbours, so the more there are,
-/// the fewer pairs are joined. 0 where they are as many as in what was learnt from.
+/// Correction of the log odds of a pair among this number of fragments: a fragment has about four neighbours, so the more
+/// fragments there are, the smaller the share of joined pairs. 0 where the share is that of the training data.
 double log_odds_of_a_join_among(std::size_t fragments);
-/// SHA-256 of the model: what was said by another one is not said by this.
+/// SHA-256 of the model: results of different models are not comparable.
 std::string join_model_version();
-/// What speaks most against a join, in words.
+/// The feature that is the strongest evidence against a join, as text.
 std::string weakest_evidence(const JoinEvidence& seen);
 
 }  // namespace ostraka

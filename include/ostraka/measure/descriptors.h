@@ -1,4 +1,4 @@
-// What can be computed of an annotation: sizes, box, centroid, curvature, thickness, statistics of maps.
+// Descriptors of an annotation: sizes, box, centroid, curvature, thickness, statistics of maps.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -11,19 +11,19 @@
 
 namespace ostraka {
 
-/// A quantity with its name, and the power of the unit of length it is in.
+/// A quantity with its name and the exponent of its length unit.
 struct Quantity {
     std::string name;
     std::vector<double> values;
-    bool is_list = false;  ///< a list in a file, even of one value
-    int power = 0;         ///< 1 for a length, 2 for an area, -1 for a curvature; 0 without unit or as `unit` says
-    std::string unit;      ///< of quantities that are no power of a length, e.g. "rad"
+    bool is_list = false;  ///< written as a list, even with one value
+    int power = 0;         ///< 1 for a length, 2 for an area, -1 for a curvature; 0 if dimensionless or in `unit`
+    std::string unit;      ///< for quantities that are no power of a length, e.g. "rad"
 };
 
-/// The unit of a quantity where lengths are in `unit`: "mm^2", "1/mm"; empty if `unit` is.
+/// The unit of a quantity if lengths are in `unit`: "mm^2", "1/mm"; empty if `unit` is.
 std::string unit_of(const Quantity& quantity, const std::string& unit);
 
-/// A map to take statistics of: one value a vertex.
+/// A map for statistics: one value per vertex.
 struct NamedMap {
     std::string name;
     std::vector<double> values;
@@ -39,8 +39,8 @@ struct DescriptorOptions {
     void describe(OptionList& visit);
 };
 
-/// Computes quantities of annotations on one mesh, which must outlive it; what is needed of the whole mesh (curvature, thickness)
-/// is computed once, when first asked for. Not for use by several threads at once.
+/// Computes quantities of annotations on one mesh, which must outlive it. Fields on the whole mesh (curvature, thickness) are
+/// computed once, on demand. Not thread-safe.
 class DescriptorSearch {
 public:
     explicit DescriptorSearch(const Mesh& mesh, DescriptorOptions options = {});
@@ -48,23 +48,24 @@ public:
     DescriptorSearch(const DescriptorSearch&) = delete;
     DescriptorSearch& operator=(const DescriptorSearch&) = delete;
 
-    /// Annotations that will be asked for: free ones share one mesh, cut along the curves of all.
+    /// Announces annotations that will be queried: free ones share one mesh, cut along the curves of all.
     void expect(const AnnotationSet& set);
 
-    /// One quantity by its name; nothing if the name is not known or has no meaning for this type of annotation. Known are, of
-    /// regions: area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid
+    /// One quantity by its name; nothing if the name is unknown or undefined for this type of annotation. Names for regions:
+    /// area, perimeter, circularity (P^2 / A), volume and volume bound (see solid.h), centroid (of the surface), solid
     /// centroid, box sides, box centre, box axes (oriented box, the longest side first), mean curvature integral, Gaussian
-    /// curvature integral; of lines: length.
+    /// curvature integral; for lines: length.
     std::optional<Quantity> find(const Annotation& annotation, const std::string& name);
 
-    /// All that are known, and the statistics asked for: "mean curvature median", "thickness mean" and so on: mean, deviation,
-    /// median, 5 and 95 per cent. Throws Error (input), naming annotation and map, for a map of the wrong length or one that is
-    /// not finite there, and for an annotation without elements. Points and lines have statistics of maps with equal weights.
+    /// All known quantities, and the requested statistics "mean curvature median", "thickness mean" and so on: mean, deviation,
+    /// median, 5 and 95 per cent. Throws Error (input), naming annotation and map, for a map of the wrong length or with values
+    /// that are not finite on the annotation, and for an annotation without elements. Statistics on points and lines use equal
+    /// weights.
     std::vector<Quantity> describe(const Annotation& annotation, const std::vector<NamedMap>& maps = {});
 
     /// The fields themselves, per vertex.
     const Curvature& curvature();
-    /// Per face; NaN where there is none.
+    /// Per face; NaN if undefined.
     const std::vector<double>& thickness();
 
 private:
@@ -74,7 +75,7 @@ private:
     std::unique_ptr<Cache> cache_;
 };
 
-/// Writes quantities into an annotation as descriptors: those of the same name are replaced, others get fresh ids.
+/// Writes quantities into an annotation as descriptors: those of the same name are replaced, others get new ids.
 void store(Annotation& annotation, const std::vector<Quantity>& quantities, const std::string& unit);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Fragments that are points without faces: read, given normals, made into a surface.
+// Point clouds of fragments: reading, normal estimation, surface reconstruction.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -13,41 +13,42 @@ namespace ostraka {
 
 struct PointCloud {
     std::vector<Point> points;
-    std::vector<Vector> normals;     ///< empty, or a unit vector each that looks out of the object
-    std::vector<std::string> notes;  ///< what the file held that is not kept, in words
+    std::vector<Vector> normals;     ///< empty, or one unit vector per point, pointing outwards
+    std::vector<std::string> notes;  ///< messages about contents of the file that are dropped
 };
 
-/// The points of a file that has no faces: PLY, OFF or OBJ, or text with x y z, or x y z nx ny nz, a line (.xyz, .pts, .asc,
-/// .txt; lines that begin with # are comments). Normals are those of PLY's properties nx, ny, nz or of the text; where one of
-/// them has no length none is kept. Nothing for a file with faces. Throws Error (input) for what cannot be read.
+/// The points of a file without faces: PLY, OFF or OBJ, or text with x y z, or x y z nx ny nz, per line (.xyz, .pts, .asc,
+/// .txt; lines that begin with # are comments). Normals come from the PLY properties nx, ny, nz or from the text; if any of
+/// them has length zero, all are dropped. Nothing for a file with faces. Throws Error (input) for a file that cannot be read.
 std::optional<PointCloud> read_point_cloud(const Path& file);
 
 struct CloudOptions {
-    int neighbours = 18;     ///< of a point, for its normal
-    double longest = 8;      ///< edges of the surface that are longer than this many times the spacing are left out
-    double close_holes = 1;  ///< holes of up to this share of the diagonal are closed
+    int neighbours = 18;     ///< number of neighbours for the normal of a point
+    double longest = 8;      ///< max edge length of the surface, in multiples of the point spacing
+    double close_holes = 1;  ///< max size of a hole that is filled, as a share of the diagonal
 
     void describe(OptionList& visit);
 };
 
-/// Unit normals: directions from quadrics through each point's neighbours (jets; Cazals and Pouget 2005), sides from a minimum
-/// spanning tree (Hoppe et al. 1992); all turned over together if they look into the object (mean over the points of normal times
-/// place from the middle, the sum of flux through the surface). Throws Error (input) for fewer than `neighbours` + 1 points.
+/// Unit normals: directions from quadrics through each point's neighbours (jets; Cazals and Pouget 2005), orientation by a
+/// minimum spanning tree (Hoppe et al. 1992); all are flipped together if they point inwards (sign of the mean over the points
+/// of normal times position relative to the centre, i.e. of the flux through the surface). Throws Error (input) for fewer than
+/// `neighbours` + 1 points.
 std::vector<Vector> estimate_normals(const std::vector<Point>& points, const CloudOptions& options = {});
 
 /// Mean distance from each point to its sixth neighbour.
 double point_spacing(const std::vector<Point>& points);
 
 struct CloudSurface {
-    Mesh mesh;                   ///< vertices are points of the cloud, in their order, those with a face only
-    std::vector<Index> sources;  ///< the point that each vertex is
+    Mesh mesh;                   ///< its vertices are the points with a face, in the order of the cloud
+    std::vector<Index> sources;  ///< per vertex, index of its point
     std::size_t border_loops = 0;
     std::vector<std::string> notes;
 };
 
-/// A surface through the points: advancing front (Cohen-Steiner and Da 2004), oriented by the normals (estimated where the cloud
-/// has none), mended and small holes closed (io/repair.h). Equal points count once. Throws Error (input) for points that have no
-/// surface (too few, all in a line).
+/// Surface reconstruction by advancing front (Cohen-Steiner and Da 2004), oriented by the normals (estimated if the cloud has
+/// none), repaired, with small holes filled (io/repair.h). Duplicate points count once. Throws Error (input) for points without
+/// a surface (too few, or collinear).
 CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& options = {});
 
 }  // namespace ostraka

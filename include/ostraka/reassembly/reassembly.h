@@ -1,4 +1,4 @@
-// Fragments of one or several objects put together again by their breaks.
+// Reassembles fragments of one or several objects along their fractures.
 #pragma once
 
 #include "ostraka/fracture/break_pair.h"
@@ -12,33 +12,33 @@ namespace ostraka {
 
 struct ReassemblyOptions {
     PairOptions pairs;
-    double min_join = 0.8;  ///< probability from which two groups are joined
-    int partners = 24;      ///< of each fragment, those it quickly fits best with are tried in full, of those most nearly as wide
-    int min_faces = 100;    ///< a fragment of fewer shows no relief
+    double min_join = 0.8;  ///< min probability of a join between two groups
+    int partners = 24;      ///< per fragment, number of best quick fits tried in full
+    int min_faces = 100;    ///< a fragment with fewer faces shows no relief
 
     void describe(OptionList& visit);
 };
 
-/// All poses found for two fragments.
+/// All candidate poses of two fragments.
 struct PairOfMany {
     std::size_t first = 0, second = 0;
-    std::vector<PairCandidate> candidates;  ///< second onto first, most likely first
+    std::vector<PairCandidate> candidates;  ///< each maps the second fragment onto the first; most likely first
     double confidence = 0;
 };
 
-/// Two fragments that meet.
+/// Two fragments that are joined.
 struct FragmentJoin {
     std::size_t first = 0, second = 0;
-    Motion pose;            ///< second onto first, where they are in the group
-    double pair = 0;        ///< probability by the two alone
-    double confidence = 0;  ///< with what the rest of the group says
-    std::size_t loops = 0;  ///< closed with a third fragment
-    JoinEvidence evidence;  ///< as they lie in the group
-    bool carries = false;   ///< of the tree that holds the group together
-    std::string reason;     ///< in words
+    Motion pose;            ///< maps the second fragment onto the first, as placed in the group
+    double pair = 0;        ///< probability from the two fragments alone
+    double confidence = 0;  ///< probability including the evidence of the rest of the group
+    std::size_t loops = 0;  ///< number of loops closed with a third fragment
+    JoinEvidence evidence;  ///< for the poses in the group
+    bool carries = false;   ///< edge of the spanning tree of the group
+    std::string reason;     ///< explanation as text
 };
 
-/// A pose that is likely by two fragments alone, and was not taken.
+/// A pose that is likely from two fragments alone, but was rejected.
 struct UndoneJoin {
     std::size_t first = 0, second = 0;
     double pair = 0;
@@ -46,27 +46,28 @@ struct UndoneJoin {
 };
 
 struct Reassembly {
-    std::vector<Motion> poses;        ///< of each fragment, into the frame of the largest of its group
-    std::vector<int> group;           ///< of each fragment, largest group first; -1: joined to none
-    std::vector<std::string> alone;   ///< of each fragment: why it is joined to none; else empty
-    std::vector<FragmentJoin> joins;  ///< by group, surest first
+    std::vector<Motion> poses;        ///< per fragment, into the frame of the largest fragment of its group
+    std::vector<int> group;           ///< per fragment, largest group first; -1: not joined
+    std::vector<std::string> alone;   ///< per fragment: why it is not joined; else empty
+    std::vector<FragmentJoin> joins;  ///< by group, most certain first
     std::vector<UndoneJoin> undone;
     std::size_t pairs_tried = 0;
-    std::size_t pairs_left = 0;  ///< of many fragments: pairs that were not tried, their breaks being unlike
+    std::size_t pairs_left = 0;  ///< with many fragments: number of pairs skipped for dissimilar fractures
     [[nodiscard]] int groups() const;
 };
 
-/// What was found of pairs before, by their numbers and with these options; nothing: they are tried. And what to do with one that
-/// was tried. Called from several threads, one at a time.
+/// Cache of pair results. `recall` returns the result for a pair of indices and these options, or nothing if the pair must be
+/// tried; `keep` stores the result of a pair. Called from several threads, one at a time.
 struct PairMemory {
     std::function<std::optional<PairOfMany>(std::size_t, std::size_t, const PairOptions&)> recall;
     std::function<void(const PairOfMany&, const PairOptions&)> keep;
 };
 
-/// All pairs give candidates, not only their best. Candidates that close a loop with those of a third fragment get surer: three
-/// poses of chance hardly agree. The surest first, groups are joined where nothing lies inside anything else; what else then
-/// touches counts for or against it. Each group's poses are refined together (Ceres: point to plane between all fractures and
-/// rims that meet). Fragments of strangers stay alone. No chance is involved. Throws Error (usage) without fragments.
+/// Each pair contributes all its candidates, not only the best. Candidates that close a loop with those of a third fragment
+/// gain probability, as three wrong poses rarely agree. Groups are joined in order of certainty if no fragment lies inside
+/// another; all other contacts of the join count as evidence for or against it. The poses of each group are refined together
+/// (Ceres: point to plane between all fractures and rims that meet). Unrelated fragments stay single. Deterministic. Throws
+/// Error (usage) without fragments.
 Reassembly reassemble(const std::vector<Fragment>& fragments, const ReassemblyOptions& options = {},
                       const PairMemory& memory = {});
 

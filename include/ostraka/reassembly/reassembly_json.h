@@ -1,4 +1,4 @@
-// Reassemblies and the pairs they are made of as JSON.
+// Reassemblies and pair results as JSON.
 #pragma once
 
 #include "ostraka/core/json.h"
@@ -6,14 +6,14 @@
 
 namespace ostraka {
 
-/// What was found of a pair, to the bit; `pair_from_json` gives it back. Throws Error (input) for anything else.
+/// The result of a pair, exact to the bit; `pair_of_many_from_json` reads it. Throws Error (input) for any other JSON.
 JsonValue pair_of_many_to_json(const PairOfMany& pair, JsonAllocator& allocator);
 PairOfMany pair_of_many_from_json(const JsonValue& value, std::size_t first, std::size_t second);
 
-/// What a pair of fragments depends on beside the options: SHA-256 of the mesh and its facets.
+/// SHA-256 of the mesh and its facets: all that a pair result depends on besides the options.
 std::string fragment_checksum(const Fragment& fragment);
 
-/// Members of doc/schema/reassembly.schema.json: groups, joins, joins undone; `names` of the fragments.
+/// Members of doc/schema/reassembly.schema.json: groups, joins, rejected joins; `names` of the fragments.
 JsonValue reassembly_to_json(const Reassembly& result, const std::vector<std::string>& names, JsonAllocator& allocator);
 
 }  // namespace ostraka

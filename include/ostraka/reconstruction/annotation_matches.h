@@ -1,4 +1,5 @@
-// Which annotation of a fragment is which of the template (thesis, section 5.4: "annotation correspondence", left open there).
+// Matches the annotations of a fragment with those of the template (thesis, section 5.4: "annotation correspondence", left open
+// there).
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -20,21 +21,21 @@ struct AnnotationMatchOptions {
 struct AnnotationMatch {
     int of_fragment = 0, of_template = 0;  ///< ids
     double score = 0;                      ///< 0 to 1
-    /// What the score is made of, each 0 to 1: attributes they both have, containers, place under the pose, extent.
+    /// Terms of the score, each 0 to 1: common attributes, containers, position under the pose, extent.
     double attributes = 1, containers = 1, place = 1, extent = 1;
-    bool stated = false;  ///< by a person
+    bool stated = false;  ///< stated by the user
 };
 
-/// What a person says: this one is that one, or (no template annotation) is none.
+/// A match stated by the user: the counterpart of a fragment's annotation, or (no template annotation) that it has none.
 struct StatedMatch {
     int of_fragment = 0;
     std::optional<int> of_template;
 };
 
-/// Annotations of the same type and tag are candidates. Where several have a tag (two eyes), attributes, the tags of what
-/// contains them, and the place and extent under the pose of the fragment distinguish them; each template annotation is given to
-/// one of the fragment at most, with the largest sum of scores. A part of a part (half an eye) may be smaller, not larger.
-/// `scaled` is the template at the scale and place of the pose's goal. Throws Error (input) for stated ids that are not there.
+/// Annotations of the same type and tag are candidates. If several have a tag (two eyes), they are distinguished by their
+/// attributes, the tags of their containers, and their position and extent under the pose of the fragment; the assignment is
+/// one-to-one, with the largest sum of scores. A part of a part (half an eye) may be smaller, not larger. `scaled` is the
+/// template in the target frame of the pose. Throws Error (input) for stated ids that do not exist.
 std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const AnnotationSet& of_template, const Mesh& fragment,
                                                const AnnotationSet& of_fragment, const Motion& pose,
                                                const std::vector<StatedMatch>& stated = {},

@@ -1,4 +1,4 @@
-// A fragment as its files tell: mesh or points, annotations, facets.
+// Reads a fragment from its files: mesh or points, annotations, facets.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -20,23 +20,23 @@ struct FragmentFileOptions {
 struct FragmentFile {
     Fragment fragment;
     std::string facets_from;   ///< "annotations", "shape", "shape and annotations" or "nowhere"
-    Facets found;              ///< from the shape, where that was asked
-    bool points = false;       ///< the file has no faces: the mesh is a surface through its points
-    std::vector<Path> inputs;  ///< what was read
+    Facets found;              ///< facets from the shape, if they were computed
+    bool points = false;       ///< the file has no faces: the mesh is reconstructed from its points
+    std::vector<Path> inputs;  ///< files that were read
     std::vector<std::string> notes;
 };
 
-/// Reads a mesh and the annotations beside it (NAME.ant.json) if they are there, or points without faces (with a note where there
-/// are annotations beside them: those are not read); facets as the options say. A surface found in a solid counts as fracture
-/// only where it is surer than even. Throws Error (input).
+/// Reads a mesh and the annotations beside it (NAME.ant.json) if they exist, or points without faces (annotations beside them
+/// are not read; a note reports this); facets by the options. Fracture segments found from the shape count only if their
+/// confidence is above 0.5. Throws Error (input).
 FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options = {});
 
-/// The facets as three regions "outer", "inner" and "fracture" (those that are there), with area and confidence.
+/// The facets as up to three regions "outer", "inner" and "fracture", with area and confidence.
 AnnotationSet facet_annotations(const Facets& facets, const std::string& unit = {});
 
-/// Brings a set up to date with the facets: its first region of each name (capital letters or not) keeps id, tag, colour and
-/// what else is said of it, and gets the faces, area and confidence found; further ones and those not found go; others stay.
-/// What is measured of a region whose faces change is stale.
+/// Updates a set with the facets: its first region of each name (case-insensitive) keeps id, tag, colour and other attributes,
+/// and gets the faces, area and confidence of the facet; further regions of that name and those of missing facets are removed;
+/// other annotations are kept. Measures of a region whose faces change become stale.
 void update_facet_annotations(AnnotationSet& set, const Facets& facets);
 
 }  // namespace ostraka

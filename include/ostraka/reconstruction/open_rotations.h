@@ -1,4 +1,4 @@
-// Rotations about the template's axis that a search left open, decided by the fragments' breaks.
+// Determines rotations about the template's axis that a search left open, from the fractures of the fragments.
 #pragma once
 
 #include "ostraka/fracture/rotational_matching.h"
@@ -6,11 +6,11 @@
 
 namespace ostraka {
 
-/// Where the template is a surface of revolution (`rotation_axis`) and the search left a fragment free to rotate about its axis:
-/// rotates those fragments, and writes their poses into `placed`; fragments whose rotation is known stay and count. Numbers of
-/// sherds in the result are those of fragments; one that is not placed has the group -1. Nothing where no rotation is open, where
-/// there is but one fragment, where no fragment has a break, or with the option "never". `scaled` is the template as the poses
-/// have it.
+/// If the template is a surface of revolution (`rotation_axis`) and the search left the rotation of fragments about its axis
+/// undetermined: rotates those fragments, and writes their poses to `placed`; fragments with a known rotation stay fixed and
+/// are used. Sherd indices in the result are fragment indices; the group of a fragment that is not placed is -1. Returns
+/// nothing if no rotation is open, if there is only one fragment, if no fragment has a fracture, or with the option "never".
+/// `scaled` is the template in the target frame of the poses.
 std::optional<RotationMatch> decide_open_rotations(const Mesh& scaled, const std::vector<const Fragment*>& fragments,
                                                    const std::vector<std::optional<PoseSearchResult>>& searched,
                                                    std::vector<FragmentPlacement>& placed,

@@ -1,5 +1,5 @@
-// Fragments registered to a template by landmarks that both have (thesis, section 5.3.1, step 3, with its erratum): one scale, on
-// the template, for all fragments together; each fragment moves rigidly.
+// Registers fragments to a template by common landmarks (thesis, section 5.3.1, step 3, with its erratum): one scale, on the
+// template, for all fragments together; each fragment moves rigidly.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -12,56 +12,56 @@
 
 namespace ostraka {
 
-/// A place that the template and a fragment both have.
+/// A landmark common to the template and a fragment.
 struct LandmarkPair {
     std::string name;
     Eigen::Vector3d on_template, on_fragment;
     Index vertex = no_index;  ///< of the template
 };
 
-/// Point annotations of one point that both sets have under one tag, each tag once on either side, by tag. `notes` says which
-/// tags could not be used and why.
+/// Point annotations of one point with the same tag in both sets, if the tag is unique in either, ordered by tag. `notes` gets
+/// the tags that could not be used, with the reason.
 std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const AnnotationSet& of_template, const Mesh& fragment,
                                            const AnnotationSet& of_fragment, std::vector<std::string>* notes = nullptr);
 
 struct PlacementOptions {
-    double outlier = 0.25;    ///< a landmark farther off than this, as a share of the spread of all, may be a wrong one
-    double unit_ratio = 3;    ///< a fragment whose own scale differs from the others' by more is of another unit
-    double collinear = 0.03;  ///< landmarks whose second extent is below this share of the first are on a line
+    double outlier = 0.25;    ///< residual of a potential outlier, as a share of the spread of all landmarks
+    double unit_ratio = 3;    ///< a fragment whose own scale differs from the others' by a larger factor is in another unit
+    double collinear = 0.03;  ///< max ratio of second to first extent of collinear landmarks
 
     void describe(OptionList& visit);
 };
 
-/// How one landmark fits.
+/// Residual of one landmark.
 struct LandmarkResidual {
     std::string name;
-    double distance = 0;  ///< between the moved landmark and the scaled template's, in the fragment's unit
-    bool used = true;     ///< false: a wrong one, left out
+    double distance = 0;  ///< between the moved landmark and that of the scaled template, in the fragment's unit
+    bool used = true;     ///< false: an outlier, left out
 };
 
 struct FragmentPlacement {
     Motion pose;           ///< rigid: from the fragment's file to the scaled template
-    double own_scale = 0;  ///< of the template, if this fragment alone had to say: a diagnostic
+    double own_scale = 0;  ///< scale of the template from this fragment alone: a diagnostic
     std::vector<LandmarkResidual> landmarks;
     double residual = 0;    ///< root mean square over the landmarks used, in the fragment's unit
-    bool mirrored = false;  ///< its mirror image fits far better than itself
-    std::vector<std::pair<std::string, std::string>> swapped;  ///< landmarks whose tags look exchanged
-    std::string problem;                                       ///< why it is not placed, in words with the remedy; empty if it is
+    bool mirrored = false;  ///< its mirror image fits far better
+    std::vector<std::pair<std::string, std::string>> swapped;  ///< landmarks whose tags seem to be exchanged
+    std::string problem;                                       ///< why it is not placed, with the remedy; empty if it is placed
 };
 
 struct CommonPlacement {
-    double scale = 1;  ///< of the template, about its origin
+    double scale = 1;  ///< scale of the template, about its origin
     std::vector<FragmentPlacement> fragments;
-    [[nodiscard]] bool any() const;  ///< a fragment is placed
+    [[nodiscard]] bool any() const;  ///< whether any fragment is placed
 };
 
 /// Minimises the sum over fragments k and landmarks i of |R_k f_ki + t_k - s p_i|^2 in closed form (rotations from the singular
-/// values of the covariances, Umeyama 1991; they do not depend on s; s from all fragments together). Wrong landmarks are found
-/// fragment by fragment: of the similarities through three of them the one that has the nearest five sixths nearest (least
-/// quantile of squares, Rousseeuw 1984; all triples where there are at most 4000, else as many drawn with a fixed seed) tells who
-/// belongs; a sixth of them at most, and of five or more one, are left out, each off by four times the root mean square of the
-/// others. A fragment that cannot be placed has a `problem` (fewer than three landmarks, all on a line, a mirror image, another
-/// unit) and does not count for the scale.
+/// value decomposition of the covariances, Umeyama 1991; they do not depend on s; s from all fragments together). Outliers are
+/// detected per fragment by least quantile of squares (Rousseeuw 1984): the similarity through three landmarks with the
+/// smallest residual quantile at five sixths defines the inliers (all triples if there are at most 4000, else that number drawn
+/// with a fixed seed). At most a sixth of the landmarks, and one of five or more, are left out, each with a residual of more
+/// than four times the root mean square of the others. A fragment that cannot be placed has a `problem` (fewer than three
+/// landmarks, collinear landmarks, a mirror image, another unit) and does not count for the scale.
 CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>& pairs, const PlacementOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The cage that a template is deformed through, in fits of few degrees of freedom.
+// The cage of a template, for fits with few degrees of freedom.
 #pragma once
 
 #include "ostraka/coords/coordinates.h"
@@ -14,15 +14,15 @@ struct TemplateCage {
     Coordinates coordinates;
 };
 
-/// Mean value coordinates in this cage. Throws Error (input) that names vertex, face and remedy for a cage that does not contain
-/// the template or is not one (`check_cage`).
+/// Mean value coordinates in this cage. Throws Error (input) that names vertex, face and remedy for a cage that does not
+/// contain the template or is invalid (`check_cage`).
 TemplateCage template_in_cage(const Mesh& mesh, Mesh cage);
 
-/// The template's first cage, with those of the template's coordinates that go with it and have no normals; mean value
-/// coordinates are computed where there are none. Nothing for a template without a cage. Throws Error as template_in_cage.
+/// The template's first cage, with the template's coordinates that belong to it and have no normal term; if there are none,
+/// mean value coordinates are computed. Nothing for a template without a cage. Throws Error as template_in_cage.
 std::optional<TemplateCage> cage_of(const Template& known);
 
-/// A cage made around the template (`make_cage`), with mean value coordinates. Throws Error as make_cage.
+/// A cage generated around the template (`make_cage`), with mean value coordinates. Throws Error as make_cage.
 TemplateCage made_cage(const Mesh& mesh, std::uint64_t vertices = 200);
 
 }  // namespace ostraka

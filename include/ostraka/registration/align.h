@@ -1,4 +1,4 @@
-// One surface registered to another, and how far they are apart then.
+// Registers one surface to another and measures their distance.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -12,15 +12,15 @@ namespace ostraka {
 
 struct AlignOptions {
     double shrinkage = 0;  ///< surfaces may differ in size by up to this share; 0: rigid
-    double trim = 0.8;     ///< share of the pairs that count, the nearest ones: beards, dents and what is missing stay out
-    double angle = 45;     ///< pairs whose normals differ by more are none, degrees
-    int samples = 1000;    ///< on each surface
+    double trim = 0.8;     ///< share of the pairs that are kept, the nearest ones: excludes beards, dents and missing parts
+    double angle = 45;     ///< max angle between the normals of a pair, degrees
+    int samples = 1000;    ///< number of points on each surface
     int iterations = 60;
 
     void describe(OptionList& visit);
 };
 
-/// What is asked of a surface again and again: points evenly spread over it, and the nearest vertex of any place.
+/// Precomputed data of a surface: points evenly spread over it, and a search tree for the nearest vertex.
 class AlignSurface {
 public:
     /// Throws Error (input) for a mesh without area. The mesh need not outlive it.
@@ -37,22 +37,22 @@ private:
 };
 
 struct Alignment {
-    Motion motion;        ///< of the first surface onto the second
-    double distance = 0;  ///< root mean square of the pairs that count, both ways, as a share of the mean size
+    Motion motion;        ///< maps the first surface onto the second
+    double distance = 0;  ///< root mean square over the kept pairs, both ways, as a share of the mean size
     double overlap = 0;   ///< share of the samples that have a pair
     int iterations = 0;
-    bool settled = false;  ///< the last step moved nothing any more
+    bool settled = false;  ///< the last step changed nothing
 };
 
-/// Trimmed iterative closest points (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992), both ways at
-/// once: points of either surface are paired with the nearest vertex of the other, pairs at a border or with other normals left
-/// out (Rusinkiewicz and Levoy 2001), the nearest `trim` of them kept; each step is a linear least squares problem for turn,
-/// shift and, if there may be shrinkage, scale. Tries all `starts` (for none: the principal axes, four ways) and takes the one
-/// with the least distance.
+/// Trimmed ICP (Chetverikov, Stepanov and Krsek 2005), point to plane (Chen and Medioni 1992), in both directions at once:
+/// points of either surface are paired with the nearest vertex of the other; pairs at a border or with incompatible normals are
+/// rejected (Rusinkiewicz and Levoy 2001) and the nearest `trim` of them kept. Each step is a linear least squares problem for
+/// rotation, translation and, with `shrinkage`, scale. Tries all `starts` (if none: the principal axes, four ways) and returns
+/// the result with the smallest distance.
 Alignment align(const AlignSurface& a, const AlignSurface& b, const std::vector<Motion>& starts,
                 const AlignOptions& options = {});
 
-/// The principal axes of one aligned with those of the other, in the four ways that are rotations.
+/// Motions that align the principal axes of one surface with those of the other, in the four ways that are rotations.
 std::vector<Motion> principal_starts(const AlignSurface& a, const AlignSurface& b);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Matches of features that one motion explains.
+// Selects feature matches that are consistent with one motion.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -8,22 +8,21 @@
 namespace ostraka {
 
 struct ConsistentOptions {
-    double tolerance = 0.02;  ///< how far a feature may lie from its match once moved, as a share of the size
-    double angle = 30;        ///< and how far their normals may differ, degrees
+    double tolerance = 0.02;  ///< max distance of a moved feature from its match, as a share of the size
+    double angle = 30;        ///< max angle between their normals, degrees
     double shrinkage = 0;     ///< casts may differ in size by up to this share; 0: rigid
 
     void describe(OptionList& visit);
 };
 
 struct ConsistentMatches {
-    std::vector<FeatureMatch> matches;  ///< those that `motion` explains, at most one for each salient point of either surface
-    Motion motion;                      ///< from the places of `a` to those of `b`
+    std::vector<FeatureMatch> matches;  ///< matches consistent with `motion`, at most one per salient point of either surface
+    Motion motion;                      ///< from the points of `a` to those of `b`
 };
 
-/// Every match says how one surface would have to be moved onto the other (point, normal and direction onto point, normal and
-/// direction); the motion that explains most of the matches is fitted to those (least squares) and asked again until no more are
-/// explained. All matches are tried, so that nothing is left to chance: time is the square of their number. Empty without
-/// matches.
+/// Each match defines a motion (point, normal and direction onto point, normal and direction). The motion that is consistent
+/// with most matches is fitted to those by least squares, repeatedly until their number stops growing. Tries all matches, hence
+/// deterministic; time is quadratic in their number. Empty without matches.
 ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, const std::vector<FeatureMatch>& matches,
                                      const ConsistentOptions& options = {});
 

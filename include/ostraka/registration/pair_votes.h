@@ -1,4 +1,4 @@
-// Where a part may lie on a whole, by the votes of pairs of points (Drost, Ulrich, Navab and Ilic 2010).
+// Candidate poses of a part on a whole by voting point pairs (Drost, Ulrich, Navab and Ilic 2010).
 #pragma once
 
 #include "ostraka/geom/rigid_fit.h"
@@ -8,24 +8,25 @@
 
 namespace ostraka {
 
-/// A motion of the part onto the whole, and how many pairs spoke for it.
+/// A motion of the part onto the whole, with the votes of the point pairs for it.
 struct VotedMotion {
     Motion motion;
     double votes = 0;
 };
 
-/// All pairs of points of a whole by what they are like whatever their place: the distance of the two points, the angles of
-/// their normals with the line between them, and that of the normals with each other. Pairs farther apart than `max_distance` are
-/// left out. Built once, asked for many parts.
+/// Index of all pairs of points of a whole by pose-invariant features: the distance of the two points, the angles of their
+/// normals with the line between them, and the angle between the normals. Pairs farther apart than `max_distance` are omitted.
+/// Built once, queried for many parts.
 class PairTable {
 public:
-    /// `step`: distances that differ by less are alike; angles that differ by less than 15 degrees are. Memory: four bytes a
-    /// pair. Throws Error (usage) for more than 4096 points, or lengths that are not positive.
+    /// `step`: bin size of distances; angles have bins of 15 degrees. Memory: four bytes per pair. Throws Error (usage) for
+    /// more than 4096 points, or lengths that are not positive.
     PairTable(SurfacePoints points, double max_distance, double step);
 
-    /// For `references` points of the part (evenly chosen), each with at most `partners` others (drawn with `seed`): all pairs
-    /// of the whole that are like it vote for a point of the whole and a turn about its normal, a rare kind of pair weighing more
-    /// than a frequent one; the best `kept` of each reference point come back. Same result for any number of threads.
+    /// Takes `references` points of the part (evenly chosen), each paired with at most `partners` others (random, by `seed`).
+    /// All pairs of the whole with equal features vote for a point of the whole and a rotation about its normal; rare features
+    /// weigh more than frequent ones. Returns the best `kept` motions per reference point. Same result for any number of
+    /// threads.
     [[nodiscard]] std::vector<VotedMotion> vote(const SurfacePoints& part, int references, int partners, int kept,
                                                 std::uint64_t seed) const;
 
@@ -34,7 +35,7 @@ public:
 private:
     struct Entry {
         std::uint16_t reference;
-        std::int16_t angle;  ///< 2 pi over 2^16
+        std::int16_t angle;  ///< in units of 2 pi / 2^16
     };
     [[nodiscard]] long key(const Eigen::Vector3d& p, const Eigen::Vector3d& n, const Eigen::Vector3d& q,
                            const Eigen::Vector3d& m) const;
