@@ -9,9 +9,9 @@ namespace ostraka {
 
 /// An AnnotationCollection with one embedded AnnotationPage. Each Annotation has
 /// - bodies: a TextualBody with the tag (purpose "tagging"), one per semantic attribute and one per value in readable form
-/// (purpose "describing"), and one with all data as JSON (format "application/json");
+///   (purpose "describing"), and one with all data as JSON (format "application/json");
 /// - a target: a SpecificResource whose source is the mesh (file name, counts, checksum of the indexed geometry), with two
-/// equivalent selectors: by indices, and by coordinates for other meshes.
+///   equivalent selectors: by indices, and by coordinates for other meshes.
 /// Identifiers are urn:uuid derived from checksum and annotation, hence reproducible. < > & are escaped, so that the text can
 /// be embedded in an HTML page. Throws Error (input) if the set does not fit the mesh.
 std::string web_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
