@@ -53,8 +53,7 @@ struct Fit {
     double length = 0, radius = 0, square = 0;  ///< square: mean of (d - radius)^2
     Vector2d gradient = Vector2d::Zero();       ///< of square / 2
     Vector2d downhill = Vector2d::Zero();       ///< if the Hessian has a negative eigenvalue: its eigenvector
-    Matrix2d hessian = Matrix2d::Zero();        ///< of square / 2, or the Gauss-Newton
-                                                ///< approximation if that is not positive definite
+    Matrix2d hessian = Matrix2d::Zero();        ///< of square / 2; Gauss-Newton approximation if not positive definite
 };
 
 Fit fit_at(const PlaneSegments& segments, const Vector2d& centre, double guess) {

@@ -42,8 +42,7 @@ public:
     [[nodiscard]] bool meets(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
 private:
-    using Place = Eigen::Array4f;  ///< relative to the centre of the mesh's bounding box, in
-                                   ///< units of its diagonal; the last number has another use
+    using Place = Eigen::Array4f;  ///< about the centre of the bounding box, in diagonals; last number: other use
     /// One cache line.
     struct alignas(64) Node {
         Place low, high;      ///< the last number is 0

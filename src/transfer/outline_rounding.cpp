@@ -18,8 +18,7 @@ struct RoundingGoal {
     double area = 0;       ///< of the source region
     double perimeter = 0;  ///< of the source region's outline
     double edge = 0;       ///< typical edge length of the target
-    bool coarser = false;  ///< the target cannot resolve the outline's detail: a
-                           ///< shorter outline is acceptable, and no teeth are added
+    bool coarser = false;  ///< the target cannot resolve the detail: a shorter outline is accepted, no teeth are added
 };
 
 bool is_selected(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {

@@ -17,8 +17,7 @@ struct MappedPlace {
     CorrespondenceKind kind = CorrespondenceKind::none;
     SurfaceNode to;
     Vector up{0, 0, 0};   ///< of the target at `to`
-    bool mutual = false;  ///< true: the line from `to` meets the source first at
-                          ///< `from`, so that the mapping is invertible there
+    bool mutual = false;  ///< the line from `to` first meets the source at `from`: the mapping is invertible there
 };
 
 /// Interpolated vertex normal, not normalised.

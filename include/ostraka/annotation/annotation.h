@@ -21,17 +21,15 @@ struct Location {
 
 /// A measure and the pins (picked vertices) that define it (Appendix B.1).
 struct Measure {
-    std::string tool;                                ///< "ruler", "tape" or "bounding"
-    std::vector<Index> points;                       ///< vertices: two for a ruler, two or more for a
-                                                     ///< tape, the two extremes for a bounding measure
-    std::vector<Location> locations;                 ///< empty, or the exact position of the pin for each of `points`
+    std::string tool;                 ///< "ruler", "tape" or "bounding"
+    std::vector<Index> points;        ///< vertices: two for a ruler, two or more for a tape, two extremes for bounding
+    std::vector<Location> locations;  ///< empty, or the exact position of the pin for each of `points`
     std::optional<std::array<double, 3>> direction;  ///< of a bounding measure
     std::optional<double> value;                     ///< in `unit`; the mean over the repeated pickings
     std::string unit;
     bool stale = false;  ///< true: the mesh or the pins changed and the value was not recomputed
     bool exact = false;  ///< a tape: along the geodesic across faces ("geodesic": "exact") instead of along edges
-    std::vector<std::vector<Index>> repeats = {};      ///< repeated pickings of the pins, each with
-                                                       ///< as many vertices as `points`
+    std::vector<std::vector<Index>> repeats = {};      ///< repeated pickings, each as many vertices as `points`
     std::optional<double> uncertainty = std::nullopt;  ///< standard deviation of the value, in `unit`
     bool operator==(const Measure&) const = default;
 };
@@ -40,8 +38,8 @@ struct Measure {
 struct Descriptor {
     std::vector<double> values;
     bool is_list = false;  ///< written as a list, even if it has one value
-    std::string file;      ///< instead of values: the file of a map (an array, .npy or
-                           ///< .txt) or of an axis (.json), relative to the annotation file
+    std::string
+        file;  ///< instead of values: file of a map (array: .npy, .txt) or an axis (.json), relative to the annotation file
     std::string unit;
     bool stale = false;
     std::string sha256 = {};  ///< checksum of the contents of `file`; empty: unknown
@@ -63,8 +61,7 @@ struct Attribute {
 /// Additional information of an annotation (section 2.2.1): a text, a link or a file, with a checksum if the file is local.
 struct Information {
     enum class Kind { text, image, link, file } kind = Kind::text;
-    std::string value;   ///< the text, or the location of the image, link or file:
-                         ///< a URL, or a path relative to the annotation file
+    std::string value;   ///< the text, or the location of the image, link or file: URL or path relative to the annotation file
     std::string title;   ///< title for display; may be empty
     std::string sha256;  ///< checksum of the contents of a local image or file; empty: unknown
     bool operator==(const Information&) const = default;

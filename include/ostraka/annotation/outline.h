@@ -21,8 +21,7 @@ std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>
 /// The interior of a set of outlines.
 struct Filling {
     std::vector<bool> selected;  ///< one flag per face
-    std::size_t conflicts = 0;   ///< number of faces that lie left of one outline edge
-                                 ///< and right of another: the outlines intersect
+    std::size_t conflicts = 0;   ///< faces left of one outline edge and right of another: the outlines intersect
 };
 
 /// Grows the region from the faces left of the outline edges, without crossing an outline edge. Edges that are traversed in

@@ -36,8 +36,7 @@ struct ManifoldDefects {
     std::size_t repeated_corners = 0;      ///< triangles with a repeated vertex
     std::size_t nonmanifold_edges = 0;     ///< edges with more than two triangles
     std::size_t misoriented_edges = 0;     ///< edges that two triangles traverse in the same direction
-    std::size_t nonmanifold_vertices = 0;  ///< vertices with more than one fan of triangles;
-                                           ///< counted only if the edges have no defects
+    std::size_t nonmanifold_vertices = 0;  ///< vertices with several fans of triangles; counted only if no edge has a defect
     Index example_triangle = no_index;     ///< a triangle at which the first defect was found
     [[nodiscard]] bool any() const { return repeated_corners + nonmanifold_edges + misoriented_edges + nonmanifold_vertices > 0; }
 };

@@ -16,8 +16,7 @@ std::string version();
 /// number of threads or absolute path.
 struct Provenance {
     std::string command;                                       ///< e.g. "annotation transfer"
-    std::vector<std::pair<std::string, std::string>> options;  ///< options that affect the result, as text;
-                                                               ///< a repeated option becomes "a; b" in JSON
+    std::vector<std::pair<std::string, std::string>> options;  ///< that affect the result, as text; repeated: "a; b" in JSON
     std::vector<std::pair<std::string, std::string>> inputs;   ///< file name without folder, SHA-256 of its bytes
 
     void add_input(const Path& file);

@@ -16,8 +16,7 @@ struct InsertedCurves {
     std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: its vertex
     std::vector<std::vector<Index>> paths;        ///< per curve: all vertices along it, consecutive ones connected by an edge
     std::vector<SurfaceNode> new_nodes;           ///< for each new vertex, its position on the old mesh
-    std::map<Index, std::vector<Index>> on_edge;  ///< old edge -> new vertices on it, ordered
-                                                  ///< from the source of its first halfedge
+    std::map<Index, std::vector<Index>> on_edge;  ///< old edge -> new vertices on it, from the source of its first halfedge
 };
 
 /// Adds a vertex at each node of the curves and subdivides the faces so that each piece of a curve becomes an edge, or a path

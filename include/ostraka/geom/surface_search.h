@@ -43,7 +43,7 @@ public:
     /// True if the segment intersects a face that `ignored` does not accept. Exact for the given coordinates.
     [[nodiscard]] bool blocked(const Point& from, const Point& to, const std::function<bool(Index)>& ignored) const;
 
-    /// The nearest point of the surface.
+    /// The nearest point of the surface; needs at least one face.
     [[nodiscard]] SurfaceHit closest(const Point& query) const;
 
     /// The nearest point within `search_radius` on a face whose unit normal has a scalar product of at least `min_cosine` with

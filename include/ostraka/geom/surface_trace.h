@@ -29,8 +29,7 @@ std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node);
 struct SurfacePlace {
     SurfaceNode::Kind kind = SurfaceNode::Kind::vertex;
     std::array<Index, 2> element{no_index, no_index};  ///< the vertex; the ends of the edge, lower index first; the face
-    std::array<double, 2> weights{0, 0};               ///< edge: the fraction of the way from its first end;
-                                                       ///< face: barycentric coordinates of its corners 1, 2
+    std::array<double, 2> weights{0, 0};               ///< edge: fraction from its first end; face: weights of its corners 1, 2
     bool operator==(const SurfacePlace&) const = default;
     auto operator<=>(const SurfacePlace&) const = default;
 };

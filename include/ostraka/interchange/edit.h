@@ -23,12 +23,10 @@ struct AnnotationEdit {
     std::vector<Information> information;         ///< each replaces the information of the same kind and value, or is appended
     std::vector<std::string> remove_information;  ///< by their values
     std::vector<EntryName> remove_attributes;
-    std::vector<Attribute> attributes;  ///< each replaces the attribute with its id, or is
-                                        ///< appended; pins are vertex indices of the mesh
+    std::vector<Attribute> attributes;  ///< each replaces the one with its id, or is appended; pins are mesh vertex indices
     std::vector<std::pair<std::string, std::string>>
         texts;           ///< name and text: changes the semantic attribute of that name, or adds it
-    bool split = false;  ///< the connected patches of a region, the poly-lines
-                         ///< of a line or the points become separate annotations
+    bool split = false;  ///< patches of a region, poly-lines of a line or points become separate annotations
     bool remove = false;
 };
 

@@ -76,8 +76,7 @@ struct FaceValues {
 struct WriteOptions {
     Encoding encoding = Encoding::binary;   ///< for PLY and STL
     std::string comment;                    ///< one line (provenance), written if the format supports comments
-    std::vector<double> vertex_quality{};   ///< empty or one number per vertex, written as the PLY
-                                            ///< property "quality", which viewers use for colouring
+    std::vector<double> vertex_quality{};   ///< empty or one number per vertex: PLY property "quality", used for colouring
     std::vector<FaceValues> face_values{};  ///< additional PLY properties of faces
     /// Polygons to write instead of the triangles to OBJ, OFF and PLY: the corners of each polygon, and the triangle that
     /// provides its colour, label and values. Other formats receive the triangles.

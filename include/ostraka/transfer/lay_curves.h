@@ -11,10 +11,9 @@ namespace ostraka {
 
 /// Result of projecting one annotation onto another mesh.
 struct Laid {
-    Annotation annotation;  ///< id, tag, colour, type, note and curves, and the
-                            ///< elements that follow from the curves; no attributes
+    Annotation annotation;  ///< id, tag, colour, type, note, curves and the elements that follow from these; no attributes
     std::size_t places = 0, by_ray = 0, by_closest_point = 0, without_place = 0;
-    std::size_t detours = 0;  ///< number of consecutive places connected along edges because no trace connected them
+    std::size_t detours = 0;  ///< pairs of consecutive places connected along edges because no trace connected them
     bool untangled = false;   ///< its outlines intersected; the interior was computed by winding numbers
     bool lost = false;        ///< no part of it has a corresponding place on the target
     std::string note;         ///< further remarks, for example that the number of its outlines changed

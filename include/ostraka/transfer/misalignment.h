@@ -11,8 +11,7 @@ namespace ostraka {
 /// sample of the source's vertices to the target's surface, so that parts missing in one of the meshes are ignored.
 struct Misalignment {
     double distance = 0;       ///< in the given positions
-    bool stands_out = false;   ///< the distance is far larger than between two resolutions
-                               ///< of one surface, and a motion would remove most of it
+    bool stands_out = false;   ///< far larger than between two resolutions of one surface, and mostly removed by a motion
     double distance_left = 0;  ///< after that motion; this and the following members are valid if stands_out
     double rotation = 0;       ///< of the target relative to the source, degrees
     double shift = 0;          ///< of the centroid of the sample

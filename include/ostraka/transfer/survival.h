@@ -19,8 +19,7 @@ struct SurvivalOptions {
 struct Survival {
     int id = 0;
     std::string tag;
-    std::size_t vertices = 0;  ///< the smallest tested resolution such that the
-                               ///< annotation was kept at all resolutions down to it
+    std::size_t vertices = 0;  ///< the smallest tested resolution such that the annotation was kept down to it
     std::string end;           ///< its fate at the next resolution; empty if it survived all; a remark if none could be tested
 };
 

@@ -43,7 +43,7 @@ struct TransferScore {
     std::optional<double> wrong_side;  ///< area on the wrong side of the outline, summed over both sides
     std::size_t vertices = 0;          ///< outline vertices, line vertices or points of the source
     std::size_t by_ray = 0, by_closest_point = 0, without_place = 0, relocated = 0;
-    std::size_t detours = 0;          ///< number of consecutive vertices not connected by a short path
+    std::size_t detours = 0;          ///< pairs of consecutive vertices not connected by a short path
     bool crossings_resolved = false;  ///< outlines intersected; the interior was computed by winding numbers
     bool voted = false;               ///< the interior was computed face by face instead of from outlines
 };
