@@ -38,8 +38,7 @@ struct Measure {
 struct Descriptor {
     std::vector<double> values;
     bool is_list = false;  ///< written as a list, even if it has one value
-    std::string
-        file;  ///< instead of values: file of a map (array: .npy, .txt) or an axis (.json), relative to the annotation file
+    std::string file;      ///< instead of values: map (array: .npy, .txt) or axis (.json), relative to the annotation file
     std::string unit;
     bool stale = false;
     std::string sha256 = {};  ///< checksum of the contents of `file`; empty: unknown

@@ -10,7 +10,7 @@
 namespace ostraka {
 
 struct FairOptions {
-    double distance = 0;  ///< maximum deviation in the mesh's unit; 0: mean edge length, of the mesh or along the curve if larger
+    double distance = 0;  ///< maximum deviation in the mesh's unit; 0: mean edge length of the mesh or, if larger, of the curve
     bool let_area_change = false;
 
     void describe(OptionList& visit);
