@@ -13,7 +13,7 @@ namespace ostraka {
 struct CorrespondenceOptions {
     double max_distance = 0.02;  ///< fraction of the target's box diagonal
     double max_angle = 90;       ///< maximum angle in degrees between the normals of vertex and target face
-    enum class Corner { projection, source } vertex = Corner::projection;  ///< face corner nearest to projection or source vertex
+    enum class Corner { projection, source } vertex = Corner::projection;  ///< face corner nearest to projection or source
     void describe(OptionList& visit);
 };
 
