@@ -1,4 +1,4 @@
-// What must hold of every annotation, wherever it comes from.
+// Conditions that every annotation must satisfy, whatever its source.
 #include "annotation_places.h"
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
@@ -185,8 +185,8 @@ namespace {
 
 /// A local file that an annotation refers to.
 struct ReferredFile {
-    std::string pointer;   ///< the place in the annotation file
-    std::string referrer;  ///< with its verb: "annotation 3 ('spout') refers to the image"
+    std::string pointer;   ///< JSON pointer in the annotation file
+    std::string referrer;  ///< subject and verb for the message: "annotation 3 ('spout') refers to the image"
     std::string name;
     std::string sha256;
 };
@@ -214,7 +214,7 @@ std::vector<ReferredFile> referred_files(const AnnotationSet& set) {
     return files;
 }
 
-/// What is wrong with the content of an attribute's file; empty: nothing.
+/// The defect of the contents of an attribute's file; empty: none.
 std::string defect_of_content(const Path& file, const Mesh& mesh) {
     const std::string bytes = read_file(file);
     if (extension(file) == ".npy") {
@@ -243,7 +243,7 @@ std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, con
             findings.push_back(
                 {defect, referred.pointer, referred.referrer + " '" + printable(referred.name, 60) + "', " + what});
         };
-        // What a received file names outside of its folder is not read.
+        // Files outside the folder of a received annotation file are not read.
         if (given.is_absolute() || !is_inside(file, folder)) add(true, "which leads out of the folder of the annotations");
         else if (!file_exists(file)) add(true, "which is not there");
         else if (referred.sha256.empty()) add(false, "whose checksum is not known");

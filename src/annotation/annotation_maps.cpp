@@ -14,7 +14,8 @@ namespace ostraka {
 
 namespace {
 
-/// Ids per element, gathered in the order of the annotations, then interned: equal sets are looked up once per run of elements.
+/// Collects the ids per element in the order of the annotations, then interns them: equal sets are looked up once per run of
+/// elements.
 template <class Index_type>
 void store(Mesh& mesh, const char* name, std::vector<std::pair<Index, int>>& entries, AnnotationTable& table) {
     auto map = mesh.add_property_map<Index_type, std::uint32_t>(name, 0).first;
@@ -42,8 +43,9 @@ auto stored(const Mesh& mesh, const char* name) {
     return map;
 }
 
-/// Joins edges (pairs of vertices, in any order, each once) into as few vertex paths as simple walking gives: paths begin where
-/// the number of edges is not two, the rest are closed (first = last). Deterministic: lowest vertex first. O(n log n).
+/// Joins edges (pairs of vertices, in any order, without repeats) into vertex paths by greedy walking: paths begin and end at
+/// vertices whose degree is not two; the remaining paths are closed (first = last). Deterministic: lowest vertex first. O(n log
+/// n).
 std::vector<std::vector<Index>> join_into_paths(const std::vector<std::pair<Index, Index>>& edges) {
     struct Link {
         Index from, to;
@@ -88,12 +90,12 @@ std::vector<std::vector<Index>> join_into_paths(const std::vector<std::pair<Inde
     return vertex_paths;
 }
 
-/// Where the annotations' elements are now.
+/// Finds the current elements of the annotations.
 class Collector {
 public:
     Collector(const Mesh& mesh, const AnnotationTable& table, const AnnotationSet& before, const std::vector<Index>& vertex_map)
         : mesh_(mesh), table_(table), vertex_map_(vertex_map), search_(mesh), edge_sets_(stored<Edge>(mesh, edge_annotations)) {
-        // One pass over the mesh gives every annotation its elements.
+        // One pass over the mesh collects the elements of all annotations.
         for (const auto& annotation : before.annotations) faces_[annotation.id], edges_[annotation.id], vertices_[annotation.id];
         const auto face_sets = stored<Face>(mesh, face_annotations);
         for (const Face face : mesh.faces()) hand_out(face_sets[face], face, faces_);
@@ -148,7 +150,7 @@ private:
         const auto outlines = table_.outlines.find(annotation.id);
         annotation.faces = faces_.at(annotation.id);
         if (annotation.all && annotation.faces.size() != mesh_.number_of_faces()) {
-            annotation.faces.resize(mesh_.number_of_faces());  // faces that an edit added belong to the whole as well
+            annotation.faces.resize(mesh_.number_of_faces());  // faces added by an edit belong to the whole as well
             for (Index face = 0; face < annotation.faces.size(); ++face) annotation.faces[face] = face;
         }
         if (!annotation.faces.empty()) return;
@@ -171,7 +173,7 @@ private:
         return join_into_paths(pairs);
     }
 
-    /// What remains of walks over the mesh before: a line along their edges, or one point.
+    /// Reduces an annotation, given as walks over the old mesh, to a line along the edges that remain, or to points.
     void degrade(Annotation& annotation, const std::vector<std::vector<Index>>& walks) {
         const std::string was = to_string(annotation.type);
         std::set<std::pair<Index, Index>> edges;
@@ -199,8 +201,8 @@ private:
         else add_note(annotation, "the " + was + " is too small for this resolution and became a " + to_string(annotation.type));
     }
 
-    /// One poly-line by the vertex map. Equal neighbours merge; a link that is no edge any more is followed along the edges that
-    /// carry the annotation; where there is none the poly-line is cut and the annotation says so.
+    /// Maps one poly-line by the vertex map. Equal consecutive vertices are merged; a segment that is no longer an edge is
+    /// followed along edges that carry the annotation; if there are none, the poly-line is split and a note reports it.
     void follow(const std::vector<Index>& polyline, Annotation& annotation, std::vector<std::vector<Index>>& result) {
         std::vector<Index> current;
         const auto finish = [&] {
@@ -303,7 +305,7 @@ AnnotationSet collect_annotations(const Mesh& mesh, const AnnotationTable& table
     Collector collector(mesh, table, before, vertex_map);
     AnnotationSet set = before;
     for (Annotation& annotation : set.annotations) {
-        annotation.curves.clear();  // of the mesh before: from here on its elements stand for it
+        annotation.curves.clear();  // they belong to the mesh before; its elements represent the annotation from here on
         collector.follow(annotation);
         move_pins(annotation, vertex_map, mesh.number_of_vertices());
     }
@@ -331,13 +333,13 @@ void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std
             return lost;
         };
         const bool lost = loses_a_pin(measure.points);
-        // A picking that loses a pin is none; the others are left.
+        // A repeated picking that loses a pin is dropped; the others stay.
         std::erase_if(measure.repeats, loses_a_pin);
         measure.locations.clear();
         measure.uncertainty.reset();
         measure.stale = true;
         if (!lost) continue;
-        // A measure without its pins cannot be taken again: what is left is a figure.
+        // A measure without its pins cannot be recomputed: only its value is kept, as a descriptor.
         attribute.type = AttributeType::descriptor;
         attribute.descriptor = {};
         if (measure.value) attribute.descriptor.values.push_back(*measure.value);

@@ -1,4 +1,4 @@
-// Checks shared by the readers and writers of annotations: each names the file, the JSON pointer and the remedy.
+// Checks shared by the readers and writers of annotations; each error has the file, the JSON pointer and the remedy.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -14,16 +14,16 @@ void check_vertex(const Mesh& mesh, Index vertex, const std::string& where, cons
 void check_vertices(const Mesh& mesh, const std::vector<Index>& vertices, const std::string& where, const std::string& pointer);
 void check_face(const Mesh& mesh, Index face, const std::string& where, const std::string& pointer);
 void check_edge(const Mesh& mesh, Index a, Index b, const std::string& where, const std::string& pointer);
-/// As check_annotations; `settled`: the elements of free annotations were found from their curves just now.
+/// As check_annotations; `settled`: the elements of free annotations have just been computed from their curves.
 void check_set(const AnnotationSet& set, const Mesh& mesh, const std::string& where, bool settled);
 }  // namespace places
 
-/// The outlines of faces as paths of vertices: closed ones repeat their first; what runs along the border of the mesh is left
-/// out, and cuts its outline into open paths.
+/// The outlines of faces as vertex paths: closed paths repeat their first vertex; edges on the border of the mesh are dropped,
+/// which splits the outline into open paths.
 std::vector<std::vector<Index>> outline_paths(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// Turns a prototype document (types Area, Line, Point; key color; flat attributes) into the thesis's form; adds to `notes` what
-/// had to be guessed or left out. Throws Error (input).
+/// Converts a prototype document (types Area, Line, Point; key color; flat attributes) to the thesis's format; adds to `notes`
+/// what was guessed or dropped. Throws Error (input).
 Json convert_prototype(const JsonValue& document, const std::string& where, std::vector<std::string>& notes);
 bool is_prototype(const JsonValue& document);
 

@@ -1,4 +1,4 @@
-// JSON -> annotations.
+// Conversion of JSON to annotations.
 #include "annotation_places.h"
 
 #include "ostraka/annotation/annotation_file.h"
@@ -32,7 +32,7 @@ VertexPaths vertex_paths_of(const JsonValue& object, const char* name) {
     return vertex_paths;
 }
 
-/// Members that the format does not have are named in a note: they are lost when the set is written again.
+/// Adds a note for members that the format does not define: they are lost when the set is written.
 void note_unknown(const JsonValue& object, const std::set<std::string>& known, const std::string& pointer,
                   std::vector<std::string>& notes) {
     for (const auto& member : object.GetObject()) {
@@ -107,7 +107,7 @@ std::vector<Attribute> attributes_of(const JsonValue::ConstArray& list, const st
     return attributes;
 }
 
-/// Outlines as they stand, checked vertex by vertex and edge by edge. The prototype repeats the first vertex at the end.
+/// Reads the outlines and checks each vertex and edge. The prototype repeats the first vertex at the end.
 std::vector<Outline> outlines_of(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at) {
     std::vector<Outline> outlines = vertex_paths_of(object, "boundaries");
     for (std::size_t i = 0; i < outlines.size(); ++i) {
@@ -126,7 +126,7 @@ std::vector<Outline> outlines_of(const JsonValue& object, const Mesh& mesh, cons
     return outlines;
 }
 
-/// The directed edges of outlines, sorted: two sets of outlines bound the same faces from the same side if these agree.
+/// The directed edges of outlines, sorted: two sets of outlines with equal edges bound the same faces from the same side.
 std::vector<std::pair<Index, Index>> directed_edges(const std::vector<Outline>& outlines) {
     std::vector<std::pair<Index, Index>> edges;
     for (const Outline& outline : outlines)
@@ -187,7 +187,7 @@ std::vector<Index> faces_of(const JsonValue& object, const Mesh& mesh, bool all,
     return faces;
 }
 
-/// A place in a file: a vertex, [vertex, vertex, share of the way], or a face with barycentric coordinates.
+/// A place in a file: a vertex, [vertex, vertex, fraction along the edge], or a face with barycentric coordinates.
 SurfacePlace surface_place_of(const JsonValue& value, const Mesh& mesh, const std::string& where, const std::string& at) {
     SurfacePlace place;
     if (value.IsUint()) {
@@ -221,7 +221,7 @@ SurfacePlace surface_place_of(const JsonValue& value, const Mesh& mesh, const st
     return place;
 }
 
-/// Whether there are curves; if so the annotation's elements follow from them.
+/// Whether there are curves; if so, the elements of the annotation are computed from them.
 bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& where, const std::string& at,
                  Annotation& annotation) {
     for (const auto& list : list_in(object, "curves")) {
@@ -234,7 +234,7 @@ bool read_curves(const JsonValue& object, const Mesh& mesh, const std::string& w
     if (annotation.all) fail(where, at + "/curves", "the whole mesh has no outlines", "drop \"curves\" or \"all\"");
     const std::vector<Index> seeds = indices_of(list_in(object, "seeds"));
     for (std::size_t i = 0; i < seeds.size(); ++i) places::check_face(mesh, seeds[i], where, at + "/seeds/" + to_string(i));
-    annotation.faces = seeds;  // whole components by a face of each
+    annotation.faces = seeds;  // whole components, given by one face each
     try {
         settle_elements(mesh, annotation);
     } catch (const Error& error) {
@@ -312,7 +312,7 @@ Annotation annotation_of(const JsonValue& object, const Mesh& mesh, const std::s
     return rest();
 }
 
-/// Is this the mesh the file was made for?
+/// Checks that the file was made for this mesh.
 void check_mesh(const JsonValue& document, const Mesh& mesh, const std::string& where, bool force,
                 std::vector<std::string>& notes) {
     const JsonValue* made_for = find_member(document, "mesh");
@@ -380,7 +380,7 @@ AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh,
     for (const auto& annotation : list_in(document, "annotations")) {
         const std::string at = "/annotations/" + to_string(set.annotations.size());
         set.annotations.push_back(annotation_of(annotation, mesh, where, at, set.notes));
-        // An outline of three vertices may enclose the whole mesh.
+        // Limits the memory: an outline of three vertices may enclose the whole mesh.
         held += set.annotations.back().faces.size();
         if (held > most_held)
             fail(where, at, "the regions together hold more than " + to_string(most_held) + " faces",

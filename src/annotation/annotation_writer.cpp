@@ -1,4 +1,4 @@
-// Annotations -> JSON.
+// Conversion of annotations to JSON.
 
 #include "ostraka/annotation/annotation_file.h"
 #include "ostraka/annotation/curves.h"
@@ -53,18 +53,18 @@ JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
     return object;
 }
 
-/// What tells the faces of a region in a file.
+/// Representation of the faces of a region in a file.
 struct RegionParts {
-    std::vector<Outline> outlines;  ///< always, as the thesis's readers ask for them
-    std::vector<Index> seeds;       ///< the smallest face of each closed component covered wholly: no outline is in it
-    bool complete = true;           ///< otherwise the faces themselves must be listed
+    std::vector<Outline> outlines;  ///< always written, since readers of the thesis's format require them
+    std::vector<Index> seeds;       ///< the smallest face of each completely covered closed component, which has no outline
+    bool complete = true;           ///< false: outlines and seeds do not determine the faces, which must be listed
 };
 RegionParts parts_of(const Annotation& annotation, const Mesh& mesh) {
     RegionParts parts;
     parts.outlines = extract_outlines(mesh, annotation.faces);
     if (annotation.all) return parts;
     if (is_free(annotation)) {
-        // Its faces are those of its curves, and of whole components that no curve runs through.
+        // Its faces follow from its curves, except for components that no curve traverses.
         const std::vector<SurfaceCurve> curves = curves_on(mesh, annotation);
         const CurveFilling without = fill_curves(mesh, curves);
         std::vector<bool> seen(mesh.number_of_faces(), false);

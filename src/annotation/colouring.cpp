@@ -16,7 +16,7 @@ Colour opaque(const std::array<int, 3>& colour) {
             255};
 }
 
-/// Pairs of annotations, by their places in the set, whose regions have an edge in common; the smaller place first.
+/// Pairs of annotations (positions in the set, smaller first) whose regions share an edge.
 std::set<std::pair<std::size_t, std::size_t>> neighbours_of(const Mesh& mesh, const AnnotationSet& set) {
     const std::size_t nobody = set.annotations.size();
     std::vector<std::size_t> owner(mesh.number_of_faces(), nobody);
@@ -54,9 +54,9 @@ std::array<int, 3> fresh_colour(const Mesh& mesh, const AnnotationSet& set, cons
 }
 
 void colour_regions(const Mesh& mesh, AnnotationSet& set) {
-    std::vector<std::vector<std::size_t>> before(set.annotations.size());  // neighbours that have their colours already
+    std::vector<std::vector<std::size_t>> before(set.annotations.size());  // neighbours that already have a colour
     for (const auto& [low, high] : neighbours_of(mesh, set)) before[high].push_back(low);
-    std::array<std::size_t, category_hues> next{};  // the first colour of each hue that is free
+    std::array<std::size_t, category_hues> next{};  // the first unused colour of each hue
     for (std::size_t hue = 0; hue < category_hues; ++hue) next.at(hue) = hue;
     std::vector<std::size_t> hues(set.annotations.size(), category_hues);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
@@ -67,7 +67,7 @@ void colour_regions(const Mesh& mesh, AnnotationSet& set) {
         }
         std::array<bool, category_hues + 1> beside{};
         for (const std::size_t neighbour : before[i]) beside.at(hues[neighbour]) = true;
-        // Where all hues are beside it, any will do.
+        // If neighbours have all the hues, any hue may be used.
         const auto worse = [&](std::size_t a, std::size_t b) {
             return beside.at(a) != beside.at(b) ? beside.at(a) : next.at(a) > next.at(b);
         };

@@ -31,7 +31,8 @@ std::set<SurfacePlace> find_junctions(const Mesh& mesh, const std::vector<std::v
     return junctions;
 }
 
-/// A closed curve from its first junction on; from its lowest place, whoever it bounds, where it has none.
+/// Rotates a closed curve to start at its first junction; without junctions, at its smallest place, so that the start does not
+/// depend on the annotation.
 Places turned_to_junction(const Places& curve, const std::set<SurfacePlace>& junctions) {
     if (curve.front() != curve.back()) return curve;
     Places turned(curve.begin(), curve.end() - 1);

@@ -20,7 +20,7 @@ double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared
 
 bool is_closed(const std::vector<SurfacePlace>& curve) { return curve.size() > 3 && curve.front() == curve.back(); }
 
-/// The corner or end nearest to a place.
+/// The vertex of the place's face or edge that is nearest by its weights.
 Index nearest_vertex(const Mesh& mesh, const SurfacePlace& place) {
     const auto [u, v] = place.weights;
     if (place.kind == SurfaceNode::Kind::vertex) return place.element[0];
@@ -30,7 +30,7 @@ Index nearest_vertex(const Mesh& mesh, const SurfacePlace& place) {
     return corner[w >= u && w >= v ? 0 : u >= v ? 1 : 2];
 }
 
-/// Without repeats and without "a, b, a".
+/// The walk without repeats and without back-tracking "a, b, a".
 std::vector<Index> without_spikes(const std::vector<Index>& walk) {
     std::vector<Index> path;
     for (const Index v : walk) {
@@ -41,7 +41,7 @@ std::vector<Index> without_spikes(const std::vector<Index>& walk) {
     return path;
 }
 
-/// Whole components that the region lists and no curve runs through: a face of each.
+/// One face of each component that the region lists and no curve traverses.
 std::vector<Index> seeds_of(const Mesh& mesh, const Annotation& annotation, const std::vector<SurfaceCurve>& curves,
                             const CurveFilling& filling) {
     std::vector<Index> seeds;
@@ -238,7 +238,7 @@ std::vector<Index> faces_on_cut(const Mesh& mesh, const Annotation& annotation, 
 
 CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::vector<SurfaceCurve>& more) {
     std::vector<SurfaceCurve> curves;
-    std::vector<std::size_t> first;  // of each annotation's curves
+    std::vector<std::size_t> first;  // index of the first curve of each annotation
     for (const Annotation& annotation : set.annotations) {
         first.push_back(curves.size());
         for (SurfaceCurve& curve : curves_on(mesh, annotation)) curves.push_back(std::move(curve));
@@ -303,7 +303,7 @@ CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::
 
 namespace {
 
-/// Leaves out places that lie between their neighbours on a straight piece in one face or along one edge, and repeats.
+/// Drops repeated places and places that lie between their neighbours on a straight piece in one face or along one edge.
 std::vector<SurfacePlace> without_needless(const Mesh& mesh, std::vector<SurfacePlace> places) {
     using Kind = SurfaceNode::Kind;
     const bool closed = is_closed(places);
@@ -368,7 +368,8 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
         if (v >= cut.old_vertices) {
             const SurfaceNode& node = cut.nodes[v - cut.old_vertices];
             if (node.kind != SurfaceNode::Kind::face) return place_of(mesh, node);
-            // Where curves cross at the rim of a face, on the rim: nearer to it a face cannot be cut again.
+            // Snaps an intersection of curves close to the boundary of a face onto it: the face could not be cut again at the
+            // original position.
             return place_of(mesh, surface_node(mesh, node.element, node.barycentric));
         }
         SurfacePlace vertex;
@@ -400,7 +401,7 @@ void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation) {
         annotation.faces = std::move(old);
     }
     if (free || annotation.type != AnnotationType::region) settle_elements(mesh, annotation);
-    if (!free) annotation.curves.clear();  // it follows the edges of the mesh: elements and curves say the same
+    if (!free) annotation.curves.clear();  // the curves follow edges of the mesh, so the elements represent them exactly
 }
 
 }  // namespace ostraka

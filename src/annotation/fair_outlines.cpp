@@ -30,17 +30,17 @@ Segments segments(const std::vector<Point>& points) {
 
 double gap(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
-/// A stretch of curves between places that stay, or a loop.
+/// A stretch of curve between fixed places, or a loop.
 struct Strand {
-    Places before;  ///< a loop repeats its first
+    Places before;  ///< original places; a loop repeats its first
     bool closed = false;
-    std::vector<Point> points;  ///< of `before`
-    std::vector<Point> fair;    ///< as it is to run; ends stay
-    std::vector<Vector> aside;  ///< at each of these the direction to the left on the surface
-    Places after;               ///< on the surface
+    std::vector<Point> points;  ///< coordinates of `before`
+    std::vector<Point> fair;    ///< the faired curve; its ends are fixed
+    std::vector<Vector> aside;  ///< for each point of `fair`, the direction to the left on the surface
+    Places after;               ///< the faired curve on the surface
     double length = 0;
-    double limit = 0;    ///< how far from where it was it may run
-    double room = 0.85;  ///< share of the distance that fairing may use: some is left for the shift that keeps areas
+    double limit = 0;    ///< maximum distance from the original curve
+    double room = 0.85;  ///< fraction of `limit` available to fairing; the rest is left for the shift that preserves areas
 };
 
 class Fairing {
@@ -68,7 +68,7 @@ public:
             }
         }
         responses_.resize(annotations.size());
-        // An outline that would cross itself is left as it was, with all that shares strands with it.
+        // If an outline would intersect itself, it is reset, together with all annotations that share its strands.
         for (int round = 0; round < 20; ++round) {
             check_cancelled();
             if (!options_.let_area_change)
@@ -76,7 +76,8 @@ public:
                     if (!keep_areas(annotations, area)) break;
             for (Response& response : responses_) response.expected = 0;
             bool sound = true;
-            for (Strand& strand : strands_) {  // what the shift or the surface took too far starts nearer
+            for (Strand& strand : strands_) {  // strands moved beyond the limit by the shift or
+                                               // the projection get a smaller limit for fairing
                 if (strand.fair.empty() || hausdorff_distance(segments(drawn(strand)), segments(strand.points)) <= strand.limit)
                     continue;
                 sound = false;
@@ -141,7 +142,7 @@ private:
         return points;
     }
 
-    /// Outlines meet outlines, and lines meet lines: a line that crosses an outline does not hold it.
+    /// Junctions are found separately for outlines and for lines: a line that crosses an outline does not fix it there.
     void find_strands(const std::vector<Annotation*>& annotations, const std::vector<std::vector<Places>>& curves) {
         std::vector<CurveStrand> found;
         uses_.resize(curves.size());
@@ -161,7 +162,7 @@ private:
         }
     }
 
-    /// Points at equal lengths along the middles of the pieces; ends stay.
+    /// Equidistant points along the midpoints of the segments; the ends are fixed.
     static std::vector<Point> resampled(const Strand& strand, std::size_t count) {
         std::vector<Point> middles;
         const std::vector<Point>& points = strand.points;
@@ -179,7 +180,7 @@ private:
             const double t = step > 0 ? std::clamp((s - along[at]) / step, 0.0, 1.0) : 0;
             result.push_back(middles[at] + t * (middles[at + 1] - middles[at]));
         }
-        return result;  // of a loop the first again at the end
+        return result;  // a loop repeats its first point at the end
     }
 
     void fair(Strand& strand) const {
@@ -199,7 +200,7 @@ private:
             given.row(static_cast<Eigen::Index>(i)) << d.x(), d.y(), d.z();
         }
         const auto solved = [&](double weight) {
-            // Second differences times `weight`, and the given places; the ends of an open strand are held.
+            // Second differences times `weight`, and the given points; the ends of an open strand are fixed.
             std::vector<Eigen::Triplet<double>> entries;
             const auto N = static_cast<Eigen::Index>(n);
             for (Eigen::Index i = 0; i < N; ++i) entries.emplace_back(i, i, 1);
@@ -234,7 +235,7 @@ private:
         const auto near = [&](const std::vector<Point>& points) {
             return hausdorff_distance(segments(points), before) <= strand.room * strand.limit;
         };
-        double low = -2, high = 7;  // of the logarithm
+        double low = -2, high = 7;  // of the logarithm of the weight
         std::vector<Point> best = solved(std::pow(10, low));
         if (!near(best)) return;
         for (int round = 0; round < 12; ++round) {
@@ -247,7 +248,7 @@ private:
         strand.fair = std::move(best);
     }
 
-    /// Puts what a strand is to be on the surface; one that cannot follow it stays as it was.
+    /// Projects the faired curve of a strand onto the surface; a strand that cannot be projected is reset.
     void draw(Strand& strand) const {
         if (strand.fair.empty()) return leave(strand);
         std::vector<SurfaceNode> nodes;
@@ -273,7 +274,7 @@ private:
             const double apart = gap(nodes[i].point, nodes[i + 1].point);
             const Vector up = normal_at(nodes[i]) + normal_at(nodes[i + 1]);
             auto line = trace_line(mesh_, nodes[i], nodes[i + 1], up, 2 * apart + 1e-9 * search_.diagonal());
-            if (!line) line = geodesic_curve(mesh_, nodes[i], nodes[i + 1]);  // a step over a fold
+            if (!line) line = geodesic_curve(mesh_, nodes[i], nodes[i + 1]);  // a step across a fold
             if (line && line->length() > 4 * apart + 1e-9 * search_.diagonal()) line.reset();
             if (!line) return leave(strand);
             for (std::size_t k = 1; k < line->nodes.size(); ++k)
@@ -283,7 +284,8 @@ private:
         strand.after = std::move(places);
     }
 
-    /// The mean of the normals of its faces: which of two faces holds a place on their edge is for rounding to decide.
+    /// The mean of the normals of the faces of the node: for a point on an edge, the choice of one face would depend on
+    /// rounding.
     Vector normal_at(const SurfaceNode& node) const {
         Vector sum(0, 0, 0);
         for (const Face face : faces_of(mesh_, node)) sum = sum + search_.normal(face);
@@ -308,7 +310,7 @@ private:
         return curves;
     }
 
-    /// Shifts strands sideways by what each region lacks. False if there is nothing to shift.
+    /// Shifts strands sideways to compensate the area deficit of each region. Returns false if there is nothing to shift.
     bool keep_areas(const std::vector<Annotation*>& annotations, const std::vector<double>& area) {
         std::vector<std::size_t> movable;
         std::map<std::size_t, Eigen::Index> column;
@@ -329,13 +331,15 @@ private:
             if (filling.conflicts > 0 || std::abs(lack) > 0.5 * area[i]) continue;
             kept = kept && std::abs(lack) <= 1e-6 * area[i];
             Response& response = responses_[i];
-            // On a bumpy surface a shift changes the area by more than length times shift: as it was seen to.
+            // On a bumpy surface, a shift changes the area by more than length times shift; the ratio observed in the previous
+            // step is used.
             if (response.expected != 0) response.gain = std::clamp((response.lack - lack) / response.expected, 0.3, 4.0);
             response.lack = lack;
             lacks.emplace_back(i, lack);
         }
         if (kept) return false;
-        // Each region's area changes by the length of its strands times their shift; the least shifts that do it.
+        // The area of each region changes by the length of its strands times their shift; the solution with the smallest shifts
+        // is used.
         const auto rows = static_cast<Eigen::Index>(lacks.size());
         Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(movable.size()));
         Eigen::VectorXd wanted(rows);
@@ -347,7 +351,8 @@ private:
                     if (const auto at = column.find(use.strand); at != column.end())
                         slopes(r, at->second) += (use.backwards ? 1 : -1) * length_now(strands_[use.strand]);
         }
-        // Regions that part a closed surface among them leave a rank less than rows: to be seen through rounding.
+        // Regions that partition a closed surface make the matrix rank-deficient by one; the threshold detects this despite
+        // rounding.
         Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed;
         decomposed.setThreshold(1e-9);
         decomposed.compute(slopes);
@@ -385,12 +390,12 @@ private:
     const FairOptions& options_;
     double mean_edge_;
     std::vector<Strand> strands_;
-    /// What a region's area did when its strands were last shifted.
+    /// The response of a region's area to the previous shift of its strands.
     struct Response {
         double lack = 0, expected = 0, gain = 1;
     };
     std::vector<Response> responses_;
-    std::vector<std::vector<std::vector<StrandUse>>> uses_;  ///< of each annotation, by curve
+    std::vector<std::vector<std::vector<StrandUse>>> uses_;  ///< by annotation and curve
 };
 
 }  // namespace

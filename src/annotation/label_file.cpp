@@ -126,7 +126,7 @@ std::vector<std::int32_t> face_labels_from_vertices(const Mesh& mesh, const std:
 
 namespace {
 
-/// The smallest region on each face.
+/// The id of the smallest region on each face.
 std::vector<std::int32_t> labels_on_top(const Mesh& mesh, const AnnotationSet& set) {
     std::vector<std::int32_t> labels(mesh.number_of_faces(), no_label);
     for (const Annotation* region : regions_largest_first(mesh, set))
@@ -142,7 +142,7 @@ FaceLabels face_labels(const Mesh& mesh, const AnnotationSet& set) {
     const AlongEdges along_edges(mesh, set);
     result.of_face = labels_on_top(along_edges.mesh(), along_edges.annotations());
     if (!along_edges.cut()) return result;
-    // A face that outlines cut has the label of most of its area.
+    // A face cut by outlines gets the label of most of its area.
     const std::vector<std::int32_t> parts = std::move(result.of_face);
     const std::vector<Index>& origin = along_edges.cut()->face_origin;
     result.of_face.assign(mesh.number_of_faces(), no_label);

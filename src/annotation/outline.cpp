@@ -17,7 +17,7 @@ bool inside(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {
     return !mesh.is_border(h) && selected[mesh.face(h)];
 }
 
-/// The outline halfedge that follows `h` in the same fan of selected faces around its target.
+/// The outline halfedge after `h`, in the same fan of selected faces around the target of `h`.
 Halfedge following(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {
     Halfedge g = mesh.next(h);
     while (inside(mesh, selected, mesh.opposite(g))) g = mesh.next(mesh.opposite(g));
@@ -35,7 +35,7 @@ std::vector<Outline> outlines_of(const Mesh& mesh, const std::vector<bool>& sele
             if (!inside(mesh, selected, mesh.opposite(h))) start.push_back(h);
     }
     std::sort(start.begin(), start.end());
-    // Outlines are short beside the mesh: a sorted list with flags is smaller than a flag per halfedge.
+    // Outlines are short compared to the mesh: a sorted list with flags needs less memory than a flag per halfedge.
     std::vector<bool> used(start.size(), false);
     const auto position = [&](Halfedge h) {
         return static_cast<std::size_t>(std::lower_bound(start.begin(), start.end(), h) - start.begin());
@@ -77,8 +77,8 @@ std::vector<Outline> extract_outlines(const Mesh& mesh, const std::vector<Index>
 }
 
 namespace {
-/// Net number of times an edge is run through along its first halfedge.
-/// (An Edge made from a halfedge remembers that halfedge, so the first one has to be asked for by number.)
+/// Net number of traversals of each edge in the direction of its first halfedge. (An Edge made from a halfedge remembers that
+/// halfedge, so the first one must be requested by number.)
 std::map<Edge, int> net_edges(const Mesh& mesh, const std::vector<Halfedge>& edges) {
     std::map<Edge, int> net;
     for (const Halfedge h : edges) net[mesh.edge(h)] += mesh.halfedge(mesh.edge(h), 0) == h ? 1 : -1;
@@ -150,7 +150,7 @@ std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::ve
         if (found == net.end()) return 0;
         return mesh.halfedge(mesh.edge(h), 0) == h ? found->second : -found->second;
     };
-    // Components without any of the edges are not part of the question.
+    // Components without any of the edges are not selected.
     constexpr int unknown = std::numeric_limits<int>::min();
     std::vector<int> number(mesh.number_of_faces(), unknown);
     std::vector<bool> selected(mesh.number_of_faces(), false);
@@ -174,7 +174,7 @@ std::optional<std::vector<bool>> fill_by_winding(const Mesh& mesh, const std::ve
         }
         std::map<int, double> area_of;
         for (const Face f : component) area_of[number[f]] += face_area(mesh, f);
-        double area = 0, best = expected_area;  // the empty set
+        double area = 0, best = expected_area;  // the error of the empty set
         int threshold = std::numeric_limits<int>::max();
         for (auto i = area_of.rbegin(); i != area_of.rend(); ++i) {
             area += i->second;

@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-/// Flags the faces of these regions.
+/// Sets the flags of the faces of these regions to `value`.
 void mark(const AnnotationSet& set, const std::vector<std::size_t>& regions, bool value, std::vector<bool>& keep) {
     for (const std::size_t i : regions) {
         const Annotation& one = set.annotations.at(i);
@@ -21,7 +21,7 @@ void mark(const AnnotationSet& set, const std::vector<std::size_t>& regions, boo
     }
 }
 
-/// Whether two faces met at this border of the piece on the whole.
+/// Whether the border halfedge of the piece was an interior edge of the whole mesh.
 bool was_cut(const Mesh& whole, const CutPart& part, Halfedge border) {
     const Vertex from(part.vertices[part.mesh.source(border)]), to(part.vertices[part.mesh.target(border)]);
     const Halfedge before = whole.halfedge(from, to);

@@ -1,4 +1,4 @@
-// The prototype's own .ant files: types Area, Line and Point, the key color, flat attributes. Read as well as may be.
+// The prototype's .ant files: types Area, Line and Point, the key color, flat attributes. Read as far as possible.
 #include "annotation_places.h"
 
 #include "ostraka/core/error.h"

@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-/// The face with these corners in this order up to rotation, or no_index.
+/// The face with these corners in cyclic order, or no_index.
 Index face_with(const Mesh& mesh, Index a, Index b, Index c) {
     if (a == no_index || b == no_index || c == no_index || a == b || b == c || c == a) return no_index;
     const Halfedge h = find_halfedge(mesh, Vertex(a), Vertex(b));
@@ -78,7 +78,8 @@ AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, co
         std::sort(now.faces.begin(), now.faces.end());
         now.faces.erase(std::unique(now.faces.begin(), now.faces.end()), now.faces.end());
     }
-    // From here it is as after an edit of the mesh: the maps on the new mesh tell the regions, the vertex map the rest.
+    // The rest is the same as after an edit: regions are read from the maps on the new mesh, everything else follows the vertex
+    // map.
     Mesh mesh = after;
     AnnotationTable table = attach_annotations(mesh, moved);
     table.outlines.clear();
@@ -110,7 +111,7 @@ std::vector<std::int32_t> remap_labels(const std::vector<std::int32_t>& labels, 
     if (face_map.size() != labels.size())
         fail_input("maps", "the length of the face map is not the count of the labels", "give the map made with this mesh");
     std::vector<std::int32_t> result(face_count, no_label);
-    for (std::size_t face = labels.size(); face-- > 0;)  // the first of several old faces wins
+    for (std::size_t face = labels.size(); face-- > 0;)  // the first of several old faces determines the label
         if (face_map[face] != no_index) {
             if (face_map[face] >= face_count)
                 fail_input("maps", "face " + std::to_string(face_map[face]) + " of " + std::to_string(face_count));

@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-/// Labels with their shares, by ascending label.
+/// Labels with their weights, by ascending label.
 using Shares = std::vector<std::pair<int, double>>;
 
 void add_share(Shares& shares, int label, double share) {
@@ -33,10 +33,10 @@ void normalise(Shares& shares) {
     for (auto& [label, share] : shares) share = sum > 0 ? share / sum : 1.0 / static_cast<double>(shares.size());
 }
 
-/// What lies across a face where two labels have the same weight and no other has more; shares of the way between corners.
+/// End point of a border line in a face, on which two labels have equal weights and no other has a larger one.
 struct Crossing {
-    std::array<double, 3> weights;  // of the corners
-    std::size_t side = 3;           // that it lies on; 3: within
+    std::array<double, 3> weights;  // barycentric coordinates
+    std::size_t side = 3;           // the side of the face that the point lies on; 3: interior
 };
 
 class Smoothing {
@@ -152,7 +152,7 @@ private:
             end.weights[k] = 1 - end.weights[next];
         }
         if (ends.size() != 2) return;
-        // Where a third label has more, the border of these two ends.
+        // Clips the border where a third label has a larger weight.
         const auto at = [&](std::size_t label, const Crossing& place) {
             double weight = 0;
             for (std::size_t k = 0; k < 3; ++k) weight += weights[label][k] * place.weights[k];
@@ -189,7 +189,7 @@ private:
         if (from != to) segments_.push_back({from, to});
     }
 
-    /// The edge from corner k to the next.
+    /// The edge from corner k to the next corner.
     [[nodiscard]] Halfedge side_of(Face face, std::size_t k) const {
         const auto vertices = corners(mesh_, face);
         return mesh_.halfedge(vertices[k], vertices[(k + 1) % 3]);

@@ -41,7 +41,7 @@ void close_if_open(int& file) {
     file = -1;
 }
 
-/// What posix_spawn is told, freed at the end.
+/// Arguments of posix_spawn; the destructor frees them.
 struct SpawnSettings {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -61,7 +61,7 @@ struct SpawnSettings {
     }
 };
 
-/// Groups of processes that run.
+/// Running process groups.
 struct RunningChildren {
     std::mutex mutex;
     std::set<int> groups;
@@ -102,7 +102,7 @@ ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& o
     if (!options.errors.empty() && options.errors == options.output) posix_spawn_file_actions_adddup2(&settings.actions, 1, 2);
     else if (!options.errors.empty()) settings.print_to(2, options.errors);
     if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&settings.actions, options.folder.c_str());
-    // Signals that this program keeps to one of its threads are the child's own again.
+    // Signals blocked in this process are unblocked in the child.
     sigset_t none;
     sigemptyset(&none);
     posix_spawnattr_setsigmask(&settings.attributes, &none);

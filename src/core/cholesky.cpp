@@ -16,7 +16,7 @@ namespace ostraka {
 
 namespace {
 
-/// Symbols that the BLAS in use may have.
+/// A function that the BLAS in use may export, or nullptr.
 template <class Function>
 Function* of_blas(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_DEFAULT, name));
@@ -29,8 +29,8 @@ bool comes_from_openblas(const char* function) {
     return std::filesystem::weakly_canonical(place.dli_fname, code).string().find("openblas") != std::string::npos;
 }
 
-/// OpenBLAS without threads, as the distribution builds it, gives wrong results when several threads call it at once: they share
-/// its buffers. Where it is the BLAS or the LAPACK in use, one thread at a time calls it.
+/// OpenBLAS built without threads, as in the distribution's packages, gives wrong results when several threads call it
+/// concurrently: they share its buffers. If it is the BLAS or LAPACK in use, calls are serialised.
 std::unique_lock<std::mutex> one_at_a_time() {
     static const bool is_needed = [] {
         auto* const parallel = of_blas<int()>("openblas_get_parallel");
@@ -40,7 +40,7 @@ std::unique_lock<std::mutex> one_at_a_time() {
     return is_needed ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
 }
 
-/// A threaded BLAS may add up in another order with another number of threads: OpenBLAS is held to one.
+/// A threaded BLAS may sum in a different order for a different number of threads; OpenBLAS is restricted to one thread.
 void use_one_thread() {
     if (auto* const set_threads = of_blas<void(int)>("openblas_set_num_threads")) set_threads(1);
 }
@@ -56,7 +56,7 @@ struct SparseCholesky::State {
         use_one_thread();
         cholmod_start(&common);
         common.print = 0;
-        common.final_ll = 1;  // supernodal where there is enough to do in it (CHOLMOD_AUTO), else simplicial; always L L^T
+        common.final_ll = 1;  // supernodal if the factorisation is large enough (CHOLMOD_AUTO), else simplicial; always L L^T
         common.quick_return_if_not_posdef = 1;
     }
     ~State() {
@@ -82,7 +82,7 @@ struct SparseCholesky::State {
 
 namespace {
 
-/// The lower triangle of a square matrix by columns; without values its pattern.
+/// View of the lower triangle of a square matrix in compressed columns; without `values`, of its pattern.
 cholmod_sparse view(std::size_t size, std::size_t entries, const int* columns, const int* rows, const double* values) {
     cholmod_sparse view{};
     view.nrow = view.ncol = size;
@@ -102,11 +102,11 @@ cholmod_sparse view(const LowerTriangle& matrix) {
                 matrix.innerIndexPtr(), matrix.valuePtr());
 }
 
-/// Unknowns with more neighbours than this spoil an ordering; as last ones they cost a row of the factor each.
+/// Unknowns with more neighbours than this degrade the ordering; eliminated last, each costs one row of the factor.
 double dense_degree(Eigen::Index n) { return std::max(16.0, 10 * std::sqrt(static_cast<double>(n))); }
 
-/// The unknowns in order of elimination; `order` of the sparse part is found with nested dissection (METIS), or by minimum degree
-/// where that is as good and much faster.
+/// The elimination order. The sparse part is ordered by nested dissection (METIS), or by minimum degree where that is equally
+/// good and much faster.
 std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& common, bool& done) {
     const auto n = static_cast<int>(matrix.rows());
     std::vector<int> degree(n, 0);
@@ -136,7 +136,7 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
     done = true;
     if (!sparse.empty()) {
         constexpr std::size_t few = 1000;
-        static std::mutex random;  // METIS draws from the random numbers of the process, which it seeds itself
+        static std::mutex random;  // METIS uses the random number generator of the process, which it seeds itself
         const std::lock_guard lock(random);
         done = sparse.size() < few ? cholmod_amd(&pattern, nullptr, 0, order.data(), &common) != 0
                                    : cholmod_metis(&pattern, nullptr, 0, 1, order.data(), &common) != 0;
@@ -148,8 +148,8 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
 
 }  // namespace
 
-/// Calls work(state, matrix). CHOLMOD cannot be interrupted: where it takes long, it works apart, on a copy of the matrix. What
-/// is cancelled forgets the factor.
+/// Calls work(state, matrix). CHOLMOD cannot be interrupted: long calls use run_apart with a copy of the matrix. If cancelled,
+/// the factor is discarded.
 template <class Work>
 void SparseCholesky::work_on(const LowerTriangle& matrix, Work work) {
     constexpr Eigen::Index many = 20000;

@@ -15,14 +15,14 @@ bool is_blank(char32_t code) {
            code == 0x2060 || code == 0x3000 || code == 0xFEFF;
 }
 
-/// The signs that a formula begins with, and their small, wide and typographic forms.
+/// The characters that begin a formula, including their small, full-width and typographic forms.
 bool is_formula_sign(char32_t code) {
     constexpr std::u32string_view signs = U"=+-@\u2212\uFE62\uFE63\uFE66\uFE6B\uFF0B\uFF0D\uFF1D\uFF20";
     return signs.find(code) != std::u32string_view::npos;
 }
 
-/// Could a spreadsheet see a formula, at the front or where it may begin a cell: behind a semicolon, a tab, a line break or a
-/// blank that is not the plain one?
+/// Whether a spreadsheet could see a formula: at the front or at a position where it may begin a new cell, after a semicolon, a
+/// tab, a line break or a non-ASCII blank.
 bool dangerous(std::string_view text) {
     if (text.empty()) return false;
     if (text.front() == '\t' || text.front() == '\r' || text.front() == '\n') return true;
@@ -36,7 +36,8 @@ bool dangerous(std::string_view text) {
     return false;
 }
 
-/// Does `guarded` put an apostrophe in front? Any number of apostrophes before dangerous text counts, so that it can be undone.
+/// Whether `guarded` adds an apostrophe. Any number of apostrophes may precede the dangerous text, so that `unguarded` is the
+/// inverse.
 bool needs_guard(std::string_view text) {
     const std::size_t first = text.find_first_not_of('\'');
     return first != std::string_view::npos && dangerous(text.substr(first));

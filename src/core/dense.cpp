@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-// One rotation of Jacobi.
+// One Jacobi rotation.
 template <>
 SymmetricEigen<2>::SymmetricEigen(const Matrix& symmetric)
     : found_(symmetric.triangularView<Eigen::Lower>().toDenseMatrix().allFinite()) {

@@ -35,8 +35,8 @@ struct Descriptor {
     ~Descriptor() { ::close(number); }
 };
 
-/// An input opened for reading. Devices may never end, and a pipe has no beginning to come back to: only files count. The open
-/// itself does not wait for the other end of a pipe.
+/// An input opened for reading. Only regular files are accepted: devices may never end, and pipes cannot be read again. Opening
+/// a pipe does not block.
 struct Input {
     explicit Input(const Path& file) : descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)} {
         if (descriptor.number < 0) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
@@ -46,7 +46,7 @@ struct Input {
         if (S_ISFIFO(status.st_mode)) fail_input(file.string(), "is a pipe", "write it to a file first");
         fail_input(file.string(), "is a device", "name a file");
     }
-    /// Up to `size` bytes, 0 at the end.
+    /// Reads up to `size` bytes; returns 0 at the end of the file.
     std::size_t read(char* to, std::size_t size, const Path& file) const {
         for (;;) {
             const ssize_t more = ::read(descriptor.number, to, size);
@@ -71,10 +71,10 @@ void add_waiting(std::vector<std::pair<Path, Path>>& waiting, const Path& tempor
 
 thread_local ReadRecord* open_record = nullptr;
 
-/// Held by who renames files to their names, and for good by who abandons all outputs.
+/// Locked (shared) while files are renamed, and exclusively, for good, when all outputs are abandoned.
 std::shared_mutex naming_mutex;
 
-/// Folders that go where the process ends at once: those that open transactions have made, and scratch folders.
+/// Folders to remove when the process exits at once: those created by open transactions, and scratch folders.
 class PassingFolders {
 public:
     void add_made(const Path& folder) {
@@ -106,15 +106,15 @@ private:
         work();
     }
     std::mutex mutex_;
-    std::set<Path> made_, scratch_;  ///< a folder stands before those in it
+    std::set<Path> made_, scratch_;  ///< parents before their subfolders
 };
 PassingFolders& passing_folders() {
     static PassingFolders folders;
     return folders;
 }
 
-/// The rights that a new file does not get. Asked of the system: setting the mask to learn it would let another thread's files be
-/// written with the wrong one.
+/// The process's umask. Read from /proc: umask() can only read the mask by setting it, and another thread could then create
+/// files with wrong permissions.
 mode_t creation_mask() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -122,7 +122,7 @@ mode_t creation_mask() {
     return 077;
 }
 
-/// Files in memory by their names without "." and "..".
+/// Files in memory, by their normalised names.
 class MemoryFiles {
 public:
     [[nodiscard]] std::optional<std::string> find(const Path& file) const {
@@ -146,7 +146,7 @@ public:
         const std::lock_guard lock(mutex_);
         files_.erase(key(file));
     }
-    /// Names below a folder, without it.
+    /// Names below a folder, relative to it.
     [[nodiscard]] std::vector<std::string> below(const Path& folder) const {
         const std::lock_guard lock(mutex_);
         const std::string beginning = key(folder) + "/";
@@ -181,7 +181,7 @@ void rename_file(const Path& from, const Path& to) {
         fail_work(to.string(), "cannot be written: " + reason(), "check the rights of its folder");
 }
 
-/// Whether the name is that of something in the folder, wherever links lead.
+/// Whether the path lies in the folder lexically, without resolving links.
 bool is_below(const Path& file, const Path& folder) {
     std::error_code code;
     const auto full = [&](const Path& path) { return std::filesystem::absolute(path, code).lexically_normal(); };
@@ -189,11 +189,11 @@ bool is_below(const Path& file, const Path& folder) {
     return !relative.empty() && *relative.begin() != "..";
 }
 
-/// What a link points to, whether that exists or not.
+/// The target of a chain of links, whether it exists or not.
 Path behind_links(Path file) {
     std::error_code code;
     for (int step = 0; step < 40 && std::filesystem::is_symlink(file, code); ++step) {
-        // A device or a pipe has no name behind that of its link.
+        // The target of a link to a device or a pipe need not be a path.
         if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code)) break;
         const Path target = std::filesystem::read_symlink(file, code);
         if (code) break;
@@ -308,7 +308,7 @@ std::string read_file(const Path& file) {
                 used += more;
                 continue;
             }
-            char extra[4096];  // what was added meanwhile, and files that state no size
+            char extra[4096];  // for bytes appended meanwhile, and for files that report no size
             const std::size_t more = input.read(extra, sizeof extra, file);
             if (more == 0) break;
             bytes.append(extra, more);
@@ -321,11 +321,11 @@ std::string read_file(const Path& file) {
     return recorded(file, std::move(bytes));
 }
 
-// A link keeps pointing where it points: what is replaced is the file behind it.
+// Links are followed: the target of a link is replaced, not the link.
 AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? file : behind_links(file)) {
     if (is_memory(file_)) return;
     WriteScope::check(file_);
-    // Nobody named the files of a folder that a command fills: links in it do not lead out.
+    // In a folder that a command fills, the user did not name the individual files: links in it must not lead out of it.
     for (const OutputTransaction* open = open_transaction; open != nullptr; open = open->outer_)
         for (const auto& [folder, owner] : open->replaced_)
             if (is_below(file, folder)) require_writable_inside(file, folder);
@@ -344,7 +344,7 @@ AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? f
         if (::access(file_.c_str(), W_OK) != 0)
             fail_work(file_.string(), "cannot be written: " + reason(), "check its rights, or choose another name");
     }
-    // Not the file's own name with an ending: that may be as long as names can be.
+    // The temporary name is not derived from the file's name, which may already have the maximum length.
     const auto [temporary, descriptor] = open_temporary(file_.parent_path());
     if (descriptor < 0) {
         const std::string why = reason();
@@ -388,7 +388,7 @@ void AtomicFile::commit() {
         return;
     }
     const bool direct = temporary_.empty();
-    // The temporary file stays locked until it has its name.
+    // The temporary file stays locked until it is renamed.
     const int lock = direct ? -1 : ::fcntl(::fileno(stream_), F_DUPFD_CLOEXEC, 0);
     const bool flushed = std::fflush(stream_) == 0 && (direct || ::fsync(::fileno(stream_)) == 0);
     const std::string why = flushed ? "" : reason();
@@ -417,7 +417,7 @@ OutputTransaction::~OutputTransaction() {
         remove_file(temporary);
         release_temporary(temporary);
     }
-    std::error_code code;  // of those that are not empty
+    std::error_code code;  // for folders that are not empty
     for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
     passing_folders().forget_made(made_);
 }
@@ -429,7 +429,7 @@ KeptFiles::KeptFiles(std::vector<Path> files) : outer_(std::move(kept_files)) { 
 KeptFiles::~KeptFiles() { kept_files = std::move(outer_); }
 
 namespace {
-/// What stands under a name that is about to be taken, kept under a second one while this lives.
+/// An existing file that is about to be replaced; a hard link keeps it during the lifetime of this object.
 struct Replaced {
     explicit Replaced(Path name) : file(std::move(name)) {
         struct stat present {};
@@ -460,7 +460,7 @@ void OutputTransaction::commit() {
     for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_, kept_files);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
-    // Names in memory last: they can always be taken, so none of them has to come back.
+    // Files in memory last: renaming them cannot fail, so none of them has to be restored.
     std::stable_partition(waiting_.begin(), waiting_.end(), [](const auto& names) { return !is_memory(names.second); });
     std::deque<Replaced> replaced;
     std::shared_lock naming(naming_mutex);
@@ -494,7 +494,7 @@ void write_file(const Path& file, std::string_view bytes, FileAccess access) {
 }
 
 void abandon_outputs() {
-    // Never released: whoever is about to give a file its name waits until the process ends.
+    // Never unlocked: threads that are about to rename files wait until the process ends.
     naming_mutex.lock();  // NOLINT(bugprone-*)
     abandon_temporaries();
     passing_folders().remove();
@@ -517,7 +517,7 @@ ScratchFolder::~ScratchFolder() {
 }
 
 namespace {
-/// The same text for every spelling of a place, whether anything stands there or not.
+/// The same path for all spellings of a place, whether it exists or not.
 Path one_spelling(const Path& file) {
     std::error_code code;
     const Path place = resolved(file);

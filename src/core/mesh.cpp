@@ -23,8 +23,8 @@ struct Pairing {
 Index origin(const TriangleSoup& soup, std::size_t h) { return soup.triangles[h / 3][h % 3]; }
 Index target(const TriangleSoup& soup, std::size_t h) { return soup.triangles[h / 3][(h + 1) % 3]; }
 
-/// Halfedges are put in one bucket per smaller end point; inside a bucket, equal larger end points meet by sorting.
-/// Linear but for the sorting of buckets, which hold about three halfedges each.
+/// Halfedges are put into one bucket per smaller end point; within a bucket, they are matched by sorting by the larger end
+/// point. Linear time except for the sorting of the buckets, which hold about three halfedges each.
 Pairing pair_halfedges(const TriangleSoup& soup) {
     const std::size_t count = 3 * soup.triangles.size();
     Pairing result;
@@ -68,7 +68,7 @@ Pairing pair_halfedges(const TriangleSoup& soup) {
     return result;
 }
 
-/// Counts vertices whose triangles form more than one fan. The halfedges must be paired without conflict.
+/// Counts vertices whose triangles form more than one fan. The halfedges must be paired without conflicts.
 void count_fans(const TriangleSoup& soup, Pairing& pairing) {
     const std::size_t count = 3 * soup.triangles.size();
     std::vector<bool> seen(count, false);
@@ -90,7 +90,7 @@ void count_fans(const TriangleSoup& soup, Pairing& pairing) {
             if (o == no_index || o == h) break;
             g = o;
         }
-        for (std::size_t g = h;;) {  // clockwise, in case the first walk met the border
+        for (std::size_t g = h;;) {  // clockwise, if the first walk reached the border
             const Index o = opposite[g];
             if (o == no_index) break;
             g = next(o);
@@ -153,7 +153,7 @@ ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
         mesh.set_halfedge(face, halfedge[3 * t + 2]);
     }
     if (border > 0) {
-        // One border halfedge leaves each border vertex, since every vertex has one fan.
+        // Each border vertex has exactly one outgoing border halfedge, since every vertex has one fan.
         std::vector<Index> leaving(vertex_count, no_index);
         for (std::size_t h = 0; h < count; ++h)
             if (opposite[h] == no_index) leaving[target(soup, h)] = static_cast<Index>(h);
@@ -161,7 +161,7 @@ ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
             if (opposite[h] != no_index) continue;
             const Halfedge outer = mesh.opposite(halfedge[h]);
             mesh.set_next(outer, mesh.opposite(halfedge[leaving[origin(soup, h)]]));
-            mesh.set_halfedge(mesh.target(outer), outer);  // Surface_mesh wants a border halfedge at border vertices
+            mesh.set_halfedge(mesh.target(outer), outer);  // Surface_mesh requires a border halfedge at border vertices
         }
     }
     return pairing.defects;

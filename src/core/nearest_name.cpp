@@ -11,7 +11,7 @@ std::size_t edit_distance(std::string_view first, std::string_view second, std::
     const std::u32string a = characters(first), b = characters(second);
     const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
     if (longer - shorter > limit) return limit + 1;
-    // Rows of the table: the one before the last, the last, and the one being filled; only cells within `limit` of the diagonal.
+    // Rows of the table: the last but one, the last, and the current one; only cells within `limit` of the diagonal are filled.
     std::vector<std::size_t> before(b.size() + 1, limit + 1), last(b.size() + 1), row(b.size() + 1, limit + 1);
     std::iota(last.begin(), last.end(), std::size_t{0});
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -33,7 +33,7 @@ std::size_t edit_distance(std::string_view first, std::string_view second, std::
 
 namespace {
 
-/// The only one of the names that holds this text from the beginning of one of its words on; empty if none or several do.
+/// The only name with a word that begins with this text; empty if none or several have one.
 std::string only_one_with(const std::string& text, const std::vector<std::string>& names) {
     std::string found;
     for (const std::string& candidate : names) {

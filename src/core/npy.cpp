@@ -19,7 +19,7 @@ namespace {
 constexpr const char* remedy = "write it with numpy.save, as an array of float64 or int64 of one or two dimensions";
 constexpr std::string_view magic = "\x93NUMPY";
 
-/// The dictionary in the head, as Python writes it.
+/// Parses the header's dictionary, in Python syntax.
 class HeadReader {
 public:
     HeadReader(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
@@ -101,7 +101,7 @@ private:
     std::string where_;
 };
 
-/// Each kind of number with its size and how one becomes a number of ours.
+/// A number type: its size and its conversion.
 struct Kind {
     std::string_view name;
     std::size_t size;
@@ -144,7 +144,7 @@ const Kind& kind_of(const std::string& type, const std::string& where) {
     fail_input(where, "holds numbers of the kind '" + type + "'", remedy);
 }
 
-/// The place of row-major element `i` in the file.
+/// Copies the elements to row-major order, from either order in the file.
 template <class Number, class Convert>
 void copy(const NpyView& view, Number* values, std::size_t size, Convert&& convert) {
     const std::size_t rows = view.rows(), columns = view.columns();

@@ -33,7 +33,7 @@ std::string word_of(Number value) {
                 (near.empty() ? "use " : "did you mean '" + near + "'? use ") + option.allowed());
 }
 
-/// Names what people write where a number stands: "2cm", "50%", "0,5". `given`: the word that `word` is a part of.
+/// Reports common misspellings of numbers: "2cm", "50%", "0,5". `given`: the word that contains `word`.
 [[noreturn]] void refuse_number(const Option& option, const std::string& word, const std::string& given) {
     const OptionType type = option.type();
     std::string amount = word.substr(0, word.find_last_of("0123456789.") + 1);
@@ -53,7 +53,7 @@ std::string word_of(Number value) {
                                 : "write the number alone: " + amount + " (" + unit + ")");
 }
 
-/// `given`: the word that it is a part of, which an error shows.
+/// `given`: the word that contains `word`, shown in errors.
 template <class Number>
 Number parse(const Option& option, const std::string& word, const std::string& given) {
     Number value{};
@@ -192,7 +192,7 @@ void Option::set(const std::vector<double>& values) {
     for (const double one : values) words.push_back(word_of(one));
     if (type() != OptionType::numbers && type() != OptionType::integers) {
         const std::string list = joined(words, ",");
-        // Directions and the like: three numbers, or a word.
+        // Options such as directions: three numbers, or a word.
         if (type() != OptionType::text) refuse(*this, list);
         set(std::vector{list});
         return;

@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::size_t sum_length = 64;
 
-/// A name that stands on a line of its own, and in no other folder.
+/// Whether the name is a single path component without line breaks.
 bool plain(const std::string& name) {
     return !name.empty() && name != "." && name != ".." && name.find_first_of(std::string("/\\\n\0", 4)) == std::string::npos;
 }
 
-/// Lines "SHA-256, two blanks, name"; others are passed over.
+/// Reads lines "SHA-256, two blanks, name"; other lines are ignored.
 std::map<std::string, std::string> read_list(const Path& list) {
     std::map<std::string, std::string> entries;
     std::error_code code;

@@ -1,4 +1,4 @@
-// What an earlier run wrote into a folder, and this one did not.
+// Files that an earlier run wrote into a folder and this run did not.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -9,12 +9,13 @@ namespace ostraka {
 
 class OutputSweep {
 public:
-    /// `waiting`: temporary names and names of the files that are about to appear; `kept`: files that stay, and are forgotten.
+    /// `waiting`: temporary names and final names of the files about to be renamed; `kept`: files that are not removed and are
+    /// dropped from the list.
     OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting,
                 const std::vector<Path>& kept);
 
-    /// The list of what is written now and of what is still to be removed, so that a run that is killed in between forgets
-    /// nothing. Joins the open transaction.
+    /// Writes the list of the files written now and the files still to be removed, so that no file is forgotten if the run is
+    /// killed in between. Joins the open transaction.
     void write_list() const;
     /// Removes the files that were not written again, and writes the list without them.
     void remove_rest();

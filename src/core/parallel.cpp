@@ -32,7 +32,7 @@ void parallel_blocks(std::size_t count, std::size_t block, const std::function<v
     const WriteScope* const scope = WriteScope::current();
 #pragma omp parallel for schedule(dynamic, 1) if (blocks > 1)
     for (long long b = 0; b < blocks; ++b) {
-        if (b > first_block) continue;  // an earlier block has failed: this one is of no use
+        if (b > first_block) continue;  // an earlier block has failed: the result of this one is not needed
         const std::size_t begin = static_cast<std::size_t>(b) * block;
         try {
             const WatchScope watched(watch);

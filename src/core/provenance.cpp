@@ -8,7 +8,7 @@ namespace ostraka {
 void Provenance::add_input(const Path& file) { inputs.emplace_back(file.filename().string(), sha256_of_file(file)); }
 
 JsonValue Provenance::to_json(JsonAllocator& allocator) const {
-    // An option that was given several times is one member: no name stands twice in an object.
+    // An option that was given several times becomes one member, so that the names in the object are unique.
     std::vector<std::pair<std::string, std::string>> members;
     for (const auto& [name, value] : options) {
         const auto known = std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == name; });

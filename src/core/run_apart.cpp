@@ -14,16 +14,16 @@ namespace ostraka {
 
 namespace {
 
-/// What the two threads share.
+/// State shared by the two threads.
 struct Apart {
     std::mutex mutex;
     std::condition_variable changed;
     bool done = false;
     std::exception_ptr failure;
-    Watch watch;  ///< of the work, which is cancelled too
+    Watch watch;  ///< watch of the background work; cancelled together with the caller's
 };
 
-/// Work that nobody waits for any more. The process does not exit under it: libraries would be taken down while they compute.
+/// Counts abandoned work. The process waits for it before it exits: libraries must not be unloaded while they compute.
 class Abandoned {
 public:
     ~Abandoned() {
@@ -58,7 +58,7 @@ void run_apart(std::function<void()> work) {
     shared->watch.memory_limit = watch->memory_limit;
     const int threads = omp_get_max_threads();
     std::thread thread([shared, threads, work = std::move(work)]() mutable {
-        omp_set_num_threads(threads);  // OpenMP keeps it for each thread
+        omp_set_num_threads(threads);  // OpenMP stores the setting per thread
         const WatchScope watched(&shared->watch);
         std::exception_ptr failure;
         try {
@@ -66,7 +66,7 @@ void run_apart(std::function<void()> work) {
         } catch (...) {
             failure = std::current_exception();
         }
-        work = nullptr;  // where it is abandoned, all it holds is freed here
+        work = nullptr;  // if the work was abandoned, its data are freed here
         {
             const std::lock_guard lock(shared->mutex);
             shared->failure = failure;

@@ -11,7 +11,7 @@ namespace {
 
 thread_local const WriteScope* scope_of_thread = nullptr;
 
-/// Where the first link of a resolved path leads that leads to nothing yet; the path itself where there is none.
+/// The target of the first dangling link in a resolved path; the path itself if it has none.
 Path behind_dangling_link(const Path& place) {
     std::error_code code;
     Path begun;

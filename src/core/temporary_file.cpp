@@ -20,29 +20,29 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of files that are locked, and of those that are not.
+/// Prefixes of locked and of unlocked temporary files.
 constexpr std::string_view locked_beginning = ".ostraka-held-", free_beginning = ".ostraka-";
 constexpr std::size_t letters = 6;
-/// More than that many locks are not kept: descriptors are few.
+/// Maximum number of locks kept, since descriptors are limited.
 constexpr std::size_t most_kept = 256;
 
 bool is_named(const std::string& name, std::string_view beginning) {
     return name.size() == beginning.size() + letters && name.starts_with(beginning);
 }
 
-/// The lock is ours and the file still has its name: nobody took it for one of a killed run in between.
+/// Whether the lock is ours and the file still exists: no other process removed it as a leftover in between.
 bool is_there(int descriptor) {
     struct stat status {};
     return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
 }
 
-/// Removes a locked temporary file whose process is gone.
+/// Removes the temporary file if the process that locked it has ended.
 bool remove_if_free(const Path& file) {
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) return false;
     struct stat open {
     }, named{};
-    // What stands under the name may be another file by now.
+    // The name may denote another file by now.
     const bool gone = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &open) == 0 &&
                       ::lstat(file.c_str(), &named) == 0 && S_ISREG(named.st_mode) && open.st_ino == named.st_ino &&
                       open.st_dev == named.st_dev && ::unlink(file.c_str()) == 0;
@@ -64,7 +64,7 @@ public:
         ::close(found->second);
         descriptors_.erase(found);
     }
-    /// A file of this name was made. False where none may be made any more: it is removed.
+    /// Registers a created file. If all outputs were abandoned, removes the file and returns false.
     bool made(const Path& name) {
         const std::lock_guard lock(mutex_);
         if (abandoned_) ::unlink(name.c_str());
@@ -77,7 +77,7 @@ public:
         for (const std::string& name : names_) ::unlink(name.c_str());
         names_.clear();
     }
-    /// True once for each folder.
+    /// True at the first call for each folder.
     bool first(const Path& folder) {
         const std::lock_guard lock(mutex_);
         std::error_code code;

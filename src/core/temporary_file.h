@@ -1,5 +1,5 @@
-// Temporary files beside those that are being written. A lock of the system tells whether the process that writes one still
-// lives: it is free as soon as the process ends, however it ends.
+// Temporary files beside the files being written. A file lock shows whether the process that writes one is still alive: the
+// system releases it when the process ends, for whatever reason.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -9,20 +9,21 @@ namespace ostraka {
 /// An open temporary file.
 struct TemporaryFile {
     Path name;
-    int descriptor = -1;  ///< -1: none could be made, for the reason that errno says
+    int descriptor = -1;  ///< -1: none could be created; errno gives the reason
 };
 
-/// Makes one in the folder, and removes what killed runs left there when this process first writes to it. The file is locked as
-/// long as the descriptor, or one that was made of it, is open; where the file system knows no locks its name says so.
+/// Creates a temporary file in the folder. The first call for a folder also removes files left by killed runs. The file is
+/// locked as long as its descriptor, or a duplicate, is open; on a file system without locks, the name marks the file as not
+/// locked.
 TemporaryFile open_temporary(const Path& folder);
 
-/// For a file that waits to be renamed: keeps it locked by this descriptor, which now belongs to it, until release_temporary.
-/// Returns its name from now on: another one where no more descriptors can be kept, which says that it is not locked.
+/// For a file that waits to be renamed: takes over the descriptor and keeps the file locked until release_temporary. Returns
+/// the name of the file, which changes if no more descriptors can be kept: the new name marks the file as not locked.
 Path keep_temporary(const Path& name, int descriptor);
-/// The file has another name now, or is gone.
+/// To be called when the file has been renamed or removed.
 void release_temporary(const Path& name);
 
-/// Removes all that are open or kept; from here on none can be made.
+/// Removes all open or kept temporary files; no more can be created after that.
 void abandon_temporaries();
 
 }  // namespace ostraka

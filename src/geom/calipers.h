@@ -1,4 +1,4 @@
-// Convex hulls in the plane and the rectangles around them.
+// Convex hulls in a plane and bounding rectangles.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,12 +28,12 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> p, Left&& 
     return hull;
 }
 
-/// Sides of a rectangle around a convex polygon.
+/// Limits of a rectangle around a convex polygon.
 struct Extent {
     double x0, x1, y0, y1;
 };
 
-/// Along the unit vector `a` and across it, by looking at every corner.
+/// Extent along the unit vector `a` and perpendicular to it, computed from all corners.
 inline Extent extent_along(const Eigen::Vector2d& a, const std::vector<Eigen::Vector2d>& hull) {
     Extent e{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
              std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -44,8 +44,9 @@ inline Extent extent_along(const Eigen::Vector2d& a, const std::vector<Eigen::Ve
     return e;
 }
 
-/// The corners of a counter-clockwise convex polygon that touch the rectangle along one side after the other only move on: three
-/// of them are followed, the fourth is the side itself (Toussaint 1983).
+/// Rotating calipers: as the rectangle is aligned with successive sides of a counter-clockwise convex polygon, the corners that
+/// touch it only advance. Three of them are tracked; the fourth side of the rectangle is the polygon side itself (Toussaint
+/// 1983).
 class Calipers {
 public:
     explicit Calipers(const std::vector<Eigen::Vector2d>& hull) : hull_(hull) {}

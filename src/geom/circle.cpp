@@ -1,4 +1,4 @@
-// Circle fits, and integrals of the distance from a circle along straight pieces.
+// Circle fits, and integrals of the distance from a circle along segments.
 #include "ostraka/geom/circle.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
@@ -30,8 +30,8 @@ constexpr std::array<std::array<double, 2>, 8> gauss8{{{-0.9602898564975363, 0.1
                                                        {0.7966664774136267, 0.2223810344533745},
                                                        {0.9602898564975363, 0.1012285362903763}}};
 
-/// The distance from the centre continues to complex places along the piece but for square roots at a distance of it: with pieces
-/// of at most a quarter (1/60) of it, 8 (3) nodes err by 8^-16 (120^-6).
+/// The distance from the centre, continued to complex parameters along the segment, is analytic except for branch points at
+/// that distance. For segments of at most a quarter (1/60) of the distance, 8 (3) nodes have errors of 8^-16 (120^-6).
 template <class F>
 void integrate_piece(const Vector2d& a, const Vector2d& b, const Vector2d& centre, F&& f, int depth = 0) {
     const Vector2d middle = (a + b) / 2, half = (b - a) / 2;
@@ -48,12 +48,12 @@ void integrate_piece(const Vector2d& a, const Vector2d& b, const Vector2d& centr
     }
 }
 
-/// Sums of the fit at a centre, with the radius that is best there.
+/// Sums of the fit for a given centre, with the best radius for it.
 struct Fit {
     double length = 0, radius = 0, square = 0;  ///< square: mean of (d - radius)^2
     Vector2d gradient = Vector2d::Zero();       ///< of square / 2
-    Vector2d downhill = Vector2d::Zero();       ///< where the Hessian is negative: a direction in which it is
-    Matrix2d hessian = Matrix2d::Zero();        ///< of square / 2, or Gauss-Newton's where that is not positive
+    Vector2d downhill = Vector2d::Zero();       ///< if the Hessian has a negative eigenvalue: its eigenvector
+    Matrix2d hessian = Matrix2d::Zero();        ///< of square / 2; Gauss-Newton approximation if not positive definite
 };
 
 Fit fit_at(const PlaneSegments& segments, const Vector2d& centre, double guess) {
@@ -85,7 +85,7 @@ Fit fit_at(const PlaneSegments& segments, const Vector2d& centre, double guess) 
     return fit;
 }
 
-/// Places of an arc in the order of their angle around the centre, from behind the widest gap on.
+/// Points of an arc sorted by their angle around the centre, starting after the widest gap.
 std::vector<Vector2d> in_order(std::vector<Vector2d> places, const Vector2d& centre) {
     std::vector<std::pair<double, std::size_t>> angles;
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -100,7 +100,8 @@ std::vector<Vector2d> in_order(std::vector<Vector2d> places, const Vector2d& cen
     return sorted;
 }
 
-/// Sum of the correlations of a sequence with itself, both ways, until two neighbouring ones have a sum that is not positive.
+/// Integrated autocorrelation time: sum of the autocorrelations at positive and negative lags, up to the first pair of
+/// consecutive lags whose sum is not positive.
 double correlation_time(const std::vector<double>& values) {
     const std::size_t n = values.size();
     const auto product = [&](std::size_t lag) {
@@ -119,7 +120,7 @@ double correlation_time(const std::vector<double>& values) {
     return std::max(1.0, sum);
 }
 
-/// What the places say of a circle that fits them.
+/// Computes the deviation and the confidence interval of the radius from samples.
 void judge(ArcFit& fit, const std::vector<Vector2d>& places) {
     const double r = fit.circle.radius;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -138,8 +139,8 @@ void judge(ArcFit& fit, const std::vector<Vector2d>& places) {
     const auto count = static_cast<double>(residuals.size());
     fit.deviation = std::sqrt(squares / count);
     fit.independent = count / correlation_time(residuals);
-    const double freedom = std::max(1.0, fit.independent - 3);  // a shape in the residuals: hardly one of them is free
-    if (fit.deviation < 1e-12 * r) {                            // rounding
+    const double freedom = std::max(1.0, fit.independent - 3);  // at least 1, for strongly correlated residuals
+    if (fit.deviation < 1e-12 * r) {                            // residuals due to rounding
         fit.radius_low = fit.radius_high = r;
         return;
     }
@@ -180,7 +181,7 @@ Circle fit_circle(const std::vector<Vector2d>& points, const std::vector<double>
     for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * points[i], total += weights[i];
     if (!(total > 0)) return {};
     mean /= total;
-    // |q|^2 = 2 c . q + (r^2 - |c|^2) about the mean.
+    // q|^2 = 2 c . q + (r^2 - |c|^2), relative to the mean.
     Matrix2d A = Matrix2d::Zero();
     Vector2d b = Vector2d::Zero();
     double square = 0;
@@ -197,7 +198,7 @@ Circle fit_circle(const std::vector<Vector2d>& points, const std::vector<double>
 }
 
 Circle fit_circle(const PlaneSegments& segments) {
-    // Two nodes a piece integrate the third-degree terms of the algebraic fit exactly.
+    // Two nodes per segment integrate the cubic terms of the algebraic fit exactly.
     std::vector<Vector2d> points;
     std::vector<double> weights;
     for (const auto& [a, b] : segments)
@@ -208,7 +209,7 @@ Circle fit_circle(const PlaneSegments& segments) {
     Fit fit = fit_at(segments, circle.centre, circle.radius);
     double damping = 0;
     for (int step = 0, leaps = 0; step < 60; ++step) {
-        // A place that is best along one direction and worst along the other is left, to the side of the larger coordinates.
+        // At a saddle point, the iteration continues in the direction of negative curvature, towards larger coordinates.
         if (fit.gradient.norm() < 1e-9 * fit.radius && fit.downhill.norm() > 0 && leaps++ < 2) {
             const Vector2d side = fit.downhill.sum() < 0 ? Vector2d(-fit.downhill) : fit.downhill;
             circle.centre += 0.01 * fit.radius * side;
@@ -219,7 +220,7 @@ Circle fit_circle(const PlaneSegments& segments) {
         const Vector2d move = -H.inverse() * fit.gradient;
         if (!(move.norm() > 1e-15 * fit.radius)) break;
         const Fit next = fit_at(segments, circle.centre + move, fit.radius);
-        if (!(next.square <= fit.square * (1 + 1e-12))) {  // what is above by rounding only is no worse
+        if (!(next.square <= fit.square * (1 + 1e-12))) {  // a larger value due to rounding counts as equal
             if (damping > 1e6) break;
             damping = std::max(1e-3, 10 * damping);
             continue;
@@ -275,7 +276,7 @@ double angle_covered(std::vector<double> angles) {
 bool ArcFit::is_round() const {
     if (!(circle.radius > 0) || deviation > circle.radius / 20) return false;
     const double bulge = circle.radius * (1 - std::cos(std::min(angle / 2, pi / 2)));
-    // So many signs that change are no shape.
+    // Residuals with that many independent values are noise, not a systematic shape.
     return deviation <= bulge / 20 || independent >= 20;
 }
 
@@ -295,7 +296,8 @@ ArcFit fit_arc(const PlaneSegments& segments) {
     for (const auto& [a, b] : segments) length += (b - a).norm();
     const double step = length / static_cast<double>(std::clamp<std::size_t>(2 * segments.size(), 200, 2000));
     std::vector<Vector2d> places;
-    // One in each step, not at the same place of it: pieces of one length would show the same of their chords each time.
+    // One sample in each step, at a varying position: with segments of equal length, a fixed position would always sample the
+    // same part of the chord.
     const auto place = [&](double k) { return step * (k + std::fmod(0.5 + k * 0.6180339887498949, 1.0)); };
     double passed = 0, k = 0;
     for (const auto& [a, b] : segments) {
@@ -313,7 +315,7 @@ ArcFit fit_arc(const std::vector<Vector2d>& points) {
     if (!(fit.circle.radius > 0)) return fit;
     fit.circle = refined(points, fit.circle);
     judge(fit, points);
-    // Points beside each other have what is between them, but for the widest gap if it stands out.
+    // The gaps between neighbouring points count as covered, except for outlying ones.
     std::vector<double> angles;
     for (const Vector2d& p : points) angles.push_back(std::atan2(p.y() - fit.circle.centre.y(), p.x() - fit.circle.centre.x()));
     fit.angle = angle_covered(std::move(angles));
@@ -326,13 +328,13 @@ CircleDeviation circle_deviation(const PlaneSegments& segments, const Circle& ci
     const auto add = [&](const Vector2d& a, const Vector2d& b) {
         integrate_piece(a, b, circle.centre, [&](const Vector2d& p, double w) {
             const double d = (p - circle.centre).norm();
-            // (d^2 - r^2) / (d + r) would keep no more digits: d and r are rounded once each.
+            // (d^2 - r^2) / (d + r) would not be more precise: d and r are each rounded once.
             const double e = std::abs(d - circle.radius);
             deviation.absolute += w * e, deviation.square += w * e * e, length += w;
         });
     };
     for (const auto& [a, b] : segments) {
-        // |d - r| has a kink where the piece crosses the circle: it is cut there.
+        // d - r| has a kink where the segment crosses the circle: the segment is split there.
         const Vector2d along = b - a, from = a - circle.centre;
         const double A = along.squaredNorm(), B = from.dot(along), C = from.squaredNorm() - circle.radius * circle.radius;
         const double root = B * B - A * C;

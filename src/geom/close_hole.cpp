@@ -8,7 +8,7 @@ namespace ostraka {
 
 namespace {
 
-/// Asks the watch at every step of the library.
+/// Checks for cancellation at every step of CGAL's algorithm.
 struct WatchedFilling : CGAL::Polygon_mesh_processing::Hole_filling::Default_visitor {
     void quadratic_step() const { check(); }
     void cubic_step() const { check(); }

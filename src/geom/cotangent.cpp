@@ -7,13 +7,13 @@ namespace ostraka {
 
 namespace {
 
-/// Cotangent of the angle opposite to the halfedge in its face, at least 0.
+/// Cotangent of the angle opposite the halfedge in its face, clamped to at least 0.
 double cotangent(const Mesh& mesh, Halfedge h) {
     if (mesh.is_border(h)) return 0;
     const Point& apex = mesh.point(mesh.target(mesh.next(h)));
     const Vector a = mesh.point(mesh.source(h)) - apex, b = mesh.point(mesh.target(h)) - apex;
     const double sine = std::sqrt(CGAL::cross_product(a, b).squared_length());
-    // A triangle without area pulls its corners together no stronger than a very thin one.
+    // The weight of a degenerate triangle is limited to that of a very thin one.
     constexpr double maximum = 1e4;
     return sine > 0 ? std::clamp(a * b / sine, 0.0, maximum) : 0;
 }

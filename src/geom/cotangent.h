@@ -1,12 +1,12 @@
-// Weights of edges of the cotangent Laplacian.
+// Edge weights of the cotangent Laplacian.
 #pragma once
 
 #include "ostraka/core/mesh.h"
 
 namespace ostraka {
 
-/// Half the sum of the cotangents of the angles opposite to the edge (Pinkall and Polthier 1993), each at least 0, so that
-/// nothing overshoots.
+/// Half the sum of the cotangents of the angles opposite the edge (Pinkall and Polthier 1993); each cotangent is clamped to at
+/// least 0 to avoid overshoots.
 double cotangent_weight(const Mesh& mesh, Edge edge);
 
 }  // namespace ostraka

@@ -33,13 +33,13 @@ std::vector<Index> CurveFilling::majority() const {
 
 namespace {
 
-/// Successive pieces of a curve in one face.
+/// Consecutive pieces of a curve in one face.
 struct Stretch {
     Index face;
-    std::size_t curve, first, count;  ///< pieces; they go on at the start of a closed curve
+    std::size_t curve, first, count;  ///< pieces; in a closed curve, they may continue at its start
 };
 
-/// Stretches in the order of their faces. A piece along an edge is a stretch of both faces beside it.
+/// Stretches sorted by face. A piece along an edge is a stretch of both adjacent faces.
 std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCurve>& curves) {
     std::vector<Stretch> list;
     for (std::size_t c = 0; c < curves.size(); ++c) {
@@ -72,8 +72,8 @@ std::vector<Stretch> stretches_of(const Mesh& mesh, const std::vector<SurfaceCur
     return list;
 }
 
-/// Says how a face that curves run through lies: its share inside and, for each of its edges (from corner k to k + 1) that no
-/// curve leaves inside, which side the face beyond it is on.
+/// Classifies a face traversed by curves: its fraction inside and, for each of its edges (from corner k to k + 1) that no curve
+/// crosses, the side on which the adjacent face lies.
 struct FaceVerdict {
     double share = 0;
     std::array<int, 3> beyond{-1, -1, -1};  ///< 1 inside, 0 outside, -1 unknown
@@ -86,7 +86,7 @@ class Filler {
 public:
     Filler(const Mesh& mesh, const std::vector<SurfaceCurve>& curves) : mesh_(mesh), curves_(curves) {}
 
-    /// By geometry alone, for one stretch that enters and leaves the face over its rim; nothing where it is not that simple.
+    /// Geometric solution for one stretch that enters and leaves the face at its boundary; returns false for other cases.
     bool simple(const Stretch& stretch, FaceVerdict& verdict) {
         const Halfedge rim[3] = {mesh_.next(mesh_.halfedge(Face(stretch.face))),
                                  mesh_.next(mesh_.next(mesh_.halfedge(Face(stretch.face)))), mesh_.halfedge(Face(stretch.face))};
@@ -100,14 +100,14 @@ public:
         const double from = around(rim, *chain_.front()), to = around(rim, *chain_.back());
         if (from < 0 || to < 0 || from == to) return false;
         for (std::size_t i = 1; i + 1 < chain_.size(); ++i)
-            if (chain_[i]->kind != SurfaceNode::Kind::face) return false;  // it touches the rim on its way
+            if (chain_[i]->kind != SurfaceNode::Kind::face) return false;  // the stretch touches the boundary in between
         const Vector normal = area_vector(mesh_, Face(stretch.face));
         const double whole = std::sqrt(normal.squared_length());
         if (!(whole > 0)) return false;
         if (chain_.size() > 3 && crosses_itself(normal / whole)) return false;
         polygon_.clear();
         for (const SurfaceNode* node : chain_) polygon_.push_back(node->point);
-        // From where it leaves, counter-clockwise, to where it entered: the rest of what bounds its left.
+        // Follows the boundary counter-clockwise from the exit to the entry: this closes the polygon to the left of the curve.
         const double turn = from > to ? from - to : from + 3 - to;
         double last = to;
         const auto walk = [&](double next, const Point& place) {
@@ -129,7 +129,7 @@ public:
         verdict.share = std::clamp(0.5 * (sum * normal) / (whole * whole), 0.0, 1.0);
         for (int k = 0; k < 3; ++k) {
             if (within(from, k) || within(to, k)) continue;
-            // The edge bounds the left if a turn from `to` to its middle does not pass `from`.
+            // The edge bounds the left side if its midpoint comes before `from` on the way from `to`.
             double middle = k + 0.5 - to;
             if (middle < 0) middle += 3;
             verdict.beyond[static_cast<std::size_t>(k)] = middle < turn ? 1 : 0;
@@ -137,7 +137,8 @@ public:
         return true;
     }
 
-    /// By a triangulation of the face along all that runs through it; `triangles` gets the triangles inside, if it is given.
+    /// General solution by a triangulation of the face along all its pieces; `parts`, if given, receives the triangles and
+    /// whether they are inside.
     FaceVerdict general(const std::vector<Stretch>& stretches,
                         std::vector<std::pair<std::array<Point, 3>, bool>>* parts = nullptr) {
         const Index face = stretches.front().face;
@@ -164,7 +165,7 @@ public:
     }
 
 private:
-    /// The way around the rim to a node, one per edge; negative inside the face.
+    /// Position of a node on the boundary of the face: corner number plus fraction along the edge; negative in the interior.
     double around(const Halfedge (&rim)[3], const SurfaceNode& node) const {
         for (int k = 0; k < 3; ++k) {
             if (node.kind == SurfaceNode::Kind::vertex && node.element == static_cast<Index>(mesh_.source(rim[k]))) return k;
@@ -238,7 +239,7 @@ private:
             const Vertex a = old_corners[k], b = old_corners[(k + 1) % 3];
             const Halfedge h = find_halfedge(mesh_, a, b);
             if (mesh_.is_border(mesh_.opposite(h))) {
-                // What of the edge the triangles inside have.
+                // The part of the edge that borders on triangles inside.
                 const Edge e = mesh_.edge(h);
                 std::vector<Index> rim{a};
                 if (const auto on = cutter.on_edge().find(e); on != cutter.on_edge().end()) {
@@ -253,7 +254,7 @@ private:
             }
             const auto found = owner.find({a, b});
             if (found == owner.end()) continue;
-            const bool turned = weight(a, b) != 0;  // a curve runs along the edge: the other side lies beyond it
+            const bool turned = weight(a, b) != 0;  // a curve follows the edge: the adjacent face lies on the other side
             verdict.beyond[k] = (side[found->second] == left) != turned ? 1 : 0;
         }
         return verdict;
@@ -274,7 +275,7 @@ CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curv
     std::vector<bool> known(mesh.number_of_faces(), false);
     const std::vector<Stretch> stretches = stretches_of(mesh, curves);
     Filler filler(mesh, curves);
-    std::vector<std::pair<Index, bool>> beyond;  // faces no curve runs through next to those that one does
+    std::vector<std::pair<Index, bool>> beyond;  // faces without curves next to faces with curves
     for (std::size_t i = 0; i < stretches.size();) {
         std::size_t end = i;
         while (end < stretches.size() && stretches[end].face == stretches[i].face) ++end;
@@ -284,11 +285,11 @@ CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curv
             verdict = filler.general(
                 {stretches.begin() + static_cast<std::ptrdiff_t>(i), stretches.begin() + static_cast<std::ptrdiff_t>(end)});
         i = end;
-        if (!verdict.known) continue;  // pieces that cancel bound nothing
+        if (!verdict.known) continue;  // pieces that cancel are not a boundary
         known[face] = true;
         filling.conflicts += verdict.conflicts;
         filling.border += verdict.border;
-        constexpr double nothing = 1e-12;  // a share that rounding makes
+        constexpr double nothing = 1e-12;  // fractions up to this size are due to rounding
         if (verdict.share > nothing && verdict.share < 1 - nothing) {
             filling.sides[face] = FaceSide::cut;
             filling.cut.emplace_back(face, verdict.share);
@@ -301,7 +302,8 @@ CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curv
             if (verdict.beyond[k] >= 0 && !mesh.is_border(mesh.opposite(rim[k])))
                 beyond.emplace_back(mesh.face(mesh.opposite(rim[k])), verdict.beyond[k] == 1);
     }
-    // Faces with a curve say for themselves; of the others, those beside them first, then all that they reach.
+    // Faces with curves are already classified. Of the others, first those adjacent to them are classified, then all faces that
+    // can be reached.
     std::vector<Face> stack;
     const auto claim = [&](Face f, bool inside) {
         const FaceSide as = inside ? FaceSide::in : FaceSide::out;
@@ -326,7 +328,8 @@ CurveFilling fill_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curv
                 continue;
             }
             const Face g = mesh.face(mesh.opposite(h));
-            // Out beside in with no curve along the edge between: a face that one runs through would be known before.
+            // A conflict: inside next to outside without a curve along the common edge (faces traversed by curves are already
+            // known).
             if (!known[g]) claim(g, true);
             else if (seen[g] && !seen[f] && filling.sides[g] == FaceSide::out) ++filling.conflicts;
         }

@@ -13,9 +13,9 @@ namespace ostraka {
 struct Diffusion::System {
     std::vector<Eigen::Triplet<double>> laplacian;  ///< rows and columns among the free vertices
     Eigen::VectorXd mass;                           ///< of the free vertices
-    std::vector<Eigen::Triplet<double>> to_fixed;   ///< free row, vertex, weight
-    std::vector<Index> free;                        ///< their vertices
-    std::vector<int> row;                           ///< of each vertex; -1 if it stays
+    std::vector<Eigen::Triplet<double>> to_fixed;   ///< row of a free vertex, fixed vertex, weight
+    std::vector<Index> free;                        ///< the free vertices
+    std::vector<int> row;                           ///< row of each vertex; -1 if it is fixed
     std::size_t vertices = 0;
 };
 

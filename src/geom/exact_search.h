@@ -1,4 +1,4 @@
-// The library's search for shortest ways over a surface, so that it can be cancelled.
+// Cancellable version of CGAL's search for shortest paths on a surface.
 #pragma once
 
 #include "ostraka/core/error.h"
@@ -20,14 +20,14 @@ using PlainTraits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Mesh>;
 
 inline constexpr const char* coarser = "measure along edges, up to a limit, or on a coarser copy (ostraka mesh simplify)";
 
-/// The windows of a search come to at least 6 kB a face on a rough surface, where they soon end, and grow with the power 1.5 of
-/// the faces on a smooth one (measured: 11 kB a face at 40 thousand faces, 17 at 90, 31 at 400).
+/// Memory of the windows of a search: at least 6 kB per face on a rough surface, where windows end soon; on a smooth surface,
+/// it grows with the power 1.5 of the number of faces (measured: 11 kB per face at 40 thousand faces, 17 at 90, 31 at 400).
 inline void require_for_search(double faces) {
     require_memory(std::max(6e3 * faces, 15 * std::pow(faces, 1.5)),
                    "the exact shortest way over " + std::to_string(static_cast<long long>(faces)) + " faces", coarser);
 }
 
-/// Asks the watch, and now and then whether the memory is still enough.
+/// Checks for cancellation and, now and then, the memory limit.
 class SearchCheck {
 public:
     void operator()() {
@@ -43,7 +43,7 @@ private:
     unsigned steps_ = 0;
 };
 
-/// Asks whenever a window is carried across an edge.
+/// Calls the check whenever a window is propagated across an edge.
 struct WatchedTraits : PlainTraits {
     [[nodiscard]] Construct_triangle_3_along_segment_2_flattening construct_triangle_3_along_segment_2_flattening_object() const {
         check();
@@ -52,8 +52,8 @@ struct WatchedTraits : PlainTraits {
     mutable SearchCheck check;
 };
 
-/// Where the events of a search lie: the library forgets those that wait when it is interrupted, and here they end all the same.
-/// One search at a time in each thread.
+/// Memory pool of the events of a search. CGAL leaks pending events if it is interrupted; here they are freed with the pool.
+/// One search at a time per thread.
 class EventMemory {
 public:
     EventMemory() : outer_(current) { current = this; }
@@ -72,7 +72,7 @@ private:
 
 }  // namespace ostraka::detail
 
-/// The library's event, whose memory is that of the search.
+/// CGAL's event, allocated in the memory pool of the search.
 template <>
 struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostraka::detail::WatchedTraits> {
     using Traits = ostraka::detail::WatchedTraits;
@@ -95,8 +95,8 @@ struct CGAL::Surface_mesh_shortest_paths_3::internal::Cone_expansion_event<ostra
 
 namespace ostraka::detail {
 
-/// Shortest ways from sources over a mesh. Throws Error (failure) where they would take too much memory. Building may throw Error
-/// (cancelled, failure): it is of no use then.
+/// Shortest paths from sources on a mesh. Throws Error (failure) if they would need too much memory. Building may throw Error
+/// (cancelled, failure); the object must not be used after that.
 class ExactSearch : private EventMemory, public CGAL::Surface_mesh_shortest_path<WatchedTraits> {
 public:
     explicit ExactSearch(const Mesh& mesh) : Surface_mesh_shortest_path(checked(mesh)) {}

@@ -26,7 +26,7 @@ FaceCutter::FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves
             if (a == b || common_edge(mesh_, curves[c].nodes[i], curves[c].nodes[i + 1]) != no_index) continue;
             cuts_[curves[c].faces[i]].segments.emplace_back(std::min(a, b), std::max(a, b));
         }
-    // A face whose edge got a vertex must be cut even if no curve runs through it.
+    // A face with a new vertex on an edge must be subdivided even if no curve traverses it.
     for (const auto& [edge, list] : on_edge_)
         for (const unsigned k : {0U, 1U})
             if (const Halfedge h = mesh_.halfedge(Edge(edge), k); !mesh_.is_border(h)) cuts_[mesh_.face(h)];
@@ -81,7 +81,7 @@ Index FaceCutter::add_node(const SurfaceNode& node) {
 void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
     std::map<std::tuple<Index, double>, Index> edge_vertex;
     std::map<std::tuple<Index, double, double>, Index> face_vertex;
-    constexpr double same = 1e-7;  // nodes nearer than this share of the edge are one
+    constexpr double same = 1e-7;  // nodes closer than this fraction of the edge are merged
     const auto missing = [](const char* what, Index i) {
         fail_input("curve", std::string("names ") + what + " " + std::to_string(i) + ", which does not exist");
     };
@@ -118,7 +118,7 @@ void FaceCutter::place_nodes(const std::vector<SurfaceCurve>& curves) {
     for (auto& [edge, list] : on_edge_) std::sort(list.begin(), list.end());
 }
 
-/// The border of a face with the vertices on its edges, counter-clockwise.
+/// The boundary of a face with the vertices on its edges, counter-clockwise.
 std::vector<Index> FaceCutter::border(Index face) const {
     std::vector<Index> vertex_path;
     Halfedge h = mesh_.next(mesh_.halfedge(Face(face)));
@@ -142,14 +142,15 @@ std::vector<std::array<Index, 3>> FaceCutter::cut(Index face) {
     std::vector<std::array<Index, 3>> triangles;
     if (area_vector(mesh_, Face(face)).squared_length() > 0) {
         const std::size_t nodes_before = nodes_.size();
-        // With every curve first; where rounding spoils the border, with the border alone: the curves then follow edges nearby.
+        // First with the curves; if rounding makes the boundary invalid, with the boundary only: the curves then follow edges
+        // nearby.
         for (const bool with_curves : {true, false}) {
             if (triangulate(face, cut, vertex_path, with_curves, triangles)) return triangles;
             nodes_.resize(nodes_before);
             triangles.clear();
         }
     }
-    // A face without area has no plane to triangulate in: its border is cut as a fan, which needs no geometry.
+    // A degenerate face has no plane for a triangulation: its boundary is split as a fan, which needs no geometry.
     if (!cut.inner.empty())
         throw Error(ErrorKind::failure, "face " + std::to_string(face), "cannot be cut: it has no area to speak of",
                     "repair the mesh first");
@@ -172,7 +173,7 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
         const Vector d = point(v) - origin;
         const auto inserted = triangulation.insert(Kernel::Point_2((d * x) / scale, (d * y) / scale));
         for (const auto& [other, other_handle] : handle)
-            if (other_handle == inserted) return false;  // two vertices at one place in the plane
+            if (other_handle == inserted) return false;  // two vertices at the same position in the plane
         inserted->info() = v;
         handle[v] = inserted;
         return true;
@@ -183,7 +184,7 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
         if (!insert(v)) return false;
     const std::size_t known = handle.size();
     std::set<std::pair<Index, Index>> rim;
-    // The vertices that a piece from v to w runs through, where it is no edge of the triangulation.
+    // The vertices along a piece from v to w that is not an edge of the triangulation.
     const auto note_crossings = [&](Index v, Index w) {
         const auto from = handle.find(v), to = handle.find(w);
         if (from == handle.end() || to == handle.end() || rim.count({v, w}) > 0 ||
@@ -214,7 +215,7 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
             if (handle.count(v) > 0 && handle.count(w) > 0 && rim.count({v, w}) == 0)
                 triangulation.insert_constraint(handle[v], handle[w]);
     if (triangulation.number_of_vertices() != known) {
-        // Crossings of curves made new vertices.
+        // Crossings of curves have created new vertices.
         std::set<Triangulation::Vertex_handle> old;
         for (const auto& [v, h] : handle) old.insert(h);
         std::vector<Triangulation::Vertex_handle> fresh;
@@ -234,7 +235,7 @@ bool FaceCutter::triangulate(Index face, const Cut& cut, const std::vector<Index
     }
     if (with_curves)
         for (const auto& [v, w] : cut.segments) note_crossings(v, w);
-    // Faces of the triangulation within the rim: everything not reachable from outside without crossing it.
+    // Faces of the triangulation inside the boundary: those that cannot be reached from outside without crossing it.
     const auto on_rim = [&](Triangulation::Face_handle f, int i) {
         const auto v = f->vertex(Triangulation::cw(i)), w = f->vertex(Triangulation::ccw(i));
         if (triangulation.is_infinite(v) || triangulation.is_infinite(w)) return false;

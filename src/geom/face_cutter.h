@@ -1,4 +1,4 @@
-// Faces cut along curves, one at a time.
+// Subdivision of single faces along curves.
 #pragma once
 
 #include "ostraka/geom/insert_curves.h"
@@ -9,22 +9,22 @@
 
 namespace ostraka {
 
-/// Gives each node of the curves, which must outlive it, a vertex (old vertices keep their index, new ones are counted on) and
-/// cuts single faces.
+/// Assigns a vertex to each node of the curves, which must outlive this object (old vertices keep their indices, new ones
+/// follow), and subdivides single faces.
 class FaceCutter {
 public:
     FaceCutter(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
 
     /// Vertex at each node, per curve.
     [[nodiscard]] const std::vector<std::vector<Index>>& node_vertex() const { return node_vertex_; }
-    /// The same with the vertices between: where the piece runs along an edge that has other vertices, or where curves cross it
-    /// inside a face that was cut already.
+    /// The same with the vertices in between: other vertices on an edge that a piece follows, and crossings of curves inside a
+    /// face that has already been cut.
     [[nodiscard]] std::vector<Index> path(std::size_t curve) const;
-    /// Faces that curves cross or touch with a node on an edge, ascending.
+    /// Faces that curves cross or touch at a node on an edge, ascending.
     [[nodiscard]] std::vector<Index> faces() const;
-    /// The triangles that a face becomes; crossings of curves inside it may add points.
+    /// The triangles that replace a face; crossings of curves inside it may add vertices.
     std::vector<std::array<Index, 3>> cut(Index face);
-    /// Places of the new vertices, in the order of their index.
+    /// Positions of the new vertices, in index order.
     [[nodiscard]] const std::vector<SurfaceNode>& new_nodes() const { return nodes_; }
     /// Old edge -> the new vertices on it with their parameters, ascending.
     [[nodiscard]] const std::map<Index, std::vector<std::pair<double, Index>>>& on_edge() const { return on_edge_; }
@@ -33,10 +33,10 @@ public:
     }
 
 private:
-    /// What happens inside one face.
+    /// Elements inside one face.
     struct Cut {
         std::vector<Index> inner;                       ///< vertices strictly inside
-        std::vector<std::pair<Index, Index>> segments;  ///< pieces of curves, by vertex
+        std::vector<std::pair<Index, Index>> segments;  ///< pieces of curves, as pairs of vertices
     };
     Index add_node(const SurfaceNode& node);
     void place_nodes(const std::vector<SurfaceCurve>& curves);
@@ -51,7 +51,7 @@ private:
     std::map<Index, std::vector<std::pair<double, Index>>> on_edge_;  ///< vertices on an edge, by parameter
     std::map<Index, Cut> cuts_;
     std::map<std::pair<Index, Index>, std::vector<Index>>
-        crossed_;  ///< pieces that others cross: the vertices between their ends
+        crossed_;  ///< pieces crossed by others: the vertices between their ends
 };
 
 }  // namespace ostraka

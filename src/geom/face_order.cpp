@@ -16,7 +16,7 @@ namespace {
 constexpr unsigned axis_bits = 21, code_bits = 3 * axis_bits, bucket_bits = 12;
 constexpr std::size_t block_size = std::size_t{1} << 15;
 
-/// Two zeros before each of 21 bits.
+/// Inserts two zeros before each of 21 bits.
 std::uint64_t spread(std::uint64_t x) {
     x = (x | x << 32) & 0x001f00000000ffff;
     x = (x | x << 16) & 0x001f0000ff0000ff;
@@ -25,7 +25,7 @@ std::uint64_t spread(std::uint64_t x) {
     return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Of a place in diagonals about the middle.
+/// Morton code of a position relative to the centre, in units of the diagonal.
 std::uint64_t morton_code(const Vector& place) {
     constexpr double cells = 1U << axis_bits;
     const auto cell = [](double x) {
@@ -43,7 +43,7 @@ struct Lists {
     }
 };
 
-/// Sorts by the last bits, digit by digit from the last one on; equal ones stay in their order. `other` is room for as many.
+/// Stable radix sort by the last `bits` bits, from the last digit on. `other`: working memory of the same size.
 void sort_by_last(unsigned bits, const Lists& list, const Lists& other, std::size_t count) {
     constexpr unsigned digit_bits = 9;
     constexpr std::size_t digits = std::size_t{1} << digit_bits;
@@ -62,8 +62,8 @@ void sort_by_last(unsigned bits, const Lists& list, const Lists& other, std::siz
     for (std::size_t i = 0; i < count; ++i) list.copy(i, from, i);
 }
 
-/// First into buckets, one for each beginning of a code; each block of the list counts its own, so that it knows where they go.
-/// Then each bucket by itself.
+/// Sorts into buckets by the leading bits of the codes, then sorts each bucket. Each block of the list counts its own codes,
+/// which determines the positions of its entries in the buckets.
 void sort_by_code(FaceOrder& order) {
     constexpr std::size_t buckets = std::size_t{1} << bucket_bits;
     const std::size_t count = order.count, blocks = (count + block_size - 1) / block_size;
@@ -109,7 +109,7 @@ FaceOrder order_faces(const Mesh& mesh, const Point& middle, double diagonal) {
     FaceOrder order;
     order.codes = std::make_unique_for_overwrite<std::uint64_t[]>(faces);
     order.faces = std::make_unique_for_overwrite<Index[]>(faces);
-    // Each block fills its own part of the list from its beginning.
+    // Each block fills its own part of the list, starting at the beginning of the part.
     std::vector<std::size_t> filled(blocks, 0);
     std::vector<double> areas(blocks, 0);
     parallel_blocks(faces, block_size, [&](std::size_t begin, std::size_t end) {

@@ -1,4 +1,4 @@
-// The faces of a mesh along a curve that fills space.
+// The faces of a mesh in the order of a space-filling curve.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -8,17 +8,17 @@
 
 namespace ostraka {
 
-/// Faces that have an area, sorted by Morton codes of their centroids: what is near in space is near in this order. Those that
-/// share their first 3k bits lie in one cube of 1 / 2^k of the box's diagonal.
+/// Non-degenerate faces sorted by the Morton codes of their centroids, so that faces close in space are close in the order.
+/// Faces with the same first 3k bits lie in one cube of side 1 / 2^k of the box diagonal.
 struct FaceOrder {
     std::unique_ptr<std::uint64_t[]> codes;  ///< ascending, 63 bits
-    std::unique_ptr<Index[]> faces;          ///< of equal codes the lower face first
+    std::unique_ptr<Index[]> faces;          ///< for equal codes, the lower face first
     std::uint32_t count = 0;
     double area = 0;  ///< of all faces
 };
 
-/// `middle` is that of the mesh's box, `diagonal` its diagonal. O(n), on all threads; 12 bytes a face, and as many while it
-/// sorts.
+/// `middle`: centre of the bounding box of the mesh; `diagonal`: its diagonal. O(n), on all threads; 12 bytes per face, and as
+/// many again while sorting.
 FaceOrder order_faces(const Mesh& mesh, const Point& middle, double diagonal);
 
 }  // namespace ostraka

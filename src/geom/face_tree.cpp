@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint32_t leaf_size = 6;
-/// Levels of nodes: one a bit of the codes, and faces of equal codes are halved.
+/// Maximum depth: one level per bit of the codes, plus the halving of faces with equal codes.
 constexpr std::size_t most_levels = 63 + 32;
-/// Single precision: boxes are this much larger, and cones this much wider than they need to be.
+/// For single precision, boxes are enlarged and cones widened by these amounts.
 constexpr float slack = 2e-7F;
 constexpr double rounding = 1e-6;
 
@@ -30,7 +30,7 @@ Eigen::Array4f floats(const Vector3d& v, float last) {
 }
 Vector3d axis_of(const Eigen::Array4f& cone) { return cone.head<3>().matrix().cast<double>(); }
 
-/// Where the faces of a node are parted: where the first bit of their codes that differs changes.
+/// Splits the faces of a node where the first differing bit of their codes changes.
 std::uint32_t part(const FaceOrder& order, std::uint32_t begin, std::uint32_t end) {
     const std::uint64_t first = order.codes[begin], last = order.codes[end - 1];
     if (first == last) return begin + (end - begin) / 2;
@@ -45,11 +45,11 @@ std::uint32_t node_count(const FaceOrder& order, std::uint32_t begin, std::uint3
     return 1 + node_count(order, begin, middle) + node_count(order, middle, end);
 }
 
-/// Half the opening of a cone, from nothing to half a turn.
+/// Half the opening angle of a cone, 0 to pi.
 struct Opening {
     double cosine = 1, sine = 0;
 
-    /// At most half a turn.
+    /// Sum of the angles, at most pi.
     [[nodiscard]] Opening wider_by(const Opening& other) const {
         const double sum = sine * other.cosine + cosine * other.sine;
         if (sum < 0) return {-1, 0};
@@ -59,16 +59,16 @@ struct Opening {
         if (!(other.cosine >= cosine)) *this = other;
     }
 };
-/// The sine of so small an angle is the angle, and its cosine is 1.
+/// For such a small angle, the sine equals the angle and the cosine is 1.
 constexpr Opening rounding_angle{1, rounding};
 
-/// The angle between two vectors.
+/// Angle between two vectors.
 Opening between(const Vector3d& a, const Vector3d& b) {
     const double cosine = a.dot(b), sine = a.cross(b).norm(), length = std::sqrt(cosine * cosine + sine * sine);
     return {cosine / length, sine / length};
 }
 
-/// Whether the segment pq meets the triangle abc, exactly. Corners on one line make no triangle.
+/// Exact test whether the segment pq intersects the triangle abc. Triangles with collinear corners intersect nothing.
 bool meet(const Point& p, const Point& q, const Point& a, const Point& b, const Point& c) {
     const CGAL::Orientation at_p = CGAL::orientation(a, b, c, p), at_q = CGAL::orientation(a, b, c, q);
     if (at_p == at_q) {
@@ -76,15 +76,15 @@ bool meet(const Point& p, const Point& q, const Point& a, const Point& b, const 
         const Kernel::Triangle_3 triangle(a, b, c);
         return p == q ? triangle.has_on(p) : CGAL::do_intersect(Kernel::Segment_3(p, q), triangle);
     }
-    // Seen from above, the line runs down through the triangle on no edge's right side.
+    // Seen from above, the line passes downwards through the triangle and lies to the right of no edge.
     const bool down = at_p == CGAL::POSITIVE || at_q == CGAL::NEGATIVE;
     const Point &above = down ? p : q, &below = down ? q : p;
     return CGAL::orientation(above, below, a, b) != CGAL::POSITIVE && CGAL::orientation(above, below, b, c) != CGAL::POSITIVE &&
            CGAL::orientation(above, below, c, a) != CGAL::POSITIVE;
 }
 
-/// A segment that asks boxes whether it may meet them; it never misses one that it meets. Twice the coordinates are used, so that
-/// middles need no halves.
+/// Conservative test whether a segment may intersect a box, without false negatives. All coordinates are doubled to avoid
+/// halving for midpoints.
 class SegmentProbe {
 public:
     SegmentProbe(const Vector3d& from, const Vector3d& to) {
@@ -96,7 +96,7 @@ public:
         }
     }
 
-    /// No plane parts the two: neither across an axis, nor along the segment and an axis.
+    /// Separating-axis test: no separating plane perpendicular to an axis, or parallel to the segment and an axis.
     [[nodiscard]] bool may_meet(const Eigen::Array4f& low, const Eigen::Array4f& high) const {
         double away[3], size[3];
         for (Eigen::Index k = 0; k < 3; ++k) {
@@ -132,10 +132,10 @@ FaceTree::FaceTree(const Mesh& mesh) : mesh_(mesh), middle_(CGAL::ORIGIN) {
 }
 
 void FaceTree::build(const FaceOrder& order) {
-    // The upper nodes and the trees below them, in the order of all nodes; first the trees are counted, then made, side by side.
+    // The upper nodes and the subtrees below them, in node order. First the subtrees are counted, then built in parallel.
     struct Piece {
         std::uint32_t begin, end;
-        std::uint32_t second;  ///< the piece that is an upper node's second child; 0 for trees
+        std::uint32_t second;  ///< the piece of an upper node's second child; 0 for subtrees
         std::uint32_t node = 0;
     };
     std::vector<Piece> pieces;
@@ -177,7 +177,7 @@ void FaceTree::build(const FaceOrder& order) {
     }
 }
 
-/// Makes the nodes of a tree from `node` on; returns the first number that is free after them.
+/// Builds the subtree whose root is `node`; returns the first unused node number after it.
 std::uint32_t FaceTree::build(const FaceOrder& order, std::uint32_t begin, std::uint32_t end, std::uint32_t node) {
     if (end - begin <= leaf_size) {
         fill(order, begin, end, nodes_[node]);
@@ -249,7 +249,7 @@ void FaceTree::join(std::uint32_t number) {
     node.sine = static_cast<float>(opening.sine);
 }
 
-/// A search for the nearest face under way.
+/// State of a nearest-face search.
 struct FaceTree::Search {
     const FaceTree& tree;
     const Point& query;
@@ -258,9 +258,9 @@ struct FaceTree::Search {
     double bound;  ///< squared distance
     std::optional<SurfaceHit> best;
 
-    Place from, direction;  ///< of the query, in single precision; the direction is as long as the normal
-    float margin;           ///< by which boxes may seem too far away
-    float limit;            ///< not less than the bound, in the unit of boxes
+    Place from, direction;  ///< the query in single precision; `direction` is as long as the normal
+    float margin;           ///< tolerance by which boxes may appear too far away
+    float limit;            ///< upper bound of `bound`, in the unit of the boxes
     float turn_cosine, turn_sine, length;
 
     Search(const FaceTree& faces, const Point& from_point, const Vector& along, double least_cosine, double search_radius)
@@ -268,7 +268,7 @@ struct FaceTree::Search {
         const Vector3d at = tree.place(query);
         from = floats(at, 0);
         direction = floats(eigen(normal), 0);
-        // Boxes have room for the rounding of places among them; farther away it grows.
+        // The boxes include the rounding errors of points within them; for points farther away, the errors grow.
         margin = static_cast<float>(2e-7 * std::max(0.0, at.cwiseAbs().maxCoeff() - 1));
         turn_cosine = static_cast<float>(std::clamp(min_cosine, -1.0, 1.0));
         turn_sine = std::sqrt(1 - turn_cosine * turn_cosine);
@@ -283,11 +283,12 @@ struct FaceTree::Search {
     }
     [[nodiscard]] bool any_normal() const { return min_cosine <= -1; }
 
-    /// Squared, in the unit of boxes.
+    /// Squared distance, in the unit of the boxes.
     [[nodiscard]] float distance(const Node& node) const {
         return ((node.low - from).max(from - node.high) - margin).max(0).matrix().squaredNorm();
     }
-    /// No normal is within what is asked for if the cone's axis is farther off than that and half of its opening together.
+    /// True if no normal of the node can be compatible: the angle to the cone's axis exceeds the permitted angle plus half the
+    /// opening angle.
     [[nodiscard]] bool is_turned_away(const Node& node) const {
         constexpr auto uncertain = static_cast<float>(rounding);
         return !any_normal() && node.cone[3] > -turn_cosine + uncertain &&
@@ -350,7 +351,7 @@ std::optional<SurfaceHit> FaceTree::closest(const Point& query, const Vector& no
     return search.best;
 }
 
-/// Calls `visit(face)` for each face that the segment meets until it says false.
+/// Calls `visit(face)` for each face that the segment intersects until it returns false.
 template <class Visit>
 void FaceTree::along(const Point& from, const Point& to, const Visit& visit) const {
     if (size_ == 0) return;

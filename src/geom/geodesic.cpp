@@ -21,7 +21,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
-/// The faces that hold a node, which is one of this mesh.
+/// The faces that contain a node; checks that the node belongs to the mesh.
 std::vector<Face> faces_at(const Mesh& mesh, const SurfaceNode& node) {
     const auto [what, count] = node.kind == SurfaceNode::Kind::face   ? std::pair("face", mesh.number_of_faces())
                                : node.kind == SurfaceNode::Kind::edge ? std::pair("edge", mesh.number_of_edges())
@@ -32,7 +32,7 @@ std::vector<Face> faces_at(const Mesh& mesh, const SurfaceNode& node) {
     return faces_of(mesh, node);
 }
 
-/// The vertices from which edge paths start, with the straight way to each.
+/// The start vertices of edge paths, with the straight distance to each.
 std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfaceNode& node, const std::vector<Face>& faces) {
     if (node.kind == SurfaceNode::Kind::vertex) return {{Vertex(node.element), 0.0}};
     std::vector<std::pair<Vertex, double>> list;
@@ -41,7 +41,7 @@ std::vector<std::pair<Vertex, double>> gates(const Mesh& mesh, const SurfaceNode
     return list;
 }
 
-/// The node by a face of the patch and its barycentric coordinates there, beginning with the last corner as CGAL does.
+/// The face of the patch and the node's barycentric coordinates in it, in CGAL's order, which begins with the last corner.
 std::pair<Face, PathTraits::Barycentric_coordinates> place_in(const Mesh& mesh, const SurfacePatch& patch,
                                                               const SurfaceNode& node, Face face) {
     const auto place = std::lower_bound(patch.faces.begin(), patch.faces.end(), static_cast<Index>(face)) - patch.faces.begin();
@@ -64,8 +64,9 @@ double distance_to_face(const Mesh& mesh, Face face, const Point& p) {
     return distance(point_at(mesh, face, weights), p);
 }
 
-/// search(patch) with the patch, which it may not outlive. What a search over a large patch has taken is given back slowly: it is
-/// apart, so that nobody waits for that who is cancelled. So it must own all that it works on beside the patch.
+/// Calls search(patch); the result must not refer to the patch after its lifetime. A search on a large patch also takes long to
+/// free its memory, so it runs apart and a cancelled caller need not wait for it. Therefore it must own all other data that it
+/// uses.
 template <class Search>
 auto searched(SurfacePatch patch, Search search) {
     using Job = std::pair<SurfacePatch, decltype(search(patch))>;
@@ -161,9 +162,9 @@ double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const Surfac
     double shortest = infinite;
     for (const auto& [v, way] : gates(mesh, to, end)) shortest = std::min(shortest, lengths[v] + way);
     if (!std::isfinite(shortest)) return infinite;
-    // A curve of that length stays in the ellipsoid around both places.
+    // A curve of that length lies in the ellipsoid with both places as foci.
     const double sum = shortest * (1 + 1e-9);
-    const auto met = [&](Face face) {  // a face whose distances are no numbers is kept
+    const auto met = [&](Face face) {  // also keeps a face whose distances are NaN
         return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
     };
     SurfacePatch whole = cut_out(mesh, grow_faces(mesh, start, met), from.point);
@@ -179,7 +180,7 @@ double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const Surfac
 
 namespace {
 
-/// What a path of a patch runs through: vertices, and halfedges at a share of their length.
+/// Vertices and halfedges (with the fraction of their length) that a path on a patch traverses.
 struct PathSteps {
     struct Step {
         Vertex vertex;
@@ -191,10 +192,10 @@ struct PathSteps {
 
     void operator()(Mesh::Vertex_index v) { steps.push_back({v, Mesh::null_halfedge(), 0}); }
     void operator()(Mesh::Halfedge_index h, Kernel::FT along) { steps.push_back({Mesh::null_vertex(), h, along}); }
-    void operator()(Mesh::Face_index, PathTraits::Barycentric_coordinates) {}  // one of the ends, which is known
+    void operator()(Mesh::Face_index, PathTraits::Barycentric_coordinates) {}  // one of the ends, which are known
 };
 
-/// The places that a path of a patch runs through, on the whole mesh.
+/// Converts a path on a patch to places on the whole mesh.
 struct PathPlaces {
     const Mesh& mesh;
     const SurfacePatch& patch;
@@ -237,7 +238,7 @@ std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& 
         return !(distance_to_face(mesh, face, from.point) + distance_to_face(mesh, face, to.point) > sum);
     };
     SurfacePatch whole = cut_out(mesh, grow_faces(mesh, start, met), from.point);
-    // From the end on, so that the sequence runs from the start.
+    // Searched from the end, so that the sequence begins at the start.
     const auto source = place_in(mesh, whole, to, end.front()), target = place_in(mesh, whole, from, start.front());
     const auto [patch, path] = searched(std::move(whole), [source, target](const SurfacePatch& own) {
         ExactSearch search(own.mesh);
@@ -273,7 +274,7 @@ std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& 
             return curve;
         }
     }
-    // Along edges: from a corner of the first place's face to one of the last's.
+    // Edge path from a corner of the first place's face to a corner of the last place's face.
     const auto nearest = [&](const SurfaceNode& node, const std::vector<Face>& faces) {
         if (node.kind == SurfaceNode::Kind::vertex) return Vertex(node.element);
         const auto corner = corners(mesh, faces.front());

@@ -45,7 +45,7 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
         std::vector<Index>& path = result.paths.emplace_back();
         for (const Index v : cutter.path(c)) {
             if (!path.empty() && !find_halfedge(result.mesh, Vertex(path.back()), Vertex(v)).is_valid()) {
-                // Rounding kept this piece out of its face: along the edges beside it.
+                // Because of rounding, this piece is not an edge: it follows nearby edges instead.
                 if (!search) search.emplace(result.mesh);
                 const std::vector<Index> way = search->find(Vertex(path.back()), Vertex(v), {});
                 if (way.size() > 2) path.insert(path.end(), way.begin() + 1, way.end() - 1);
@@ -58,9 +58,8 @@ InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& 
 
 namespace {
 
-/// Area to the left of the directed pieces, as a share of a face's area; negative if no piece bounds anything in it.
-/// `whole_edges` gets, for each old edge that no curve meets, whether the face beyond it lies to the left (1) or to the right
-/// (0).
+/// Fraction of the area of a face to the left of the directed pieces; negative if no piece is a boundary in it. `whole_edges`
+/// receives, for each old edge without a curve, whether the adjacent face lies to the left (1) or to the right (0).
 double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 3>>& triangles,
                   const std::map<std::pair<Index, Index>, int>& net, const std::array<Vertex, 3>& old_corners,
                   std::vector<std::tuple<Index, Index, double>>& whole_edges) {
@@ -98,7 +97,7 @@ double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 
         const Index a = old_corners[k], b = old_corners[(k + 1) % 3];
         const auto found = owner.find({a, b});
         if (found == owner.end() || side[found->second] == unknown) continue;
-        const bool turned = weight(a, b) != 0;  // the outline runs along the edge: the other side lies beyond it
+        const bool turned = weight(a, b) != 0;  // the outline follows the edge: the adjacent face lies on the other side
         whole_edges.emplace_back(a, b, (side[found->second] == left) != turned ? 1.0 : 0.0);
     }
     double sum = 0, inside = 0;
@@ -116,7 +115,7 @@ double left_share(const FaceCutter& cutter, const std::vector<std::array<Index, 
 
 std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings) {
     FaceCutter cutter(mesh, curves);
-    // Pieces per face, as directed pairs of vertices; a piece and its reverse cancel.
+    // Pieces per face as directed pairs of vertices; a piece and its reverse cancel.
     std::map<Index, std::map<std::pair<Index, Index>, int>> pieces;
     for (std::size_t c = 0; c < curves.size(); ++c)
         for (std::size_t i = 0; i < curves[c].faces.size(); ++i) {
@@ -129,7 +128,7 @@ std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::v
         const double share = left_share(cutter, cutter.cut(face), net, corners(mesh, Face(face)), whole_edges);
         if (share >= 0) share_of[face] = share;
     }
-    // Rings of faces that no curve runs through: each lies on the side of the one it was reached from.
+    // Rings of faces without curves: each face lies on the side of the face from which it was reached.
     std::vector<std::pair<Index, double>> ring;
     const auto reach = [&](Halfedge h, double share) {
         if (mesh.is_border(mesh.opposite(h))) return;

@@ -28,7 +28,7 @@ std::vector<Face> largest_part(const Mesh& mesh) {
     return largest;
 }
 
-/// Stiffness and mass of a part of unit area, with its vertices counted anew.
+/// Stiffness and mass matrix of a component scaled to unit area, with its own vertex numbers.
 struct System {
     Eigen::SparseMatrix<double> stiffness;
     Eigen::VectorXd mass;
@@ -63,7 +63,7 @@ System system_of(const Mesh& mesh, const std::vector<Face>& part) {
     const auto n = static_cast<Eigen::Index>(mass.size());
     system.stiffness.resize(n, n);
     system.stiffness.setFromTriplets(entries.begin(), entries.end());
-    // Vertices without area (of degenerate faces alone) take part with next to none.
+    // Vertices without area (of degenerate faces only) get a very small mass.
     constexpr double least = 1e-9;
     system.mass.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) system.mass[i] = std::max(mass[static_cast<std::size_t>(i)] / area, least);
@@ -79,13 +79,14 @@ std::vector<double> laplace_spectrum(const Mesh& mesh, int count) {
     const System system = system_of(mesh, part);
     const Eigen::Index n = system.mass.size(), wanted = count + 1;
     if (n < 4 * wanted) return {};
-    // Shifted by one, which is below what a surface of unit area has: the constant is no longer in the null space.
+    // Shifted by one, which is below the eigenvalues of a surface of unit area, so that the constant is no longer in the null
+    // space.
     Eigen::SparseMatrix<double> shifted = system.stiffness;
     for (Eigen::Index i = 0; i < n; ++i) shifted.coeffRef(i, i) += system.mass[i];
     const SparseLdlt solver(shifted);
     if (!solver.found()) return {};
-    // Errors of the eigenvalues fall by the square of the ratio of the last one wanted to the first one not in the subspace,
-    // which is near a half (Weyl).
+    // Per iteration, the errors of the eigenvalues decrease by the square of the ratio of the last requested eigenvalue to the
+    // first one outside the subspace, which is near 1/2 (Weyl).
     constexpr int rounds = 20;
     Eigen::MatrixXd x(n, 2 * wanted);
     std::mt19937_64 random(1);

@@ -1,4 +1,4 @@
-// Total least squares by the covariance.
+// Total least squares line from the eigenvectors of the covariance.
 #include "ostraka/geom/line.h"
 #include "ostraka/core/dense.h"
 

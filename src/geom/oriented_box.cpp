@@ -1,4 +1,4 @@
-// The oriented box: directions tried on a few hundred extreme points, then measured on all.
+// Oriented bounding box: directions are tested on a few hundred extreme points; the result is measured on all points.
 #include "ostraka/geom/oriented_box.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 
 Vector3d vector(const Array3& p) { return {p[0], p[1], p[2]}; }
 
-/// Evenly spread directions of a half-sphere (Fibonacci lattice).
+/// Evenly distributed directions on a hemisphere (Fibonacci lattice).
 std::vector<Vector3d> directions(int count) {
     std::vector<Vector3d> list;
     for (int i = 0; i < count; ++i) {
@@ -35,7 +35,7 @@ std::vector<Vector3d> directions(int count) {
     return list;
 }
 
-/// The points farthest along each direction and against it.
+/// The extreme points in each direction and in its opposite.
 std::vector<Vector3d> extreme_points(const std::vector<Array3>& points, const std::vector<Vector3d>& along) {
     std::vector<Index> extreme(2 * along.size(), 0);
     parallel_for(
@@ -62,7 +62,7 @@ struct Candidate {
     Vector3d normal = Vector3d::UnitZ(), side = Vector3d::UnitX();
 };
 
-/// The smallest box with a face across `normal`.
+/// The smallest box with a face perpendicular to `normal`.
 Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points) {
     const Vector3d u = normal.unitOrthogonal(), w = normal.cross(u);
     std::vector<Vector2d> flat;
@@ -78,12 +78,12 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
     });
     Candidate best;
     best.normal = normal;
-    // Flat objects have boxes of no volume: a trace of the sides' sum distinguishes them.
+    // Flat objects have boxes without volume; a small multiple of the cubed sum of the sides ranks them.
     const auto cost_of = [&](const Extent& e) {
         const double thickness = high - low, x = e.x1 - e.x0, y = e.y1 - e.y0, sum = thickness + x + y;
         return thickness * x * y + 1e-9 * sum * sum * sum;
     };
-    // A side of the smallest rectangle lies on a side of the hull.
+    // One side of the smallest rectangle lies on a side of the hull.
     const auto search = [&](const auto& extent_of) {
         Vector2d along = Vector2d::UnitX();
         for (std::size_t i = 0; i < hull.size(); ++i) {
@@ -101,7 +101,7 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
     };
     Calipers calipers(hull);
     const Vector2d along = search([&](std::size_t i, const Vector2d& a) { return calipers.along(i, a); });
-    // Sides of no length to speak of point anywhere, and the calipers lose their way: then all corners are looked at.
+    // Very short sides have arbitrary directions, with which the calipers may fail; then all corners are tested.
     if (const double true_cost = cost_of(extent_along(along, hull)); std::abs(true_cost - best.volume) > 1e-9 * true_cost) {
         best.volume = std::numeric_limits<double>::infinity();
         search([&](std::size_t, const Vector2d& a) { return extent_along(a, hull); });
@@ -109,8 +109,8 @@ Candidate box_across(const Vector3d& normal, const std::vector<Vector3d>& points
     return best;
 }
 
-/// Goes downhill in the normal by steps that halve down to `finest`; the smallest rectangle across it is found exactly each time.
-/// Where that ends, either other axis may serve as the normal and lead on.
+/// Pattern search for the normal, with step sizes halved down to `finest`; the smallest perpendicular rectangle is exact for
+/// each normal. When it ends, the other two axes are tried as normals.
 Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coarsest, double finest) {
     for (int round = 0; round < 4; ++round) {
         int moves = 0;
@@ -123,7 +123,8 @@ Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coa
                     box_across((best.normal + step * (std::cos(turn) * u + std::sin(turn) * w)).normalized(), points);
                 if (next.volume < better.volume) better = next;
             }
-            // A gain must be worth the step and may not be had for ever, or things that are round are walked round.
+            // A gain must be proportional to the step, and the number of moves per step size is limited: otherwise the search
+            // circles around round objects.
             if (better.volume < best.volume * (1 - 1e-3 * step) && ++moves <= 16) {
                 best = better;
             } else {
@@ -140,14 +141,14 @@ Candidate refine(Candidate best, const std::vector<Vector3d>& points, double coa
     return best;
 }
 
-/// Refines all, the smallest first in what is returned.
+/// Refines all candidates and sorts them by volume.
 void refine_all(std::vector<Candidate>& candidates, const std::vector<Vector3d>& points, double coarsest, double finest) {
     parallel_for(
         candidates.size(), [&](std::size_t i) { candidates[i] = refine(candidates[i], points, coarsest, finest); }, 1);
     std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
 }
 
-/// Directions in narrow cones around the sides of a box.
+/// Directions in narrow cones around the axes of a box.
 std::vector<Vector3d> directions_around(const Candidate& box) {
     std::vector<Vector3d> list;
     const std::array<Vector3d, 3> axes{box.side, box.normal.cross(box.side), box.normal};
@@ -169,7 +170,7 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
     box.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     if (points.empty()) return box;
     std::vector<Vector3d> extreme = extreme_points(points, directions(points.size() > 50000 ? 128 : 512));
-    // Directions do not depend on place and scale; numbers near one keep products in range.
+    // Directions do not depend on position and scale; coordinates near one keep products in range.
     const Vector3d origin = extreme.front();
     double extent = 0;
     for (const auto& p : extreme) extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());
@@ -192,7 +193,7 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
     parallel_for(
         tried.size(), [&](std::size_t i) { all[i] = box_across(tried[i], extreme); }, 16);
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
-    // The best of each neighbourhood: valleys differ.
+    // The best candidate of each neighbourhood, since their local minima differ.
     std::vector<Candidate> candidates;
     for (const Candidate& next : all) {
         if (candidates.size() == 48) break;
@@ -202,7 +203,7 @@ OrientedBox oriented_box(const std::vector<Array3>& points) {
     }
     refine_all(candidates, extreme, 0.05, 4e-3);
     candidates.resize(std::min<std::size_t>(candidates.size(), 6));
-    // What touches boxes of these directions was perhaps not among the points so far.
+    // The extreme points in the directions of these boxes may be missing so far.
     std::vector<Vector3d> around;
     for (const Candidate& candidate : candidates) {
         const std::vector<Vector3d> list = directions_around(candidate);

@@ -1,4 +1,4 @@
-// The smallest rectangle around a convex polygon.
+// Minimum-area rectangle around a convex polygon.
 #include "ostraka/geom/planar.h"
 
 #include "calipers.h"
@@ -60,7 +60,7 @@ PlaneRectangle smallest_rectangle(const std::vector<Vector2d>& hull) {
     };
     Calipers calipers(corners);
     choose([&](std::size_t i, const Vector2d& side) { return calipers.along(i, side); });
-    // Sides of no length to speak of point anywhere, and the calipers may lose their way: then all corners are looked at.
+    // Very short sides have arbitrary directions, with which the calipers may fail; then all corners are tested.
     if (const auto check = rectangle(best.along, extent_along(best.along, corners));
         !(std::abs(check.area() - best.area()) <= 1e-12 * check.area()))
         choose([&](std::size_t, const Vector2d& side) { return extent_along(side, corners); });

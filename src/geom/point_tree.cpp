@@ -7,14 +7,14 @@
 
 namespace ostraka {
 
-/// Points in the order of a balanced k-d tree: the median of a range splits it along its box's longest side. Ranges are numbered
+/// Points in the order of a balanced k-d tree: the median splits a range along the longest side of its box. Ranges are numbered
 /// as in a heap: the halves of range r are 2 r and 2 r + 1.
 struct PointTree::Tree {
     static constexpr std::size_t leaf = 12;
     using Place = std::array<double, 3>;
     struct Box {
         Place low, high;
-        /// Squared distance from the nearest place of the box, rounded as distances are: no point of the box is nearer.
+        /// Squared distance from the nearest point of the box, rounded like distances, so that no point in the box is nearer.
         [[nodiscard]] double nearest(const Place& place) const {
             Place gap;
             for (std::size_t k = 0; k < 3; ++k) gap[k] = std::max({low[k] - place[k], place[k] - high[k], 0.0});
@@ -28,11 +28,11 @@ struct PointTree::Tree {
     };
     std::vector<Place> places;  ///< in the order of the tree
     std::vector<Index> order;
-    std::vector<Box> boxes;     ///< of the ranges, from 1
-    std::vector<Index> lowest;  ///< index in each range
+    std::vector<Box> boxes;     ///< by range, from 1
+    std::vector<Index> lowest;  ///< lowest point index in each range
 
-    /// What still counts: points nearer than this, and those as near of a lower index. So heaps of points at one place are not
-    /// looked through for each of them.
+    /// Search limit: points that are nearer, or equally near with a lower index, are accepted. Thereby large sets of coincident
+    /// points are not searched completely.
     struct Limit {
         double squared = std::numeric_limits<double>::infinity();
         Index index = no_index;
@@ -68,7 +68,7 @@ struct PointTree::Tree {
         build(given, 2 * range + 1, middle, end);
     }
 
-    /// Calls visit(index, squared distance, limit) for points within the limit, which visit may lower.
+    /// Calls visit(index, squared distance, limit) for points within the limit; `visit` may lower the limit.
     template <class Visit>
     void walk(const Point& from, Limit limit, Visit&& visit) const {
         const Place place = place_of(from);
@@ -89,7 +89,7 @@ struct PointTree::Tree {
         into(into, 1, 0, order.size());
     }
 
-    /// Raises `maximum` to the greatest squared distance of a range.
+    /// Raises `maximum` to the largest squared distance in a range.
     void walk_far(const Place& place, double& maximum, std::size_t range, std::size_t begin, std::size_t end) const {
         if (end - begin <= leaf) {
             for (std::size_t i = begin; i < end; ++i) maximum = std::max(maximum, squared_distance(i, place));
@@ -134,7 +134,7 @@ std::vector<PointTree::Near> PointTree::neighbours(const Point& place, std::size
     const auto before = [](const Near& a, const Near& b) {
         return std::pair(a.squared, a.index) < std::pair(b.squared, b.index);
     };
-    std::vector<Near> nearest;  // a heap, the farthest in front
+    std::vector<Near> nearest;  // a heap with the farthest point in front
     if (count == 0) return nearest;
     tree_->walk(place, {}, [&](Index i, double squared, Tree::Limit& limit) {
         nearest.push_back({i, squared});

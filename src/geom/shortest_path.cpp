@@ -58,7 +58,7 @@ std::vector<Index> PathSearch::find(Vertex from, Vertex to, const Query& query) 
     if (from == to) return {static_cast<Index>(from)};
     if (mesh_.is_isolated(to)) return {};
     const std::vector<Point> guide = query.guide.empty() ? std::vector<Point>{mesh_.point(from), mesh_.point(to)} : query.guide;
-    // Straight-line distance bounds the Euclidean part of the remaining cost from below: A* where it applies.
+    // A* if the cost includes lengths: the straight-line distance is a lower bound of the remaining Euclidean cost.
     const Point goal = mesh_.point(to);
     const bool has_length = query.metric != PathMetric::segment;
     const auto bound = [&](Vertex v) { return has_length ? std::sqrt(CGAL::squared_distance(mesh_.point(v), goal)) : 0.0; };

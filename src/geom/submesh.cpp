@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-/// The faces of the largest piece.
+/// The faces of the piece with the largest area.
 std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<bool>& keep) {
     std::vector<Index> best;
     double maximum = -1;

@@ -17,7 +17,7 @@ std::vector<Index> grow_faces(const Mesh& mesh, const std::vector<Face>& start, 
     };
     for (const Face face : start) meet(face);
     CancelCheck check;
-    std::size_t next = 0;  // the list grows while it is worked off
+    std::size_t next = 0;  // the list grows while it is processed
     while (next < faces.size()) {
         check();
         for (const Vertex v : corners(mesh, Face(faces[next++])))
@@ -41,7 +41,7 @@ SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& or
     std::vector<bool> selected(mesh.number_of_faces(), false);
     for (const Index face : patch.faces) selected[face] = true;
     const auto inside = [&](Halfedge h) { return !mesh.is_border(h) && selected[mesh.face(h)]; };
-    // One vertex for each fan: the corner at the target of a halfedge, followed around the vertex both ways.
+    // One vertex per fan: the corner at the target of a halfedge is propagated around the vertex in both directions.
     std::vector<Index> corner(mesh.number_of_halfedges(), no_index);
     for (const Index face : patch.faces)
         for (const Halfedge first : mesh.halfedges_around_face(mesh.halfedge(Face(face)))) {

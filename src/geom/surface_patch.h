@@ -1,4 +1,4 @@
-// Parts of a mesh cut out for work that is too costly on all of it.
+// Parts of a mesh cut out for algorithms that are too expensive on the whole mesh.
 #pragma once
 
 #include "ostraka/geom/point_tree.h"
@@ -9,16 +9,16 @@
 
 namespace ostraka {
 
-/// The faces that `inside` accepts and that are joined with those of `start` over vertices of accepted faces, ascending.
+/// The faces accepted by `inside` that are connected with faces of `start` through vertices of accepted faces, ascending.
 std::vector<Index> grow_faces(const Mesh& mesh, const std::vector<Face>& start, const std::function<bool(Face)>& inside);
 
-/// Whether a face may hold a point within `limit` of one of the points: never wrongly no.
+/// Conservative test whether a face may contain a point within `limit` of one of the points; false negatives do not occur.
 bool may_hold_near(const Mesh& mesh, Face face, const PointTree& points, double limit);
 
-/// Some faces of a mesh as a mesh of its own, moved to `origin` and scaled by a power of two so that it measures about one.
-/// A vertex at which the faces form several fans is there once for each.
+/// A subset of the faces as a separate mesh, translated by `origin` and scaled by a power of two to a size of about one. A
+/// vertex at which the faces form several fans is duplicated for each fan.
 struct SurfacePatch : SubMesh {
-    double scale = 1;  ///< length in the whole mesh = scale times length in the patch
+    double scale = 1;  ///< length in the whole mesh = scale * length in the patch
 };
 SurfacePatch cut_out(const Mesh& mesh, std::vector<Index> faces, const Point& origin);
 

@@ -46,7 +46,7 @@ std::vector<SurfaceHit> SurfaceSearch::line_hits(const Point& origin, const Vect
         const double along = n * direction;
         SurfaceHit hit;
         hit.face = f;
-        // A line within the triangle's plane meets it in a segment: its point nearest to the origin stands for it.
+        // A line in the plane of the triangle intersects it in a segment, represented by its point nearest to the origin.
         Point p = origin;
         if (along * along > 1e-24 * n.squared_length()) {
             const double t = (n * (pa - origin)) / along;
@@ -108,7 +108,7 @@ std::array<double, 3> nearest_barycentric(const Point& a, const Point& b, const 
 }
 
 bool SurfaceSearch::inside(const Point& query) const {
-    // Two lines, each seen from the query both ways, in directions that no mesh is likely to be aligned with.
+    // Two lines, both followed in both directions from the query, in directions with which a mesh is unlikely to be aligned.
     const Vector lines[] = {Vector(0.36, 0.48, 0.8), Vector(-0.48, 0.64, 0.6)};
     const double far = 2 * diagonal() + std::sqrt(CGAL::squared_distance(query, mesh().point(Vertex(0))));
     int odd = 0;

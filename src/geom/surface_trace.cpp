@@ -30,7 +30,7 @@ SurfaceNode edge_node(const Mesh& mesh, Halfedge h, double along, double snap) {
 
 bool same(const SurfaceNode& a, const SurfaceNode& b) { return a.kind == b.kind && a.element == b.element && a.point == b.point; }
 
-/// A way out of a face: a node on its border that `from` does not share an edge with.
+/// An exit from a face: a node on its boundary that has no common edge with `from`.
 struct Exit {
     SurfaceNode node;
     double progress;
@@ -235,7 +235,7 @@ std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfaceNode& from
         if (travelled > limit) return std::nullopt;
         curve.faces.push_back(best_face);
         curve.nodes.push_back(best->node);
-        // From an edge there is one way on; from a vertex the faces of the last piece are not entered again.
+        // Through an edge, the trace continues in the opposite face; at a vertex, all faces around it are candidates.
         came_from = best_face;
         if (best->node.kind == SurfaceNode::Kind::vertex) came_from = Mesh::null_face();
     }

@@ -22,7 +22,7 @@ const std::vector<std::string>& column_names() {
     return names;
 }
 
-/// Face and two of the three weights would do, but all three read back to the bit.
+/// Face index and all three weights, so that they are restored exactly.
 std::string in_cell(const std::vector<Location>& locations) {
     std::string text;
     for (const Location& location : locations)
@@ -119,7 +119,7 @@ private:
         return static_cast<Index>(value);
     }
 
-    /// Pins picked again: indices separated by blanks, pickings by '|'.
+    /// Repeated pickings: indices separated by blanks, pickings by '|'.
     [[nodiscard]] std::vector<std::vector<Index>> pickings() const {
         std::vector<std::vector<Index>> list;
         const std::string text = cell("repeats");
@@ -132,7 +132,7 @@ private:
         return list;
     }
 
-    /// Tag, type and colour, which stand on each row of an annotation; they must agree.
+    /// Tag, type and colour, which are repeated in each row of an annotation and must agree.
     void head(Annotation& annotation, bool first) const {
         if (has("type") && !cell("type").empty() && cell("type") != to_string(annotation.type))
             fail("type", "annotation " + to_string(annotation.id) + " is a " + to_string(annotation.type),

@@ -12,7 +12,7 @@ namespace {
 using namespace interchange;
 using Kind = Difference::Kind;
 
-/// The elements of a selection as sortable numbers: vertices, edges (both ends, lower first) or faces.
+/// The elements of a selection as sortable integers: vertices, edges (both ends, lower first) or faces.
 std::vector<std::uint64_t> elements(const Annotation& annotation) {
     std::vector<std::uint64_t> list(annotation.points.begin(), annotation.points.end());
     list.insert(list.end(), annotation.faces.begin(), annotation.faces.end());
@@ -31,7 +31,7 @@ std::size_t count_only_in(const std::vector<std::uint64_t>& a, const std::vector
     return rest.size();
 }
 
-/// The ids of `list` that `other` has as well, in the order of `list`.
+/// The ids of `list` that are also in `other`, in the order of `list`.
 std::vector<int> common(const std::vector<int>& list, std::vector<int> other) {
     std::sort(other.begin(), other.end());
     std::vector<int> result;

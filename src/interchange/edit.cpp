@@ -33,7 +33,7 @@ EntryName name_of(const JsonValue& value) {
     return name;
 }
 
-/// The faces of a region in sets that hang together over edges, in the order of their smallest face.
+/// The edge-connected patches of a region, in the order of their smallest face.
 std::vector<std::vector<Index>> patches(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<bool> selected = face_flags(mesh, faces);
     std::vector<bool> seen(selected.size(), false);
@@ -57,7 +57,7 @@ int free_attribute_id(const Annotation& annotation) {
     return id;
 }
 
-/// A unit made of one of length ("mm^2", "1/mm") in terms of another.
+/// A unit derived from a unit of length ("mm^2", "1/mm"), converted from `old` to `fresh`.
 std::string unit_after(const std::string& unit, const std::string& old, const std::string& fresh) {
     if (old.empty() || fresh.empty()) return unit == old ? fresh : unit;
     for (const std::string before : {"", "1/"})
@@ -175,7 +175,7 @@ private:
         put(annotation, attribute);
     }
 
-    /// What was measured on the selection.
+    /// Recomputes the values measured on the selection.
     void refresh(Annotation& annotation) {
         AnnotationSet alone;
         alone.unit = set_.unit;
@@ -217,7 +217,7 @@ private:
         set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(from));
     }
 
-    /// On the mesh cut along the curves of both.
+    /// Joins two annotations on the mesh cut along the curves of both.
     void join_curves(Annotation& annotation, const Annotation& other) const {
         AnnotationSet both;
         both.annotations = {annotation, other};

@@ -10,9 +10,9 @@
 namespace ostraka::interchange {
 
 namespace {
-/// What the features of a corner come to, and what it costs to look at it once more.
+/// Charged for the features of a corner, including the cost of visiting it again.
 constexpr double bytes_of_corner = 4;
-/// A text without letters, in a list.
+/// Memory of an empty text in a list.
 constexpr double bytes_of_text = sizeof(std::string);
 }  // namespace
 
@@ -193,7 +193,7 @@ std::vector<std::string> FeatureFile::texts(const JsonValue& properties, const c
     return list;
 }
 
-/// Which feature selects what, within one primitive.
+/// Collects the elements selected by each feature in one primitive.
 void FeatureFile::collect(const Primitive& primitive, std::size_t number) {
     for (std::size_t s = 0; s < primitive.features.size(); ++s) {
         const auto& set = primitive.features[s];

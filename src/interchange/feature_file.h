@@ -1,4 +1,4 @@
-// The features that a GLB file holds: what they select in its own primitives, and the rows of their table.
+// Features in a GLB file: the elements of its primitives that they select, and the rows of their table.
 #pragma once
 
 #include "ostraka/io/glb.h"
@@ -11,7 +11,7 @@ namespace ostraka::interchange {
 
 inline constexpr std::size_t absent = static_cast<std::size_t>(-1);
 
-/// What the file says of one feature, and what it selects.
+/// The elements that one feature selects.
 struct Feature {
     std::optional<std::vector<std::uint32_t>> faces;  ///< triangles, counted over all primitives
     std::vector<std::vector<std::size_t>> polylines;  ///< corners of the line primitive
@@ -19,12 +19,12 @@ struct Feature {
     std::size_t line_primitive = absent, point_primitive = absent;
 };
 
-/// Primitives that name the same accessors share what those hold.
+/// Primitives that refer to the same accessors share their values.
 struct Primitive {
-    glb::Reader::Values positions;              ///< three a vertex
-    glb::Reader::Values origins;                ///< _VERTEX, or none
-    glb::Reader::Values indices;                ///< or none: 0, 1, 2 ...
-    std::vector<glb::Reader::Values> features;  ///< by vertex
+    glb::Reader::Values positions;              ///< three per vertex
+    glb::Reader::Values origins;                ///< _VERTEX, or null
+    glb::Reader::Values indices;                ///< null: 0, 1, 2 ...
+    std::vector<glb::Reader::Values> features;  ///< per feature id set, one value per vertex
     std::vector<std::size_t> nulls;
     int mode = glb::triangles_mode;
 
@@ -36,7 +36,7 @@ struct Primitive {
     }
 };
 
-/// A file read and checked, whatever mesh it is for. The constructor throws Error (input) naming file and JSON pointer.
+/// A parsed and checked file, independent of the mesh. The constructor throws Error (input) with file and JSON pointer.
 class FeatureFile {
 public:
     FeatureFile(const std::string& bytes, const std::string& where);
@@ -45,12 +45,12 @@ public:
     std::vector<Primitive> primitives;
     std::map<std::size_t, Feature> features;  ///< by row of the table
     std::size_t rows = 0;
-    bool ours = false;  ///< the table is of our class: ids, kinds, colours, notes and attributes are there
+    bool ours = false;  ///< the table has our class: ids, kinds, colours, notes and attributes are available
     std::vector<std::string> tags, remarks, attributes;
     std::vector<int> ids, kinds, colours;
-    std::vector<std::string> notes;  ///< what was not read
+    std::vector<std::string> notes;  ///< messages about content that was not read
 
-    /// Our own words about the mesh, or nullptr.
+    /// Our data in the extras of the mesh, or nullptr.
     [[nodiscard]] const JsonValue* extras() const;
     [[nodiscard]] std::size_t triangles() const;
 

@@ -1,4 +1,4 @@
-// GLB with EXT_mesh_features and EXT_structural_metadata -> annotations on a mesh.
+// Conversion of GLB with EXT_mesh_features and EXT_structural_metadata to annotations on a mesh.
 #include "ostraka/interchange/feature_glb.h"
 
 #include "feature_file.h"
@@ -53,7 +53,7 @@ public:
 private:
     JsonAllocator& a() { return native_.GetAllocator(); }
 
-    /// The annotations as they were on the mesh that was cut for the file, if that is this one and the table is still theirs.
+    /// Adds the original annotations stored in the file if they belong to this mesh and still agree with the table.
     bool add_originals(const JsonValue* ours, JsonValue& list) {
         const JsonValue* original = ours == nullptr ? nullptr : find_member(*ours, "original");
         const JsonValue* made_of = original == nullptr ? nullptr : find_member(*original, "mesh");
@@ -80,12 +80,12 @@ private:
         return *placer_;
     }
 
-    /// The file's triangle nearest to each face's centroid; no_index where it is too far.
+    /// The triangle of the file nearest to each face's centroid; no_index if it is too far away.
     const std::vector<Index>& nearest_triangles() {
         if (!nearest_.empty()) return nearest_;
         require_memory(600.0 * static_cast<double>(file_.triangles()),
                        "to search the file's " + counted(file_.triangles(), "triangle"), "give a coarser one");
-        TriangleSoup soup;  // each triangle by itself, as split vertices need not make a manifold
+        TriangleSoup soup;  // separate triangles, since a mesh with duplicated vertices need not be manifold
         for (const Primitive& primitive : file_.primitives) {
             if (primitive.mode != glb::triangles_mode) continue;
             for (std::size_t c = 0; c < primitive.corners(); c += 3) {
@@ -114,7 +114,7 @@ private:
         return nearest_;
     }
 
-    /// Faces of the mesh to which this triangle of the file is the nearest.
+    /// Faces of the mesh whose nearest triangle in the file is this one.
     std::span<const Index> faces_at(std::size_t triangle) {
         if (faces_begin_.empty()) {
             const std::vector<Index>& nearest = nearest_triangles();
@@ -130,7 +130,7 @@ private:
         return std::span(faces_).subspan(faces_begin_[triangle], faces_begin_[triangle + 1] - faces_begin_[triangle]);
     }
 
-    /// The vertex of the mesh for a vertex of a primitive; no_index if it is too far and such are left out.
+    /// The vertex of the mesh for a vertex of a primitive; no_index if it is too far away and far points may be skipped.
     Index vertex_of(const Primitive& primitive, std::size_t vertex, PlacedAnnotation& placement) {
         ++placement.points;
         if (same_mesh_ && primitive.origins) {
@@ -153,7 +153,7 @@ private:
         return no_index;
     }
 
-    /// The vertices for corners of a primitive, without those that are too far.
+    /// The vertices for corners of a primitive, without those too far away.
     std::vector<Index> vertices_of(std::size_t primitive, const std::vector<std::size_t>& chosen, PlacedAnnotation& placement) {
         std::vector<Index> vertices;
         for (const std::size_t corner : chosen)
@@ -229,7 +229,7 @@ private:
         return true;
     }
 
-    /// Vertices of the file's mesh on this one; nothing if one of them is not in the file.
+    /// Maps vertices of the file's mesh to this mesh; nullopt if one of them is not in the file.
     std::optional<std::vector<Index>> found_again(const JsonValue* points) {
         if (points == nullptr || !points->IsArray()) return {};
         std::vector<Index> vertices;
@@ -241,7 +241,7 @@ private:
         return vertices;
     }
 
-    /// Pins are vertices of the file's mesh: found again by _VERTEX, otherwise the measure becomes a number.
+    /// Pins are vertices of the file's mesh: they are mapped by _VERTEX, otherwise the measure becomes a number.
     void without_pins(JsonValue& attributes) {
         if (!attributes.IsArray()) return;
         for (auto& attribute : attributes.GetArray()) {
@@ -286,7 +286,7 @@ private:
     bool same_mesh_ = false;
     std::vector<std::string> notes_;
     std::vector<Index> nearest_;
-    std::vector<Index> faces_begin_, faces_;  ///< faces of the mesh in the order of their nearest triangles
+    std::vector<Index> faces_begin_, faces_;  ///< faces of the mesh, ordered by their nearest triangle
     double to_surface_ = 0;
     std::map<Index, Point> positions_;
     std::set<int> used_;

@@ -1,4 +1,4 @@
-// Annotations -> GLB with EXT_mesh_features and EXT_structural_metadata.
+// Conversion of annotations to GLB with EXT_mesh_features and EXT_structural_metadata.
 #include "ostraka/core/dense.h"
 #include "ostraka/interchange/feature_glb.h"
 
@@ -32,19 +32,19 @@ using Eigen::Vector3d;
 using glb::append;
 
 constexpr std::size_t exact_in_float = std::size_t{1} << 24;
-constexpr std::size_t check_every = 1 << 16;  ///< elements between two looks at whether the work was cancelled
+constexpr std::size_t check_every = 1 << 16;  ///< number of elements between two checks for cancellation
 
-/// What a primitive's vertices are: places of the mesh with the feature of each set.
+/// Vertices of a primitive: mesh vertices with one feature per set.
 struct Corners {
     std::vector<Index> vertices;
     std::vector<std::array<int, 3>> colours;
-    std::vector<std::vector<Index>> features;  ///< one list a set
+    std::vector<std::vector<Index>> features;  ///< one list per set
     std::vector<std::uint32_t> indices;
 };
 
 class FeatureWriter {
 public:
-    /// `whole`: the annotations on the mesh that was cut, where the primitives cannot hold all of them; null otherwise.
+    /// `whole`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
     FeatureWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                   const Json& whole, std::vector<std::string>& notes)
         : mesh_(mesh),
@@ -99,7 +99,7 @@ private:
     JsonValue in_list(JsonValue value) { return json_list_of(std::move(value), a()); }
     [[nodiscard]] Index none() const { return static_cast<Index>(set_.annotations.size()); }
 
-    /// Smallest regions first, each in the first set in which it meets no other.
+    /// Smallest regions first, each in the first set in which it overlaps no other.
     std::vector<std::vector<Index>> layers() {
         std::vector<std::pair<double, Index>> regions;
         for (Index i = 0; i < none(); ++i) {
@@ -128,7 +128,7 @@ private:
         const std::vector<std::vector<Index>> sets = layers();
         Corners corners_;
         corners_.features.resize(sets.size());
-        // Faces with the same features share a vertex, others have copies of it.
+        // Faces with the same features share a vertex; others have copies of it.
         std::map<std::vector<Index>, Index> kinds;
         std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(mesh_.number_of_vertices());
         std::vector<Index> kind(sets.size());
@@ -169,7 +169,8 @@ private:
         return result;
     }
 
-    /// glTF's y points up and its unit is the metre: a node that shows the mesh so, above one that has its own coordinates.
+    /// In glTF, y points up and the unit is the metre: adds a parent node that transforms the mesh accordingly. Returns false
+    /// if it already complies.
     bool add_display_node(JsonValue& nodes) {
         const auto metres = converted(1, set_.unit, "m");
         Vector3d up = Vector3d::UnitY();
@@ -264,7 +265,7 @@ private:
         return result;
     }
 
-    // The property table: a column a property.
+    // The property table: one column per property.
     void column(const std::string& id, JsonValue described, JsonValue stored) {
         add_member(properties_, id, std::move(described), a());
         add_member(columns_, id, std::move(stored), a());
@@ -326,7 +327,7 @@ private:
         add_members(builder_.document(), a(), "extensions", json_object(a(), "EXT_structural_metadata", std::move(metadata)));
     }
 
-    /// For viewers: a column for each name under which annotations have a number or a text.
+    /// For viewers: a column for each attribute name with a number or a text.
     void add_attribute_columns() {
         constexpr double missing = std::numeric_limits<double>::lowest();
         std::map<std::string, std::vector<double>> numbers;

@@ -1,4 +1,4 @@
-// The fields that sets, annotations and attributes are compared by.
+// The fields by which sets, annotations and attributes are compared.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -9,7 +9,7 @@ bool same(const Attribute& a, const Attribute& b);
 bool same_geometry(const Annotation& a, const Annotation& b);
 bool same(const Annotation& a, const Annotation& b);
 
-/// In words, whole and on one line.
+/// Values as complete text on one line.
 std::string words(const std::string& text);
 std::string words(const std::array<int, 3>& colour);
 std::string words(const std::optional<std::array<double, 3>>& direction);

@@ -17,7 +17,7 @@ namespace ostraka {
 
 namespace {
 
-/// In the order of interchange_formats(); those of landmarks in that of LandmarkFormat.
+/// In the order of interchange_formats(); the landmark formats are in the order of LandmarkFormat.
 enum class Format { attributes_csv, landmarks_csv, tps, pp, mrk, fcsv, web, glb, ant, fct };
 
 Format format_named(const std::string& name) {
@@ -32,7 +32,7 @@ std::optional<LandmarkFormat> landmark_format(Format format) {
     return static_cast<LandmarkFormat>(static_cast<int>(format) - static_cast<int>(Format::landmarks_csv));
 }
 
-/// Adds what was read to a set; an id that is taken is replaced.
+/// Adds imported annotations to a set; an id that is in use is replaced.
 PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
     PlacedAnnotations result;
     result.placements = std::move(read.placements);

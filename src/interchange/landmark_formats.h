@@ -1,4 +1,4 @@
-// The readers and writers behind landmarks_from_text and landmarks_to_text, one pair a format.
+// The readers and writers behind landmarks_from_text and landmarks_to_text, one pair per format.
 #pragma once
 
 #include "ostraka/core/words.h"
@@ -20,12 +20,12 @@ std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& option
 std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_file, Notes& notes);
 std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& options, const Provenance& provenance);
 
-/// Turns a position of a file in `file_space` (none: that of the mesh) into the mesh's: x and y change their sign between LPS
+/// Converts a position from `file_space` (nullopt: that of the mesh) to the space of the mesh: x and y are negated between LPS
 /// and RAS.
 std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optional<AnatomicalSpace> file_space,
                                     AnatomicalSpace mesh_space);
 
-/// Throws Error (input) naming `at` if the place is beyond what can be computed with, as a mesh's would be.
+/// Throws Error (input), naming `at`, if the position exceeds the limit for mesh coordinates.
 void check_place(const std::array<double, 3>& position, const std::string& at);
 
 }  // namespace ostraka::interchange

@@ -1,4 +1,4 @@
-// Landmarks as lines of text: CSV, tps, fcsv.
+// Landmarks in line-based formats: CSV, tps, fcsv.
 #include "landmark_formats.h"
 #include "text.h"
 
@@ -17,7 +17,7 @@ using std::to_string;
 
 std::string at_line(const std::string& where, std::size_t line) { return where + ", line " + to_string(line); }
 
-/// Names as tools write them in their headers.
+/// Column names as written by common tools.
 struct Columns {
     std::array<std::size_t, 3> position{};
     std::optional<std::size_t> name, id, defined;
@@ -80,7 +80,7 @@ LandmarkSet read_landmark_table(const std::string& bytes, const std::string& whe
     if (const auto found = columns_of(rows.front().cells)) {
         columns = *found;
         first = 1;
-    } else {  // without a header: three numbers, with or without a name in front
+    } else {  // without a header: three numbers, optionally preceded by a name
         const std::size_t cells = rows.front().cells.size();
         if ((cells != 3 && cells != 4) || !number_of(unguarded(rows.front().cells.back())))
             fail_input(at_line(where, rows.front().line), "is not a header with the columns x, y and z",
@@ -122,12 +122,12 @@ namespace {
 
 struct TpsSpecimen {
     std::vector<std::optional<std::array<double, 3>>> points;
-    std::vector<std::size_t> lines;  ///< of the points
+    std::vector<std::size_t> lines;  ///< line numbers of the points
     std::string id, comment;
     double scale = 1;
 };
 
-/// Nothing for a landmark that is missing.
+/// nullopt for a missing landmark
 std::optional<std::array<double, 3>> tps_point(std::string_view line, const std::string& at) {
     std::array<double, 3> point{};
     std::size_t count = 0, missing = 0;
@@ -145,7 +145,7 @@ std::optional<std::array<double, 3>> tps_point(std::string_view line, const std:
     return missing > 0 ? std::nullopt : std::optional(point);
 }
 
-/// LM3=count, one landmark a line, then keywords; a file may hold many specimens.
+/// LM3=count, one landmark per line, then keywords; a file may contain many specimens.
 std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::string& where) {
     std::vector<TpsSpecimen> specimens;
     std::size_t expected = 0, number = 0;
@@ -188,7 +188,7 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
     return specimens;
 }
 
-/// The only one, or the one asked for by its ID or number.
+/// The only specimen, or the one requested by its ID or number.
 const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, const std::string& asked,
                                    const std::string& where) {
     if (specimens.size() == 1 && asked.empty()) return specimens.front();
@@ -200,7 +200,7 @@ const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, co
                "choose one with --specimen, by its ID or its number from 1 to " + to_string(specimens.size()));
 }
 
-/// Our own files keep the names in the comment, as the format has no room for them; none for any other comment.
+/// Our own files store the names in the comment, since the format has no field for them; empty for any other comment.
 std::vector<std::string> tps_names(const TpsSpecimen& specimen, const std::string& where) {
     std::vector<std::string> names;
     try {
@@ -244,18 +244,18 @@ std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
     Json comment(rapidjson::kObjectType);
     add_members(comment, comment.GetAllocator(), "names",
                 json_list(set.landmarks, comment.GetAllocator(), [](const Landmark& landmark) { return landmark.name; }));
-    std::string line = json_text(comment);  // its line breaks stand between values
+    std::string line = json_text(comment);  // its line breaks are between values
     std::replace(line.begin(), line.end(), '\n', ' ');
     text += "COMMENT=" + std::string(trimmed(line)) + "\n";
     return text + "ID=" + one_line(Path(mesh_file).stem().string()) + "\n";
 }
 
-// fcsv: comment lines with the version, the space and the columns, then a row a point.
+// fcsv: comment lines with the version, the space and the columns, then one row per point.
 LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     LandmarkSet set;
     std::optional<AnatomicalSpace> space;
     std::vector<std::string> header;
-    std::string body;  // comment lines become blank, so that lines keep their numbers
+    std::string body;  // comment lines become blank, so that line numbers are preserved
     for (std::size_t i = 0; i < bytes.size();) {
         const std::string_view whole = line_at(bytes, i), line = trimmed(whole);
         if (line.starts_with('#')) {

@@ -28,15 +28,15 @@ constexpr const char* points_only = " left out: the format holds points only";
 
 Point point_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
-/// Everything of the file with where it came to lie.
+/// One item of the file with its position on the mesh.
 struct Entry {
     std::string name;
-    std::string kind;  ///< in messages
+    std::string kind;  ///< for messages
     const std::array<double, 3>* position = nullptr;
     Placed placed;
 };
 
-/// Would the file fit if its x and y had the other sign?
+/// Whether the file would fit with x and y negated.
 bool fits_turned(const Placer& placer, const std::vector<Entry>& entries) {
     double here = 0, turned = 0;
     const std::size_t step = 1 + entries.size() / 200;
@@ -166,8 +166,8 @@ private:
     Placer placer_;
     const std::string& where_;
     PlacedAnnotations result_;
-    std::map<int, std::size_t> made_;  ///< ids to places in the set
-    std::set<int> used_;               ///< ids not to be given to others
+    std::map<int, std::size_t> made_;  ///< ids -> positions in the set
+    std::set<int> used_;               ///< ids in use
     int next_ = 0;
 };
 

@@ -108,12 +108,12 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
     JsonValue list(rapidjson::kArrayType);
     const auto begin = [&](const char* type, const std::string& name) {
         JsonValue markup = json_object(a, "type", type, "name", name, "coordinateSystem", option_text(options, "mesh-space"));
-        // The schema knows two units; where the mesh has another, none is better than a wrong one.
+        // The schema allows two units; for any other unit of the mesh, the unit is omitted.
         if (set.unit == "mm" || set.unit == "um") add_member(markup, "coordinateUnits", set.unit, a);
         add_members(markup, a, "locked", false, "labelFormat", "%N-%d");
         return markup;
     };
-    // All points stand in one list in front, as many readers look at the first markup only.
+    // All points are in one list at the beginning, as many readers use the first markup only.
     if (!set.landmarks.empty() || set.curves.empty()) {
         JsonValue markup = begin("Fiducial", "landmarks");
         std::size_t number = 0;

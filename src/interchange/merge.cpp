@@ -1,4 +1,4 @@
-// Three-way merge: of each thing there are three states, and what one side alone changed counts.
+// Three-way merge: each item has three states, and changes of only one side are applied.
 #include "ostraka/interchange/difference.h"
 
 #include "fields.h"
@@ -13,8 +13,8 @@ namespace {
 
 using namespace interchange;
 
-/// The order of what both or one of the sides hold: theirs where ours left the base's order as it was, otherwise ours; what
-/// only the other side has comes last.
+/// The order of the items on one or both sides: theirs if ours kept the order of the base, otherwise ours; items of the other
+/// side only come last.
 std::vector<int> merged_order(const std::vector<int>& base, const std::vector<int>& ours, const std::vector<int>& theirs) {
     const std::vector<int>& first = ours == base ? theirs : ours;
     const std::vector<int>& second = ours == base ? ours : theirs;
@@ -70,7 +70,7 @@ private:
         return theirs_preferred() ? theirs : ours;
     }
 
-    /// Annotations that both added under one id, and not alike, are two.
+    /// Annotations added by both sides with the same id but different contents are separate: theirs get new ids.
     void renumber(const AnnotationSet& base, const AnnotationSet& ours, std::vector<Annotation>& theirs) {
         std::set<int> taken;
         for (const auto* list : {&base.annotations, &ours.annotations, static_cast<const std::vector<Annotation>*>(&theirs)})
@@ -98,9 +98,9 @@ private:
             conflict("both added", "", state(ours), state(theirs));
             return theirs_preferred() ? *theirs : *ours;
         }
-        if (base == nullptr) return *any;  // added by one
+        if (base == nullptr) return *any;  // added by one side
         const Annotation* kept = ours != nullptr ? ours : theirs;
-        if (kept == nullptr || same(*kept, *base)) return {};  // removed by both, or by one and untouched by the other
+        if (kept == nullptr || same(*kept, *base)) return {};  // removed by both, or by one and unchanged by the other
         conflict("removed by one, changed by the other", state(base), state(ours), state(theirs));
         const Annotation* chosen = theirs_preferred() ? theirs : ours;
         if (chosen == nullptr) return {};
@@ -118,7 +118,7 @@ private:
         return merged;
     }
 
-    /// Type and selection are one field.
+    /// Type and selection are merged as one field.
     void geometry(Annotation& merged, const Annotation& base, const Annotation& ours, const Annotation& theirs) {
         const auto take = [&](const Annotation& from) {
             merged.type = from.type;
@@ -134,7 +134,8 @@ private:
                              !base.all && !ours.all && !theirs.all && base.curves.empty() && ours.curves.empty() &&
                              theirs.curves.empty();
         if (options_.merge_faces && regions) {
-            // A face has two states: what differs from the base on one side counts, and both cannot differ from it in two ways.
+            // Membership of a face is binary: a change by one side is applied, and the two sides cannot change it in different
+            // ways.
             std::vector<Index> faces, all;
             std::set_union(ours.faces.begin(), ours.faces.end(), theirs.faces.begin(), theirs.faces.end(),
                            std::back_inserter(all));

@@ -13,7 +13,7 @@ namespace ostraka::interchange {
 
 namespace {
 
-/// Characters that XML 1.0 has no way to hold, and other control characters, become U+FFFD.
+/// Replaces characters that XML 1.0 cannot represent, and other control characters, by U+FFFD.
 std::string for_xml(const std::string& text, std::size_t& changed) {
     std::string result;
     bool replaced = false;
@@ -25,7 +25,7 @@ std::string for_xml(const std::string& text, std::size_t& changed) {
         replaced = replaced || forbidden;
         at += here.length;
     }
-    // U+FFFE and U+FFFF are no characters of XML either.
+    // U+FFFE and U+FFFF are not allowed in XML either.
     for (const std::string_view none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
         for (std::size_t at = result.find(none); at != std::string::npos; at = result.find(none, at)) {
             result.replace(at, 3, "\xEF\xBF\xBD");

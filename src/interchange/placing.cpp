@@ -56,7 +56,7 @@ std::vector<Index> Placer::vertex_path(const std::vector<Index>& picks, bool clo
                        "give the mesh that the file was made for, or one of the same connectivity");
         vertices.insert(vertices.end(), leg.begin() + 1, leg.end());
     }
-    // What runs to and fro along an edge marks nothing.
+    // Back-tracking along an edge is dropped.
     std::vector<Index> clean;
     for (const Index vertex : vertices) {
         if (clean.size() > 1 && clean[clean.size() - 2] == vertex) clean.pop_back();

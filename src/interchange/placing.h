@@ -1,4 +1,4 @@
-// Places given by coordinates, found again on a mesh.
+// Maps points given by coordinates to a mesh.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -25,31 +25,32 @@ public:
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] double diagonal() const { return surface_.diagonal(); }
-    /// At the nearest vertex that has a face, of equally near ones that of the lower index.
+    /// The nearest vertex that has a face; the lower index if equally near.
     [[nodiscard]] Placed place(const Point& point) const;
     /// The nearest point of the surface.
     [[nodiscard]] SurfaceHit nearest(const Point& point) const { return surface_.closest(point); }
 
-    /// The vertices along the mesh from pick to pick, successive ones joined by edges; repeated picks count once and steps back
-    /// and forth are dropped. Closed: the first stands at the end again. One vertex if all picks are the same. Throws Error
+    /// The vertices of an edge path through the picked vertices; consecutive repeats of a pick are ignored and back-tracking
+    /// steps are dropped. If closed, the first vertex is repeated at the end. One vertex if all picks are equal. Throws Error
     /// (input), starting with `where`, if two picks are not connected.
     std::vector<Index> vertex_path(const std::vector<Index>& picks, bool closed, const std::string& where);
 
-    /// The faces to the left of closed paths, by winding number; of several answers the one nearest to `area`. Empty flags where
-    /// the paths bound nothing.
+    /// The faces to the left of closed paths, by winding number; if there are several solutions, the one whose area is nearest
+    /// to `area`. All false if the paths are not a boundary.
     [[nodiscard]] std::vector<bool> fill(const std::vector<std::vector<Index>>& vertex_paths, double area) const;
     [[nodiscard]] std::vector<bool> component(Index face) const;
 
 private:
     const Mesh& mesh_;
     SurfaceSearch surface_;
-    std::vector<Index> vertices_;  ///< that have a face
-    PointTree points_;             ///< of those
+    std::vector<Index> vertices_;  ///< vertices that have a face
+    PointTree points_;             ///< tree of these vertices
     std::unique_ptr<PathSearch> paths_;
 };
 
-/// The set of `native`, an annotation file without its list and head, and of `list`, its annotations. `about` may carry the
-/// class, the unit and the way up. Measures are taken anew where the mesh is not the one they were taken on.
+/// Builds the set from `native` (an annotation file without its list and header) and `list` (its annotations). `about` may
+/// contain the class, the unit and the upward direction. Measures are recomputed if the mesh is not the one they were measured
+/// on.
 PlacedAnnotations placed_annotations(Json& native, JsonValue list, const JsonValue* about, const Mesh& mesh,
                                      const std::string& where, bool same_mesh, std::vector<std::string> notes,
                                      std::vector<PlacedAnnotation> placements);

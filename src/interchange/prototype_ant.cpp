@@ -1,4 +1,4 @@
-// The prototype's .ant, written.
+// Writer for the prototype's .ant files.
 #include "ostraka/interchange/prototype_files.h"
 
 #include "landmark_formats.h"
@@ -45,13 +45,13 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
         if (point || line) {
             copy_members(entry, a, source, {"points", "polylines"});
         } else {
-            // The prototype's outlines end where they begin.
+            // The prototype's outlines repeat their first vertex at the end.
             JsonValue boundaries(source["boundaries"], a);
             for (auto& boundary : boundaries.GetArray()) boundary.PushBack(JsonValue(boundary[0], a), a);
             add_member(entry, "boundaries", std::move(boundaries), a);
             unbounded +=
                 find_member(source, "seeds") != nullptr || find_member(source, "faces") != nullptr || annotation.all ? 1 : 0;
-            // Additions that the prototype skips and our reader takes.
+            // Additions that the prototype ignores and our reader uses.
             copy_members(entry, a, source, {"seeds", "faces", "all"});
         }
         JsonValue attributes(rapidjson::kArrayType);

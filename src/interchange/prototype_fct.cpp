@@ -1,4 +1,4 @@
-// The prototype's .fct: facets of a fragment by their borders and inner vertices.
+// The prototype's .fct files: facets of a fragment by their borders and inner vertices.
 #include "ostraka/interchange/prototype_files.h"
 
 #include "landmark_formats.h"
@@ -46,14 +46,14 @@ private:
         fail_input(where_ + ", line " + std::to_string(std::max<std::size_t>(number_, 1)), what, remedy);
     }
 
-    /// The next line into `line_`; false at the end.
+    /// Reads the next line into `line_`; false at the end.
     bool next_line() {
         if (position_ >= bytes_.size()) return false;
         line_ = trimmed(line_at(bytes_, position_));
         ++number_;
         return true;
     }
-    /// The next line that is not blank.
+    /// Reads the next non-blank line.
     bool next() {
         while (next_line())
             if (!line_.empty()) return true;
@@ -116,7 +116,8 @@ private:
         return annotation;
     }
 
-    /// The side of the borders that holds the inner vertices, and the components without a border that inner vertices lie on.
+    /// The side of the borders that contains the inner vertices, plus the components without a border that contain inner
+    /// vertices.
     [[nodiscard]] std::vector<bool> side(std::vector<Outline> borders, const std::vector<Index>& inner) const {
         const auto held = [&](const std::vector<bool>& selected) {
             std::size_t count = 0;

@@ -1,4 +1,4 @@
-// Text in and out of the formats of others: cells, numbers, and nothing that can become a formula, markup or a script.
+// Text in other formats: cells and numbers, escaped so that nothing can become a formula, markup or a script.
 #pragma once
 
 #include "ostraka/core/csv.h"
@@ -12,14 +12,15 @@
 
 namespace ostraka::interchange {
 
-/// Text whose bytes are not UTF-8 has U+FFFD for each byte that does not fit.
+/// The text with U+FFFD for each byte that is not valid UTF-8.
 std::string as_utf8(std::string_view text);
-/// Control characters (core/text.h), line breaks among them, as blanks, for formats that keep a record on a line.
+/// The text with control characters (core/text.h), including line breaks, replaced by blanks, for formats with one record per
+/// line.
 std::string one_line(std::string_view text);
 /// True if `one_line` would change the text.
 bool has_control(std::string_view text);
 
-/// Numbers with blanks between them, those that are not whole as `digits` writes them.
+/// The numbers separated by blanks; those that are not integers are written by `digits`.
 template <class Numbers>
 std::string joined_numbers(const Numbers& numbers) {
     std::string text;
@@ -31,10 +32,10 @@ std::string joined_numbers(const Numbers& numbers) {
     return text;
 }
 
-/// JSON as `to_text`, with < > & as escapes: it may stand inside an HTML page without ending its script.
+/// JSON as by `to_text`, with < > & escaped, so that it cannot end the script element of an HTML page.
 std::string json_text(const JsonValue& value);
 
-/// A list of three finite numbers, or nothing.
+/// The value as a list of three finite numbers, or nullopt.
 std::optional<std::array<double, 3>> triple(const JsonValue* value);
 
 }  // namespace ostraka::interchange

@@ -1,4 +1,4 @@
-// W3C Web Annotation JSON-LD -> annotations.
+// Conversion of W3C Web Annotation JSON-LD to annotations.
 #include "ostraka/interchange/web_annotation.h"
 
 #include "landmark_formats.h"
@@ -22,7 +22,7 @@ namespace {
 
 using namespace interchange;
 
-/// Is `text` one of the strings that a JSON-LD member holds, alone or in a list?
+/// Whether `text` is one of the strings of a JSON-LD member, which may be a single value or a list.
 bool holds(const JsonValue* value, std::string_view text) {
     if (value == nullptr) return false;
     if (value->IsString()) return text == text_of(*value);
@@ -30,7 +30,7 @@ bool holds(const JsonValue* value, std::string_view text) {
     return std::any_of(value->Begin(), value->End(), [&](const JsonValue& entry) { return holds(&entry, text); });
 }
 
-/// An object of the model, in a list or alone.
+/// The objects of a member, which may be a single value or a list.
 std::vector<const JsonValue*> listed(const JsonValue* value) {
     std::vector<const JsonValue*> list;
     if (value == nullptr) return list;
@@ -45,16 +45,15 @@ bool is_selector(const JsonValue& value, const std::string& name) {
     return holds(type, name) || holds(type, web::terms + name.substr(name.find(':') + 1));
 }
 
-/// What of a region lies on one connected component of its own mesh.
+/// The part of a region on one connected component of its original mesh.
 struct RegionPart {
     double area = 0;
     Point inside{0, 0, 0};
-    std::vector<std::vector<Index>>
-        outlines;  ///< vertices of the mesh at hand nearest to the outline's; none: the whole component
+    std::vector<std::vector<Index>> outlines;  ///< vertices of this mesh nearest to the outlines; empty: the whole component
 };
 
-/// The faces of the region, ascending. Outlines are joined along edges and filled by winding number; `remarks` says where the
-/// area changed by more than a twentieth or nothing was left.
+/// The faces of the region, ascending. Outlines are connected along edges and filled by winding number; `remarks` reports if
+/// the area of a part changed by more than a twentieth or a part vanished.
 std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& parts, const std::string& where,
                              std::vector<std::string>& remarks) {
     const Mesh& mesh = placer.mesh();
@@ -145,7 +144,7 @@ private:
         return items;
     }
 
-    /// What is said: our own data if the annotation has them, otherwise its texts.
+    /// The content of the annotation: our own data if available, otherwise its texts.
     Json data_of(const JsonValue& item, const std::string& pointer) {
         Json data(rapidjson::kObjectType);
         std::vector<std::string> tags, descriptions;
@@ -179,7 +178,7 @@ private:
         return data;
     }
 
-    /// Null where it cannot be placed.
+    /// Null if it cannot be placed.
     JsonValue annotation_of(const JsonValue& item, const std::string& pointer) {
         const auto targets = listed(find_member(item, "target"));
         if (targets.size() > 1) note(pointer, "has " + counted(targets.size(), "target") + "; the first is taken");
@@ -239,7 +238,7 @@ private:
         return *placer_;
     }
 
-    /// Nothing where a point is too far and such may be left out.
+    /// nullopt if a point is too far away and far points may be skipped.
     std::optional<std::vector<Placed>> placed(const JsonValue& list, PlacedAnnotation& placement, const std::string& pointer) {
         std::vector<Placed> result;
         const double limit = options_.tolerance * placer().diagonal();
@@ -324,7 +323,7 @@ private:
         return true;
     }
 
-    /// Pins go to the nearest places of the surface; what they measured is stale until it is taken anew.
+    /// Places pins at the nearest points of the surface; their measures are stale until recomputed.
     void place_pins(const JsonValue& pins, const JsonValue* repeats, JsonValue& attributes, const std::string& pointer) {
         if (!attributes.IsArray()) return;
         for (auto& attribute : attributes.GetArray()) {
@@ -332,7 +331,7 @@ private:
             const JsonValue* id = find_member(attribute, "id");
             const JsonValue* list = id != nullptr && id->IsInt() ? find_member(pins, std::to_string(id->GetInt())) : nullptr;
             if (list == nullptr || !attribute.HasMember("measure") || !attribute["measure"].IsObject()) continue;
-            PlacedAnnotation pinned;  // pins may lie within faces: how far vertices are says nothing
+            PlacedAnnotation pinned;  // pins may lie inside faces, so the distance to vertices is not meaningful
             const auto found = placed(*list, pinned, pointer);
             JsonValue& measure = attribute["measure"];
             if (!found) continue;

@@ -1,4 +1,4 @@
-// Annotations -> W3C Web Annotation JSON-LD.
+// Conversion of annotations to W3C Web Annotation JSON-LD.
 #include "ostraka/interchange/web_annotation.h"
 
 #include "text.h"
@@ -17,7 +17,7 @@ namespace {
 
 using namespace interchange;
 
-/// A name for ever for a thing that `content` describes: a UUID of version 8 (RFC 9562) from its SHA-256.
+/// A persistent identifier derived from `content`: a UUID of version 8 (RFC 9562) from its SHA-256.
 std::string uuid_of(const std::string& content) {
     std::string hex = sha256(content).substr(0, 32);
     hex[12] = '8';
@@ -117,7 +117,7 @@ private:
         return json_list(vertices, a(), [&](Index vertex) { return place(vertex); });
     }
 
-    /// The number of its connected component for each face.
+    /// The index of the connected component of each face.
     [[nodiscard]] std::vector<Index> components() const {
         std::vector<Index> number(mesh_.number_of_faces());
         std::vector<bool> seen(number.size(), false);
@@ -130,7 +130,7 @@ private:
         return number;
     }
 
-    /// A part for each component of the mesh that the region lies on, since winding numbers are counted within one.
+    /// One part per component of the mesh that the region covers, since winding numbers are defined per component.
     JsonValue parts(const Annotation& annotation) {
         struct Part {
             double area = 0;

@@ -15,7 +15,8 @@ using detail::SoupEdges;
 
 namespace {
 
-/// Component of each triangle (by shared vertices, in the order of their lowest vertices) and their counts.
+/// Computes the component of each triangle (connected by shared vertices, numbered by lowest vertex) and the counts per
+/// component.
 std::vector<Index> find_components(const TriangleSoup& soup, MeshDiagnosis& diagnosis) {
     DisjointSets sets(soup.points.size());
     std::vector<std::uint8_t> used(soup.points.size(), 0), named(soup.points.size(), 0);
@@ -50,7 +51,7 @@ std::vector<Index> find_components(const TriangleSoup& soup, MeshDiagnosis& diag
     return of_triangle;
 }
 
-/// Triangles on the same three vertices are met at the edge of their two lowest vertices.
+/// Counts triangles with the same three vertices, at the edge of their two lowest vertices.
 std::size_t count_duplicates(const TriangleSoup& soup, const Index* halfedges, Index valence, std::vector<Index>& apexes) {
     apexes.clear();
     for (Index i = 0; i < valence; ++i) {
@@ -61,13 +62,14 @@ std::size_t count_duplicates(const TriangleSoup& soup, const Index* halfedges, I
     return apexes.size() - static_cast<std::size_t>(std::unique(apexes.begin(), apexes.end()) - apexes.begin());
 }
 
-/// Sides of a triangle taken by two-triangle edges must alternate: sets of triangles with the parity of flips between them.
+/// Union-find with parity: two triangles at a manifold edge must traverse it in opposite directions; `flip` says whether a
+/// triangle must be reversed relative to its root.
 class FlipParity {
 public:
     explicit FlipParity(std::size_t count) : parent_(count), flip_(count, 0) {
         for (Index i = 0; i < count; ++i) parent_[i] = i;
     }
-    /// False if the two are already joined the other way round.
+    /// False if the two are already joined with the other parity.
     bool join(Index a, Index b, std::uint8_t flipped) {
         const auto [root_a, flip_a] = find(a);
         const auto [root_b, flip_b] = find(b);
@@ -86,7 +88,7 @@ private:
             flip ^= flip_[root];
             root = parent_[root];
         }
-        for (std::uint8_t rest = flip; i != root && parent_[i] != root;) {  // compress the path
+        for (std::uint8_t rest = flip; i != root && parent_[i] != root;) {  // path compression
             const Index above = parent_[i];
             const std::uint8_t own = flip_[i];
             parent_[i] = root;
@@ -129,7 +131,8 @@ void examine_edges(const TriangleSoup& soup, const SoupEdges& edges, const std::
     diagnosis.mean_edge = sum / static_cast<double>(edges.count());
 }
 
-/// Border edges joined at the fans of triangles they belong to: two at every fan where all edges are manifold.
+/// Traces border loops. Border edges are connected at the fans of triangles that they belong to: two per fan if all edges are
+/// manifold.
 void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSets& fans, MeshDiagnosis& diagnosis) {
     struct BorderEdge {
         Index halfedge, first_fan, second_fan;
@@ -147,16 +150,17 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
         at_fan.emplace_back(border[i].second_fan, i);
     }
     std::sort(at_fan.begin(), at_fan.end());
-    std::vector<Index> walked(at_fan.size() + 1, 0);  // by the first entry of a fan
+    std::vector<Index> walked(at_fan.size() + 1, 0);  // number of entries already processed, by the first entry of a fan
     struct Step {
         Index vertex;
-        BorderLoop leaving;  ///< the edge taken from here
+        BorderLoop leaving;  ///< the edge that leaves the vertex
     };
     std::vector<std::uint8_t> on_walk(border.empty() ? 0 : soup.points.size(), 0);
     using detail::origin, detail::target, detail::point;
     for (Index start = 0; start < border.size(); ++start) {
         if (border[start].used) continue;
-        // A walk that comes back to a vertex (two holes touch there) has gone around one of them: that is cut off.
+        // A walk that returns to a vertex (two holes touch there) has completed a loop around one of the holes, which is split
+        // off.
         std::vector<Step> walk;
         Index edge = start, fan = border[start].second_fan, at = target(soup, border[start].halfedge);
         walk.push_back({origin(soup, border[start].halfedge), {}});
@@ -182,7 +186,7 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
                 on_walk[at] = 1;
             }
             edge = no_index;
-            // What was used once stays so: each list is walked once, however many edges meet at a fan.
+            // Used edges are skipped permanently: each list is traversed once, however many edges meet at a fan.
             const auto list = std::lower_bound(at_fan.begin(), at_fan.end(), std::pair<Index, Index>{fan, 0});
             auto& passed = walked[static_cast<std::size_t>(list - at_fan.begin())];
             auto i = list + passed;
@@ -195,7 +199,7 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
             const Index next = border[edge].halfedge;
             at = forward ? target(soup, next) : origin(soup, next);
         }
-        BorderLoop rest;  // of a walk that ends at a non-manifold edge
+        BorderLoop rest;  // the remainder of a walk that ends at a non-manifold edge
         for (const Step& step : walk) {
             on_walk[step.vertex] = 0;
             if (&step == &walk.back()) break;
@@ -252,14 +256,14 @@ void measure(const TriangleSoup& soup, const std::vector<Index>& component, cons
     }
 }
 
-/// A closed component of negative volume is the wall of a cavity if another one encloses it, otherwise inside out.
+/// A closed component of negative volume is the wall of a cavity if another component encloses it; otherwise it is inside out.
 void find_cavities(const TriangleSoup& soup, const std::vector<Index>& component, MeshDiagnosis& diagnosis) {
     std::vector<bool> closed;
     std::vector<Index> negative;
     for (Index c = 0; c < diagnosis.components.size(); ++c) {
         const auto& part = diagnosis.components[c];
         closed.push_back(part.closed());
-        // A volume below its rounding error has no sign.
+        // The sign of a volume below its rounding error is meaningless.
         const bool inward = part.volume < -1e-13 * part.area * diagnosis.diagonal;
         if (part.closed() && part.misoriented_edges == 0 && part.orientable && inward) negative.push_back(c);
     }

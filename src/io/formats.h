@@ -1,4 +1,4 @@
-// The readers and writers behind read_polygons and write_mesh, one pair a format.
+// The readers and writers behind read_polygons and write_mesh, one pair per format.
 #pragma once
 
 #include "ostraka/io/mesh_file.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka::io {
 
-// Readers: `bytes` is the whole file, `file` its name for messages. They may change the bytes.
+// Readers: `bytes` is the whole file and may be modified; `file` is its name for messages.
 PolygonSoup read_obj(std::string& bytes, const std::string& file);
 PolygonSoup read_off(std::string& bytes, const std::string& file);
 PolygonSoup read_ply(const std::string& bytes, const std::string& file);
@@ -15,21 +15,22 @@ PolygonSoup read_stl(std::string& bytes, const std::string& file);
 PolygonSoup read_medit(std::string& bytes, const std::string& file);
 PolygonSoup read_vtu(const std::string& bytes, const std::string& file);
 
-/// True if the content is that of the format, whatever the file's name.
+/// True if the content has the format, whatever the name of the file.
 bool looks_like_ply(std::string_view bytes);
 bool looks_like_off(std::string_view bytes);
 bool looks_like_stl(std::string_view bytes);
 
-/// Appends a polygon whose corners were pushed on `soup.corners`; throws Error if the corners no longer fit an Index.
+/// Completes a polygon whose corners were appended to `soup.corners`; throws Error if the number of corners no longer fits an
+/// Index.
 void close_polygon(PolygonSoup& soup, const std::string& file);
 
-/// Colour channels from a file: 0..1 as real numbers, NaN and what lies outside is counted in `bad` and clamped.
+/// Colour channels from a file, given as 0..1 or as 0..255. NaN and values out of range are clamped and counted in `bad`.
 std::uint8_t channel_from_unit(double value, std::size_t& bad);
 std::uint8_t channel_from_byte(double value, std::size_t& bad);
 
 inline constexpr Colour white{255, 255, 255, 255};
 
-/// The faces to write: options.polygons, or the triangles where there are none.
+/// The faces to write: options.polygons, or the triangles if there are no polygons.
 class WrittenFaces {
 public:
     WrittenFaces(const TriangleSoup& soup, const WriteOptions& options) : soup_(soup), options_(options) {}
@@ -45,7 +46,7 @@ private:
     const WriteOptions& options_;
 };
 
-// Writers: `extras` were checked to be empty or complete. They return what the format cannot hold.
+// Writers: `extras` must be empty or complete. They return notes on data that the format cannot store.
 using Notes = std::vector<std::string>;
 Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);
 Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options);

@@ -25,7 +25,7 @@ T value_at(std::string_view bytes, std::size_t offset) {
     return value;
 }
 
-/// A kind of numbers that accessors hold.
+/// A component type of accessors.
 struct Component {
     std::size_t kind, size;
     double (*number_at)(std::string_view bytes, std::size_t offset);
@@ -82,7 +82,7 @@ int Builder::accessor(int view, int component, std::size_t count, const char* ty
 }
 
 int Builder::add_view(const std::string& bytes, int target, int stride) {
-    const int added = view(std::max<std::size_t>(bytes.size(), 1), target, stride);  // a view holds one byte at least
+    const int added = view(std::max<std::size_t>(bytes.size(), 1), target, stride);  // a view must have at least one byte
     binary_.resize((binary_.size() + alignment_ - 1) / alignment_ * alignment_, '\0');
     binary_ += bytes.empty() ? std::string(1, '\0') : bytes;
     return added;

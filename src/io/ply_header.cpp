@@ -66,7 +66,7 @@ std::size_t size_of(PlyType type) {
 }
 
 std::size_t PlyElement::min_bytes(PlyFormat format) const {
-    if (format == PlyFormat::ascii) return 2 * properties.size();  // a digit and a blank or line end
+    if (format == PlyFormat::ascii) return 2 * properties.size();  // a digit and a blank or line end per property
     std::size_t sum = 0;
     for (const PlyProperty& property : properties) sum += size_of(property.is_list ? property.count_type : property.type);
     return sum;
@@ -93,7 +93,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
             else if (word == "binary_big_endian") header.format = PlyFormat::big_endian;
             else reader.fail("unknown format " + in_quotes(word), "use ascii, binary_little_endian or binary_big_endian", line);
             has_format = true;
-            reader.word();  // the version has only ever been 1.0
+            reader.word();  // the version is always 1.0
         } else if (keyword == "comment" || keyword == "obj_info") {
             if (reader.word() == "TextureFile") header.has_texture_file = true;
             continue;
@@ -107,7 +107,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
             properties.push_back(property_line(reader));
         } else if (keyword == "end_header") {
             if (!has_format) reader.fail("the header has no format line", {}, line);
-            // Binary data begin right after the line feed; blanks at the end of the line belong to the header.
+            // Binary data begin directly after the line feed; blanks at the end of the line belong to the header.
             while (!reader.take('\n')) {
                 if (reader.remaining() == 0) break;
                 if (!reader.at_word_end()) reader.fail("end_header is followed by more on its line", {}, line);

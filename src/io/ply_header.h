@@ -25,19 +25,19 @@ struct PlyElement {
     std::string name;
     std::size_t count = 0;
     std::vector<PlyProperty> properties;
-    /// The fewest bytes one such element can take in a file of the format.
+    /// Minimum size in bytes of an element in a file of the format.
     [[nodiscard]] std::size_t min_bytes(PlyFormat format) const;
 };
 
 struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;  ///< bytes up to the first element
+    std::size_t size = 0;  ///< number of bytes before the first element
     bool has_texture_file = false;
     [[nodiscard]] const PlyElement* find(std::string_view name) const;
 };
 
-/// Throws Error (input) that names the line of the header. Counts are as the file claims them.
+/// Throws Error (input) with the line of the header. Counts are those given in the file, unchecked.
 PlyHeader read_ply_header(std::string_view bytes, const std::string& file);
 
 }  // namespace ostraka::io

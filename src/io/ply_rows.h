@@ -35,7 +35,7 @@ public:
         if (whole < -largest_whole || whole > largest_whole) reader_.fail("a whole number does not fit 32 bits");
         return static_cast<double>(whole);
     }
-    /// Least number of bytes that `count` values take.
+    /// Minimum number of bytes for `count` values.
     static std::size_t minimum(PlyType, std::size_t count) { return 2 * count; }
     void skip(PlyType, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i)

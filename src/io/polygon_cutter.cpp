@@ -13,12 +13,12 @@ namespace {
 using Point2 = std::array<double, 2>;
 using Point3 = std::array<double, 3>;
 
-/// Orientation of a, b, c, exact: 1 is to the left. `exact` counts those that floating point does not decide.
+/// Exact orientation of a, b, c; 1 is to the left. `exact` counts the cases that need exact arithmetic.
 int orientation(const Point2& a, const Point2& b, const Point2& c, std::size_t& exact) {
     const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
-    if ((ux == 0 && vx == 0) || (uy == 0 && vy == 0)) return 0;  // of equal numbers the difference is exactly 0
+    if ((ux == 0 && vx == 0) || (uy == 0 && vy == 0)) return 0;  // the difference of equal numbers is exactly 0
     const double left = ux * vy, right = uy * vx, size = std::fabs(left) + std::fabs(right);
-    // Shewchuk 1997: the error is below (3 + 16 e) e times the sum of the magnitudes, e = 2^-53, where nothing underflows.
+    // Shewchuk 1997: the error is below (3 + 16 e) e times the sum of the magnitudes, e = 2^-53, unless there is underflow.
     if (size > 1e-250 && std::fabs(left - right) > 4e-16 * size) return left > right ? 1 : -1;
     ++exact;
     using Flat = Kernel::Point_2;
@@ -32,7 +32,7 @@ Point3 cross_of(const Point3& a, const Point3& b, const Point3& c) {
 
 double dot(const Point3& a, const Point3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// The largest power of two that keeps products of coordinates from overflowing: scaling by it loses nothing of them.
+/// The largest power of two that prevents products of coordinates from overflowing; scaling by it is exact.
 double safe_scale(const std::vector<Point3>& points, const std::uint32_t* corners, std::size_t count) {
     double largest = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -60,7 +60,7 @@ CutResult PolygonCutter::cut(const std::vector<Point3>& points, const std::uint3
     }
     project(points, corners);
     if (is_strictly_convex()) {
-        // A vertex that very many triangles share would be slow for whatever follows.
+        // A vertex with very many triangles would slow down later algorithms.
         constexpr std::size_t large = 1000;
         if (kept_.size() > large) {
             std::vector<std::uint32_t> ring(kept_.size());
@@ -74,7 +74,7 @@ CutResult PolygonCutter::cut(const std::vector<Point3>& points, const std::uint3
     return clip_ears(corners, triangles);
 }
 
-/// Corners that repeat the one before (around the end as well) are left out.
+/// Drops corners that repeat their predecessor (cyclically).
 void PolygonCutter::drop_repeated(const std::uint32_t* corners, std::size_t count) {
     kept_.clear();
     for (std::size_t i = 0; i < count; ++i)
@@ -105,8 +105,8 @@ void PolygonCutter::cut_quadrilateral(const std::vector<Point3>& points, const s
     }
 }
 
-/// Onto the coordinate plane on which the polygon's area (Newell's normal) is largest, mirrored if need be so that it runs
-/// counter-clockwise; without area onto the plane of its two largest extents.
+/// Projects onto the coordinate plane in which the polygon's area (Newell's normal) is largest, mirrored if necessary so that
+/// it is counter-clockwise; if the area is zero, onto the plane of its two largest extents.
 void PolygonCutter::project(const std::vector<Point3>& points, const std::uint32_t* corners) {
     const double scale = safe_scale(points, corners, kept_.back() + 1);
     const Point3 origin = scaled(points[corners[kept_[0]]], scale);
@@ -154,7 +154,7 @@ void PolygonCutter::halve(std::vector<std::uint32_t> ring, const std::uint32_t* 
     }
 }
 
-/// Left turns only, and the direction runs around once: from rightward to leftward and back.
+/// All turns are left turns, and the direction rotates once: it reverses from rightward to leftward and back once each.
 bool PolygonCutter::is_strictly_convex() const {
     const std::size_t count = flat_.size();
     std::size_t reversals = 0, exact = 0;
@@ -206,14 +206,15 @@ void PolygonCutter::build_grid(std::uint32_t start) {
 }
 
 int PolygonCutter::turn(const Point2& a, const Point2& b, const Point2& c) {
-    constexpr std::size_t work_of_exact = 16;  // in tests in floating point
+    constexpr std::size_t work_of_exact = 16;  // in units of floating-point tests
     std::size_t exact = 0;
     const int result = orientation(a, b, c, exact);
     budget_ -= std::min(budget_, work_of_exact * exact);
     return result;
 }
 
-/// A strictly convex tip whose closed triangle holds no other corner (corners at the same place as one of the three aside).
+/// A strictly convex corner whose closed triangle contains no other corner (except corners at the position of one of the
+/// three).
 bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint32_t next) {
     const Point2 &a = flat_[previous], &b = flat_[tip], &c = flat_[next];
     if (turn(a, b, c) <= 0) return false;
@@ -260,9 +261,9 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
         alive_[tip] = 0;
         --left;
     };
-    // Rounds over candidates: clipping an ear only changes its two neighbours, which wait for the next round (every second
-    // corner goes first, which gives fewer slivers than a fan). When no candidate is left, all corners are tried again, since
-    // a corner that stood in an ear may be gone.
+    // Iterates over candidates: clipping an ear only changes its two neighbours, which are deferred to the next round (thus
+    // every second corner is clipped first, which gives fewer slivers than a fan). When no candidate is left, all corners are
+    // tested again, since a corner that blocked an ear may be gone.
     std::uint32_t last = 0, clipped_since_scan = 1, round = 0;
     round_of_.assign(left, 0);
     candidates_.clear();
@@ -286,7 +287,7 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
             return CutResult::gave_up;
         }
         if (candidates_.empty() && clipped_since_scan == 0) {
-            result = CutResult::crossing;  // the polygon crosses or touches itself: whatever stands next is cut off
+            result = CutResult::crossing;  // the polygon intersects or touches itself: the next corner is cut off regardless
             clip_and_note(last);
         } else {
             if (candidates_.empty()) {
@@ -299,7 +300,7 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
                 if (alive_[tip] == 0 || round_of_[tip] == round || !distinct(previous_[tip], tip, next_[tip])) continue;
                 if (is_ear(previous_[tip], tip, next_[tip])) clip_and_note(tip);
             }
-            if (left < in_grid / 2) {  // large ears now: coarser cells, without the corners that are gone
+            if (left < in_grid / 2) {  // ears are larger now: rebuild with coarser cells and without the clipped corners
                 build_grid(last);
                 in_grid = left;
             }

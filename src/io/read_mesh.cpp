@@ -53,7 +53,7 @@ Format format_of_extension(const Path& file) {
                 "use .obj, .off, .ply or .stl, of tetrahedra .mesh or .vtu");
 }
 
-/// The extension's format, unless the content is clearly that of another.
+/// The format of the extension, unless the content clearly has another format.
 Format format_of_content(Format expected, std::string_view bytes) {
     if (looks_like_ply(bytes)) return Format::ply;
     if (looks_like_off(bytes)) return Format::off;
@@ -61,8 +61,8 @@ Format format_of_content(Format expected, std::string_view bytes) {
     return expected;
 }
 
-/// UTF-16 where a text of that encoding begins with its mark, UTF-16LE or UTF-16BE where letters and zeros stand in turn; else
-/// empty.
+/// The encoding of a 16-bit text: UTF-16 if it begins with a byte order mark, UTF-16LE or UTF-16BE if letters alternate with
+/// zeros; else empty.
 std::string wide_encoding(std::string_view bytes) {
     bytes = bytes.substr(0, 64);
     const std::size_t mark = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF") ? 2 : 0;

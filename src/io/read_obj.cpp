@@ -10,14 +10,14 @@ namespace ostraka::io {
 
 namespace {
 
-/// Statements of the format that hold nothing of the surface we keep; any other word is an error, since a damaged
-/// keyword would silently shift all later indices.
+/// Statements of the format that do not concern the data we keep; any other word is an error, since a damaged keyword would
+/// silently shift all later indices.
 const std::set<std::string_view> ignored_statements{
     "vn",    "vp",       "l",        "p",   "g",          "o",         "s",      "mg",    "usemtl", "mtllib", "maplib", "usemap",
     "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech",  "stech", "curv",   "curv2",  "surf",   "parm",
     "trim",  "hole",     "scrv",     "sp",  "end",        "con",       "cstype", "deg",   "bmat",   "step"};
 
-/// "\" before a line end continues the line: both become blanks, the line end one that still counts as a line.
+/// "\" before a line end continues the line: both are replaced by blanks, the line end by one that still counts as a line.
 void join_continued_lines(std::string& text) {
     for (std::size_t i = text.find('\\'); i != std::string::npos; i = text.find('\\', i + 1)) {
         std::size_t end = i + 1;
@@ -85,7 +85,7 @@ private:
         texture_.push_back(uv);
     }
 
-    /// Index from 1, or from -1 backwards, to an index from 0.
+    /// Converts an index from 1, or from -1 backwards, to an index from 0.
     Index resolve(std::int64_t value, std::size_t count, const char* what, const char* at, std::int64_t& largest,
                   const char*& largest_at) {
         const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(count) + value;
@@ -123,7 +123,7 @@ private:
         close_polygon(soup_, reader_.file());
     }
 
-    /// Vertices may follow the faces that use them, so the largest index is compared with what came in the end.
+    /// Faces may refer to later vertices, so the largest index is checked at the end.
     void check_forward_references() {
         if (largest_ >= static_cast<std::int64_t>(soup_.points.size()))
             reader_.fail("a face names vertex " + std::to_string(largest_ + 1) + " of " + std::to_string(soup_.points.size()),
@@ -160,7 +160,7 @@ private:
         if (bad > 0) soup_.notes.push_back(std::to_string(bad) + " colour values are out of range and were clamped");
     }
 
-    /// Texture coordinates belong to vertices if every corner names those of its vertex's number, else to corners.
+    /// Texture coordinates are per vertex if every corner refers to those with the number of its vertex, else per corner.
     void finish_texture() {
         if (corner_uv_.empty()) {
             if (!texture_.empty()) soup_.notes.emplace_back("texture coordinates that no face uses are not kept");
@@ -183,7 +183,7 @@ private:
 
     TextReader reader_;
     PolygonSoup soup_;
-    std::vector<std::array<float, 4>> colours_;  ///< -1 where the file gives none
+    std::vector<std::array<float, 4>> colours_;  ///< -1 if the file gives no colour
     std::vector<std::array<float, 2>> texture_;
     std::vector<Index> corner_uv_;
     std::int64_t largest_ = -1, largest_uv_ = -1;

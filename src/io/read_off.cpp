@@ -10,8 +10,8 @@ namespace ostraka::io {
 
 namespace {
 
-/// What stands in front of "OFF" in the first word: texture coordinates, colours, normals of the vertices. The number of vertices
-/// may follow without a blank.
+/// Prefixes of "OFF" in the first word: texture coordinates, colours, normals of the vertices. The number of vertices may
+/// follow without a blank.
 struct Header {
     bool texture = false, colours = false, normals = false;
     std::size_t length = 0;  ///< of the keyword
@@ -67,7 +67,7 @@ private:
             if (reader_.skip_space() && reader_.position()[0] == 'B')
                 reader_.fail("binary OFF is not supported", "convert it to text OFF or PLY");
         } else if (!word.empty() && word.front() >= '0' && word.front() <= '9') {
-            reader_.set_position(first);  // the keyword may be left out
+            reader_.set_position(first);  // the keyword is optional
         } else {
             reader_.fail("does not start with OFF, COFF, NOFF or STOFF but with " + in_quotes(word),
                          "check that this is an OFF file", first);
@@ -75,7 +75,7 @@ private:
         vertices_ = count("the number of vertices");
         faces_ = count("the number of faces");
         if (!reader_.line_done()) reader_.integer("the number of edges");
-        // A vertex takes at least six characters, a face two.
+        // A vertex has at least six characters, a face two.
         if (vertices_ > reader_.remaining() / 6 + 1 || faces_ > reader_.remaining() / 2 + 1)
             reader_.fail("the header promises " + std::to_string(vertices_) + " vertices and " + std::to_string(faces_) +
                              " faces, but only " + std::to_string(reader_.remaining()) + " bytes follow",
@@ -91,8 +91,8 @@ private:
         return static_cast<std::size_t>(value);
     }
 
-    /// Some programs write vertex colours without saying so in the header: six or seven numbers on the first line of
-    /// vertices, and a line for every element.
+    /// Some programs write vertex colours without declaring them in the header: six or seven numbers on the first vertex line,
+    /// and one line per element.
     void find_undeclared_colours() {
         if (header_.colours || header_.normals || header_.texture || vertices_ == 0 || !reader_.skip_space()) return;
         const char* first = reader_.position();
@@ -138,8 +138,8 @@ private:
         return reader_.finite(what);
     }
 
-    /// The colour in the next words of the line, `after` of which belong to something else. Whole numbers count from 0
-    /// to 255, others from 0 to 1.
+    /// The colour in the remaining words of the line, of which the last `after` belong to other data. Integers range from 0 to
+    /// 255, other numbers from 0 to 1.
     std::optional<Colour> colour(std::size_t after) {
         std::array<double, 6> values{};
         const char* first = reader_.position();

@@ -47,7 +47,7 @@ Role face_role(const PlyProperty& property) {
     return Role::none;
 }
 
-/// Which property of an element plays which role; of two that could, the first does.
+/// Assigns roles to the properties of an element; if several properties could have a role, the first one gets it.
 struct Plan {
     std::vector<Role> roles;
     std::array<PlyType, role_count> type{};
@@ -103,7 +103,8 @@ public:
         return std::move(soup_);
     }
 
-    /// The real properties of an element that `wanted` takes, in the order of the file; nothing where there is no such element.
+    /// The floating-point properties of an element for which `wanted` is true, in the order of the file; empty if there is no
+    /// such element.
     template <class Wanted>
     std::vector<PlyColumn> columns(std::string_view of, Wanted wanted) {
         std::vector<PlyColumn> result;
@@ -137,7 +138,7 @@ public:
     }
 
 private:
-    /// No memory is asked for before the file is known to be large enough for what its header claims.
+    /// Ensures that the file is large enough for the counts in its header before memory is allocated.
     void check_size(const PlyElement& element) {
         const std::size_t minimum = element.min_bytes(header_.format);
         if (minimum > 0 && element.count > rows_.remaining() / minimum)
@@ -290,7 +291,8 @@ private:
             texture.push_back(usable ? std::array<float, 2>{list[2 * k], list[2 * k + 1]} : std::array<float, 2>{0, 0});
     }
 
-    /// Each strip is a row of vertices, every three in a row a triangle, every second one turned; -1 starts afresh.
+    /// Each strip is a sequence of vertices; every three consecutive ones form a triangle, every second triangle is reversed;
+    /// -1 starts a new strip.
     void strips(const PlyElement& element) {
         const Plan plan(element, face_role);
         if (element.count > 0 && !plan.with(Role::corners))
@@ -320,7 +322,7 @@ private:
                 rows_.fail("strip " + std::to_string(row) + " names vertex " + std::to_string(value) + " of " +
                            std::to_string(vertex_count_));
             const auto c = static_cast<Index>(value);
-            if (met >= 2 && a != b && b != c && c != a) {  // a repeated vertex only joins two strips
+            if (met >= 2 && a != b && b != c && c != a) {  // a repeated vertex only connects two strips
                 for (const Index v : {met % 2 == 0 ? a : b, met % 2 == 0 ? b : a, c}) soup_.corners.push_back(v);
                 close_polygon(soup_, file_);
             }
@@ -337,7 +339,7 @@ private:
     std::size_t vertex_count_ = 0, wrapped_ = 0, bad_ = 0, bad_texture_ = 0;
 };
 
-/// read(body) of a file in any of the three formats.
+/// Calls read(body) for a file in any of the three encodings.
 template <class Read>
 auto read_body(const std::string& bytes, const std::string& file, Read&& read) {
     const PlyHeader header = read_ply_header(bytes, file);

@@ -20,8 +20,8 @@ std::size_t facet_count(std::string_view bytes) {
     return count;
 }
 
-/// Numbers points by first appearance, equal coordinates (negative zero is zero) having one number: an open-addressing
-/// hash table of point indices, kept at most half full.
+/// Numbers points by first appearance; points with equal coordinates (negative zero equals zero) get the same number. Uses an
+/// open-addressing hash table of point indices, at most half full.
 class PointMerger {
 public:
     explicit PointMerger(std::vector<std::array<double, 3>>& points) : points_(points), slots_(1024, no_index) {}
@@ -95,7 +95,7 @@ PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
     return soup;
 }
 
-/// Words of the format may be written in capitals.
+/// Keywords are compared without regard to case.
 bool same_word(std::string_view word, std::string_view lower) {
     return std::equal(word.begin(), word.end(), lower.begin(), lower.end(),
                       [](unsigned char a, char b) { return std::tolower(a) == b; });
@@ -142,7 +142,7 @@ private:
 
     void facet() {
         expect("normal");
-        for (int k = 0; k < 3; ++k) keyword();  // the normal follows from the corners; some files have nan here
+        for (int k = 0; k < 3; ++k) keyword();  // the normal follows from the corners; some files contain nan here
         expect("outer");
         expect("loop");
         for (;;) {
@@ -169,7 +169,7 @@ private:
 
 }  // namespace
 
-/// A text file may start with anything and a binary one with "solid": the size decides.
+/// Text files may start with any word and binary files with "solid": the size decides.
 bool looks_like_stl(std::string_view bytes) {
     if (bytes.size() >= header_size && bytes.size() == header_size + facet_count(bytes) * facet_size) return true;
     TextReader reader(bytes.substr(0, 4096), {}, 0);
@@ -182,7 +182,7 @@ PolygonSoup read_stl(std::string& bytes, const std::string& file) {
         TextReader reader(bytes, file, 0);
         std::string_view word;
         if (reader.skip_space()) word = reader.word();
-        // A binary header is padded with zero bytes or blanks and has a triangle count; text has neither zero.
+        // A binary header is padded with zero bytes or blanks and has a triangle count; text has no zero bytes.
         const bool text = bytes.find('\0') == std::string::npos;
         if (same_word(word, "solid") && (text || bytes.find("facet") != std::string::npos)) {
             normalise_text(bytes);

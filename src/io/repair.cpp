@@ -23,7 +23,7 @@ std::size_t count_of(const detail::Counts& counts, const std::string& name) {
     return 0;
 }
 
-/// Refuses what no step can make a surface of.
+/// Refuses input from which no step can make a surface.
 void check_triangles(const TriangleSoup& soup) {
     detail::check_soup(soup);
     if (soup.triangles.empty())
@@ -35,7 +35,7 @@ void check_triangles(const TriangleSoup& soup) {
     fail_input("mesh", "has no face with an area", "look at the scale and the precision of the file's coordinates");
 }
 
-/// Members of `values` for each new element, like the old element named.
+/// For each new element, the value of the old element in `like`.
 template <class Value>
 std::vector<Value> carried(const std::vector<Value>& values, const std::vector<Index>& like) {
     std::vector<Value> result;
@@ -71,7 +71,7 @@ MeshExtras carry_extras(const MeshExtras& old, const Worksoup& work) {
     return extras;
 }
 
-/// Old -> new from new -> old, through the element kept for each old one.
+/// Inverts a map new -> old to old -> new; each old element is represented by the element kept for it.
 std::vector<Index> inverted(const std::vector<Index>& source, const std::vector<Index>& kept_for) {
     std::vector<Index> map(kept_for.size(), no_index);
     for (std::size_t i = source.size(); i-- > 0;)
@@ -98,7 +98,7 @@ Point middle(const TriangleSoup& soup, Index t) {
     return CGAL::centroid(detail::point(soup, a), detail::point(soup, b), detail::point(soup, c));
 }
 
-/// Replaces the soup by its wrap; values and maps go by the nearest triangle, and the nearest corner of that.
+/// Replaces the soup by its wrap; attributes and maps are taken from the nearest triangle and its nearest corner.
 void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& options, RepairResult& result) {
     const double size = detail::diagonal(detail::box_of_triangles(work.soup));
     TriangleSoup wrapped = wrap_soup(work.soup, options.wrap_alpha * size, options.wrap_offset * size);
@@ -135,7 +135,7 @@ void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& opt
     work = std::move(made);
 }
 
-/// Says what removing self-intersections or wrapping changed besides.
+/// Notes further changes made by removing self-intersections or wrapping.
 void note_losses(const MeshDiagnosis& before, const MeshDiagnosis& after, std::vector<std::string>& notes) {
     if (before.components.size() != after.components.size())
         notes.push_back("the number of components changed from " + std::to_string(before.components.size()) + " to " +
@@ -171,7 +171,7 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     step("drop triangles", detail::drop_bad_triangles(work));
     if (work.soup.triangles.empty())
         fail_input("mesh", "has no face left after points were merged", "use a smaller --merge-distance or --merge-gap");
-    // Points of text files have six digits.
+    // Coordinates in text files have six digits.
     step("T-junctions", detail::sew_junctions(work, std::max({1e-6 * size, crack, options.merge_distance * size})));
     const auto& orientation = step("orient", detail::orient_patches(work));
     if (count_of(orientation, "edges cut because the surface has one side only") > 0)
@@ -226,7 +226,7 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
 
 namespace {
 
-/// As a reader of STL sees it.
+/// The soup as an STL reader sees it.
 TriangleSoup as_stl(const TriangleSoup& soup) {
     TriangleSoup read;
     std::vector<std::array<double, 3>> rounded = soup.points;
@@ -248,7 +248,7 @@ TriangleSoup as_stl(const TriangleSoup& soup) {
     return read;
 }
 
-/// Moves vertices that share a place in single precision towards the middle of their triangles; returns how many.
+/// Moves vertices that coincide in single precision towards the centroid of their triangles; returns their number.
 std::size_t move_apart(TriangleSoup& soup, double hair) {
     std::vector<std::array<double, 3>> rounded = soup.points;
     for (auto& p : rounded)

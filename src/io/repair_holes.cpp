@@ -1,4 +1,4 @@
-// Holes closed by triangles over their border vertices.
+// Fills holes with triangles between their border vertices.
 #include "ostraka/core/parallel.h"
 #include "repair_steps.h"
 #include "soup_geometry.h"
@@ -12,8 +12,8 @@ namespace ostraka::detail {
 
 namespace {
 
-/// The border of one hole: halfedges of the triangles around it in the order in which those run, that is clockwise seen
-/// from outside. Each ends at the place where the next begins, if not at the same vertex.
+/// The border of one hole: halfedges of the adjacent triangles in the direction of these triangles, that is, clockwise seen
+/// from outside. Each ends at the position, but not necessarily at the vertex, where the next one begins.
 using Hole = std::vector<Index>;
 
 std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>& opposite, const std::vector<Index>& place) {
@@ -24,7 +24,8 @@ std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>&
     std::vector<Hole> holes;
     for (Index start = 0; start < opposite.size(); ++start) {
         if (opposite[start] != no_index || used[start] != 0) continue;
-        // A walk that comes back to a place (holes that touch, where the vertex was taken apart) has gone around a hole.
+        // A walk that returns to a position (touching holes, whose common vertex was split) has completed the loop around a
+        // hole.
         Hole walk;
         for (Index h = start; used[h] == 0; h = leaving[target(soup, h)]) {
             used[h] = 1;
@@ -44,19 +45,19 @@ std::vector<Hole> find_holes(const TriangleSoup& soup, const std::vector<Index>&
 
 using Triple = std::array<Index, 3>;  ///< positions along the hole, increasing
 
-/// Triangulates the hole's polygon without new vertices; empty if it cannot be done. Positions of a long border are first
-/// cut off one by one, shortest chord first (O(n log n)); the rest is triangulated so that the largest dihedral angle is
-/// least, and then the area (O(n^3), Liepa 2003, section 3, after Barequet and Sharir 1995).
+/// Triangulates the polygon of the hole without new vertices; empty if that is impossible. A long border is first shortened by
+/// cutting off corners, shortest chord first (O(n log n)); the rest is triangulated so that the largest dihedral angle, then
+/// the area, is minimal (O(n^3), Liepa 2003, section 3, after Barequet and Sharir 1995).
 class HoleFiller {
 public:
     HoleFiller(const TriangleSoup& soup, const std::vector<Index>& opposite, const Hole& hole) : soup_(soup), hole_(hole) {
         const auto n = static_cast<Index>(hole.size());
-        // Chords along existing edges would make them non-manifold.
+        // Chords along existing edges would make these edges non-manifold.
         std::vector<std::pair<Index, Index>> positions;  // vertex, position
         for (Index i = 0; i < n; ++i) positions.emplace_back(origin(soup, hole[i]), i);
         std::sort(positions.begin(), positions.end());
         for (Index i = 0; i < n; ++i)
-            for (Index h = hole[i];;) {  // the fan at position i, from the border on
+            for (Index h = hole[i];;) {  // the fan at position i, starting at the border
                 const Index other = origin(soup, previous_halfedge(h));
                 const auto found = std::lower_bound(positions.begin(), positions.end(), std::pair<Index, Index>{other, 0});
                 if (found != positions.end() && found->first == other) edges_.insert(key(i, found->second));
@@ -89,7 +90,7 @@ private:
         return length > 0 ? v / length : Vector(0, 0, 0);
     }
     [[nodiscard]] bool is_edge(Index i, Index j) const { return edges_.count(key(i, j)) > 0; }
-    /// Normal of a filling triangle with positions i < j < k: it runs against the border.
+    /// Normal of a filling triangle with positions i < j < k; its orientation is opposite to the border.
     [[nodiscard]] Vector filling_normal(Index i, Index j, Index k) const {
         return CGAL::cross_product(places_[k] - places_[i], places_[j] - places_[i]);
     }
@@ -146,7 +147,7 @@ private:
         constexpr double never = std::numeric_limits<double>::infinity();
         std::vector<Weight> weight(n * n, {never, never});
         std::vector<std::size_t> middle(n * n, 0);
-        std::vector<Vector> normals(n * n, Vector(0, 0, 0));  // of the triangle chosen beyond a chord
+        std::vector<Vector> normals(n * n, Vector(0, 0, 0));  // normal of the triangle chosen beyond each chord
         for (std::size_t i = 0; i + 1 < n; ++i) {
             weight[i * n + i + 1] = {};
             normals[i * n + i + 1] = outside_[ring[i]];
@@ -166,7 +167,7 @@ private:
                         std::max({left.bend, right.bend, 1 - direction * normals[i * n + m], 1 - direction * normals[m * n + k]}),
                         left.area + right.area + length / 2};
                     if (closing) own.bend = std::max(own.bend, 1 - direction * outside_[ring[k]]);
-                    if (length == 0) own.bend = std::max(own.bend, 3.0);  // without area: the last resort
+                    if (length == 0) own.bend = std::max(own.bend, 3.0);  // a degenerate triangle is the last resort
                     if (own < weight[i * n + k]) {
                         weight[i * n + k] = own;
                         middle[i * n + k] = m;
@@ -190,12 +191,12 @@ private:
 
     const TriangleSoup& soup_;
     const Hole& hole_;
-    std::unordered_set<std::uint64_t> edges_;  ///< pairs of positions joined by an edge, the hole's border among them
+    std::unordered_set<std::uint64_t> edges_;  ///< pairs of positions connected by an edge, including the border of the hole
     std::vector<Point> places_;
-    std::vector<Vector> outside_;  ///< unit normal of the triangle at the side from a position to the next
+    std::vector<Vector> outside_;  ///< unit normal of the triangle at the side from each position to the next
 };
 
-/// Diameter of the disc whose area is that of the fan of triangles from the middle of the border: a slit has none.
+/// Diameter of a disc with the area of the triangle fan from the centroid of the border; near 0 for a slit.
 double width(const TriangleSoup& soup, const Hole& hole) {
     Vector middle(0, 0, 0);
     const Point base = point(soup, origin(soup, hole.front()));
@@ -212,8 +213,8 @@ double width(const TriangleSoup& soup, const Hole& hole) {
 
 namespace {
 
-/// Fills the holes within the limits but for those in `skip` (by their first halfedge). `hole_of` gets the first halfedge of the
-/// hole for each triangle added.
+/// Fills the holes within the limits except those in `skip` (given by their first halfedge). `hole_of` receives, for each added
+/// triangle, the first halfedge of its hole.
 Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Index>& skip, std::vector<Index>& hole_of) {
     auto& soup = work.soup;
     const std::vector<Index> opposite = pair_manifold(soup);
@@ -246,14 +247,14 @@ Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Ind
         ++filled;
         triangles += fillings[i].size();
         for (const auto& [a, b, c] : fillings[i]) {
-            const Index like = hole[a] / 3;  // the triangle beside its first corner
+            const Index like = hole[a] / 3;  // the triangle adjacent to its first corner
             const auto corner = [&](Index p) { return work.corner_like[hole[p] / 3][hole[p] % 3]; };
             hole_of.push_back(hole.front());
             work.add_triangle({origin(soup, hole[a]), origin(soup, hole[c]), origin(soup, hole[b])}, no_index,
                               work.face_like[like], {corner(a), corner(c), corner(b)}, work.flipped[like] != 0);
         }
     }
-    // Where a hole goes from one copy of a vertex to another, its filling joins their fans.
+    // If a hole connects two copies of a split vertex, its filling joins their fans.
     std::size_t rejoined = 0;
     DisjointSets copies(soup.points.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -269,7 +270,7 @@ Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Ind
     if (rejoined > 0) {
         for (auto& t : soup.triangles)
             for (Index& v : t) v = copies.find(v);
-        take_apart(work);  // should two copies have been neighbours of the same vertex
+        take_apart(work);  // needed if two merged copies were neighbours of the same vertex
         work.drop_isolated(true);
     }
     return {{"holes", limits.only_touched ? chosen.size() + too_long + too_wide : holes.size()},
@@ -285,11 +286,11 @@ Counts fill_once(Worksoup& work, const HoleLimits& limits, const std::vector<Ind
 
 Counts fill_holes(Worksoup& work, const HoleLimits& limits) {
     std::vector<Index> skip, hole_of;
-    if (limits.only_touched) return fill_once(work, limits, skip, hole_of);  // the caller examines the result
+    if (limits.only_touched) return fill_once(work, limits, skip, hole_of);  // the caller checks the result
     const Worksoup before = work;
     Counts counts = fill_once(work, limits, skip, hole_of);
     if (!hole_of.empty()) {
-        // A filling that runs into the surface, or into another one, is worse than a hole.
+        // A filling that intersects the surface or another filling is worse than a hole.
         const std::size_t first = before.soup.triangles.size();
         for (const auto& [a, b] : ostraka::self_intersections(work.soup, 1'000'000).pairs)
             for (const Index t : {a, b})

@@ -1,4 +1,4 @@
-// Self-intersections removed: folds are relaxed; what is left is cut out and the gaps are closed.
+// Removal of self-intersections: folds are smoothed; remaining intersecting triangles are cut out and the gaps are filled.
 #include "repair_steps.h"
 
 #include "ostraka/core/progress.h"
@@ -14,7 +14,7 @@ double total_area(const TriangleSoup& soup) {
     return sum;
 }
 
-/// 1 for the triangles in the pairs and those within so many rings of vertices around them.
+/// 1 for the triangles in the pairs and in the given number of vertex rings around them.
 std::vector<std::uint8_t> neighbourhood(const TriangleSoup& soup, const std::vector<std::pair<Index, Index>>& pairs, int rings) {
     std::vector<std::uint8_t> chosen(soup.triangles.size(), 0);
     for (const auto& [a, b] : pairs) chosen[a] = chosen[b] = 1;
@@ -30,10 +30,10 @@ std::vector<std::uint8_t> neighbourhood(const TriangleSoup& soup, const std::vec
     return chosen;
 }
 
-/// Two solids that were joined at a wall, which both of them have: without it they are one.
+/// Removes the common wall of two adjacent solids, which is contained twice in the soup: without it they form one solid.
 std::size_t drop_walls(Worksoup& work) {
     const std::vector<Index> place = same_place(work.soup.points);
-    std::vector<std::pair<std::array<Index, 3>, Index>> keyed;  // places in increasing order, triangle
+    std::vector<std::pair<std::array<Index, 3>, Index>> keyed;  // positions in increasing order, triangle
     for (Index t = 0; t < work.triangle_count(); ++t) {
         std::array<Index, 3> key{place[work.soup.triangles[t][0]], place[work.soup.triangles[t][1]],
                                  place[work.soup.triangles[t][2]]};
@@ -41,7 +41,7 @@ std::size_t drop_walls(Worksoup& work) {
         keyed.emplace_back(key, t);
     }
     std::sort(keyed.begin(), keyed.end());
-    const auto forward = [&](Index t) {  // does the triangle run through its places in increasing order?
+    const auto forward = [&](Index t) {  // does the triangle traverse its positions in increasing order?
         const auto& corners = work.soup.triangles[t];
         const std::array<Index, 3> p{place[corners[0]], place[corners[1]], place[corners[2]]};
         return (p[0] < p[1]) + (p[1] < p[2]) + (p[2] < p[0]) == 2;
@@ -71,10 +71,10 @@ std::size_t drop_walls(Worksoup& work) {
 using Pairs = std::vector<std::pair<Index, Index>>;
 constexpr std::size_t pair_limit = 1'000'000;
 
-/// Vertices of the pairs' surroundings, in sets of what hangs together; -1 elsewhere and on the border, which stays.
+/// Vertices near the pairs, in connected sets; -1 elsewhere and on the border, which is fixed.
 struct Folds {
-    std::vector<Index> set;    ///< of each vertex
-    std::vector<Index> moved;  ///< vertices with a set
+    std::vector<Index> set;    ///< set of each vertex
+    std::vector<Index> moved;  ///< vertices in a set
     std::vector<std::vector<Index>> neighbours;
 };
 
@@ -107,7 +107,7 @@ Folds find_folds(const TriangleSoup& soup, const Pairs& pairs, int rings) {
     return folds;
 }
 
-/// Each vertex of the folds goes to the mean of its neighbours, a few times.
+/// Laplacian smoothing of the fold vertices, a few iterations.
 void smooth(TriangleSoup& soup, const Folds& folds) {
     constexpr int passes = 5;
     std::vector<std::array<double, 3>> next(folds.moved.size());
@@ -123,7 +123,7 @@ void smooth(TriangleSoup& soup, const Folds& folds) {
     }
 }
 
-/// By set, 1 where folds take a good part of a component: smoothed, it would shrink as a whole.
+/// For each set, 1 if folds cover a large part of a component, which would shrink as a whole if smoothed.
 std::vector<std::uint8_t> wide_folds(const TriangleSoup& soup, const Folds& folds) {
     constexpr double wide = 0.2;
     DisjointSets components = joined_vertices(soup);
@@ -139,8 +139,8 @@ std::vector<std::uint8_t> wide_folds(const TriangleSoup& soup, const Folds& fold
     return result;
 }
 
-/// Smooths folds away, without a change of the topology. Only where a whole fold is gone its vertices stay where they went.
-/// Returns how many vertices moved.
+/// Smooths folds without changing the topology. The new positions are kept only if a fold is removed completely. Returns the
+/// number of moved vertices.
 std::size_t relax(Worksoup& work, Pairs& found) {
     constexpr int max_rings = 2;
     std::vector<std::uint8_t> moved(work.soup.points.size(), 0);
@@ -165,7 +165,7 @@ std::size_t relax(Worksoup& work, Pairs& found) {
     return static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
 }
 
-/// What cutting out can change unasked.
+/// Quantities that cutting out triangles could change unintentionally.
 struct Topology {
     std::size_t components = 0, border = 0;
     long long euler = 0;
@@ -193,7 +193,7 @@ struct Attempt {
     bool too_much = false;
 };
 
-/// Cuts out the triangles of the pairs with so many rings around them and closes the gaps.
+/// Cuts out the triangles of the pairs and the given number of rings around them, and fills the gaps.
 Attempt cut_out(const Worksoup& work, const std::vector<std::pair<Index, Index>>& pairs, int rings) {
     Attempt attempt{work};
     Worksoup& trial = attempt.work;
@@ -211,7 +211,7 @@ Attempt cut_out(const Worksoup& work, const std::vector<std::pair<Index, Index>>
     attempt.too_much = total_area(trial.soup) < 0.8 * area_before;
     if (attempt.too_much) return attempt;
     take_apart(trial);
-    drop_components(trial, false, 1e-4);  // crumbs that hung on by what was cut
+    drop_components(trial, false, 1e-4);  // small fragments that were connected only through the removed triangles
     trial.drop_isolated(true);
     fill_holes(trial, {1'000'000, 1.0, true});
     turn_outwards(trial);
@@ -222,8 +222,9 @@ Attempt cut_out(const Worksoup& work, const std::vector<std::pair<Index, Index>>
 
 namespace {
 
-/// Cuts with 0 to 5 rings, more only where fewer did not help; an attempt counts if fewer pairs are left and the border has not
-/// grown, and with `same_topology` if components and Euler number are what they were. Returns how many triangles went.
+/// Cuts with 0 to 5 rings, more only if fewer did not help. An attempt is accepted if fewer pairs are left and the border has
+/// not grown and, with `same_topology`, if the number of components and the Euler characteristic are unchanged. Returns the
+/// number of removed triangles.
 std::size_t cut_and_close(Worksoup& work, Pairs& found, bool same_topology, std::vector<std::string>& notes) {
     constexpr int max_rings = 6, max_tries = 12;
     std::size_t removed = 0;
@@ -258,7 +259,8 @@ Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes
     const std::size_t before = found.size();
     std::size_t walls = 0;
     if (before > 0 && (walls = drop_walls(work)) > 0) found = ostraka::self_intersections(work.soup, pair_limit).pairs;
-    // The least destructive way first, unless there are more pairs than triangles: then there are no single folds.
+    // The least destructive method first; skipped if there are at least as many pairs as triangles, since there are no separate
+    // folds then.
     const bool local = found.size() < work.soup.triangles.size();
     const std::size_t moved = local ? relax(work, found) : 0;
     std::size_t removed = local ? cut_and_close(work, found, true, notes) : 0;

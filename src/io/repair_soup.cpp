@@ -1,4 +1,4 @@
-// The soup under repair: bookkeeping, merging of points, triangles that cannot stay, components.
+// The soup under repair: bookkeeping, merging of points, invalid triangles, components.
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/point_tree.h"
@@ -50,7 +50,7 @@ void Worksoup::flip(Index t) {
 
 namespace {
 
-/// Drops the elements of lists whose flag is zero.
+/// Removes the elements of lists whose flag is zero.
 template <class... Lists>
 void keep_flagged(const std::vector<std::uint8_t>& keep, Lists&... lists) {
     const auto compact = [&](auto& list) {
@@ -72,7 +72,7 @@ std::size_t Worksoup::drop_isolated(bool keep_original) {
     std::vector<std::uint8_t> keep(soup.points.size(), 0);
     for (const auto& t : soup.triangles)
         for (const Index v : t) keep[v] = 1;
-    if (keep_original) {  // once: not the copies of vertices that were taken apart and rejoined
+    if (keep_original) {  // only once: not the copies of split vertices that were joined again
         std::vector<std::uint8_t> present(merged_into.size(), 0);
         for (std::size_t v = 0; v < keep.size(); ++v)
             if (keep[v] != 0 && vertex_source[v] != no_index) present[vertex_source[v]] = 1;
@@ -105,7 +105,7 @@ std::vector<Index> pair_manifold(const TriangleSoup& soup) {
 
 namespace {
 
-/// Vertices of components that are not closed: those may have to be joined to others.
+/// Vertices of components that are not closed, which may have to be joined to others.
 std::vector<std::uint8_t> vertices_of_open_components(const TriangleSoup& soup) {
     DisjointSets sets = joined_vertices(soup);
     std::vector<std::uint8_t> open(soup.points.size(), 0);
@@ -116,7 +116,7 @@ std::vector<std::uint8_t> vertices_of_open_components(const TriangleSoup& soup) 
     return open;
 }
 
-/// Length of the shortest edge at each vertex that is on the border, 0 elsewhere; edges without length do not count.
+/// For each border vertex, the length of its shortest edge, ignoring edges of length 0; 0 for other vertices.
 std::vector<double> shortest_at_border(const TriangleSoup& soup) {
     const SoupEdges edges = group_edges(soup);
     std::vector<double> shortest(soup.points.size(), 0);
@@ -134,8 +134,8 @@ std::vector<double> shortest_at_border(const TriangleSoup& soup) {
     return shortest;
 }
 
-/// Vertices of the border, how long the shortest edge at each is, and how far another one of them is that is nearer than a
-/// share of that: the other side of a crack. Infinite where there is none.
+/// Border vertices, the length of the shortest edge at each, and the distance of the nearest other border vertex closer than a
+/// given fraction of that length (its mate, on the other side of a crack); infinite if there is none.
 struct Border {
     std::vector<Index> vertices;
     std::vector<Point> places;
@@ -161,9 +161,9 @@ Border find_border(const TriangleSoup& soup, double gap) {
     return border;
 }
 
-/// Within what distance the points of one place of a torn surface lie: four times what nine in ten of those that have a mate
-/// have it within (of six points at random in a cube, the nearest is 0.5 sides off in nine cases of ten, the farthest 1.7); 0
-/// where fewer than `share` of the border have one.
+/// Upper bound of the distances between points that belong to one point of a torn surface: four times the distance within which
+/// nine in ten of the points with a mate have it (for six random points in a cube, the nearest is within 0.5 sides in nine of
+/// ten cases, the farthest within 1.7); 0 if less than the fraction `share` of the border has a mate.
 double crack_of(const Border& border, double share) {
     std::vector<double> mates;
     for (const double mate : border.mate)
@@ -174,10 +174,10 @@ double crack_of(const Border& border, double share) {
     return 4 * *rank;
 }
 
-/// Clusters of border points, each alone at first. Two corners of one triangle never come into one.
+/// Clusters of border points; initially each point is its own cluster. A cluster never contains two corners of one triangle.
 class PointClusters {
 public:
-    /// `number`: of each vertex of the soup, its number among the points; no_index for others.
+    /// `number`: for each vertex of the soup, its number among the points; no_index if it has none.
     PointClusters(const TriangleSoup& soup, const std::vector<Index>& number, std::size_t count) : sets_(count), beside_(count) {
         for (const auto& t : soup.triangles)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -199,7 +199,7 @@ public:
         sets_.unite(a, b);  // the lower root stays
     }
 
-    /// Unites a with q and b with p, the ends of two edges, unless a triangle has corners in both of either pair.
+    /// Unites a with q and b with p, the ends of two edges, unless a triangle has corners in both clusters of either pair.
     void unite_ends(Index a, Index q, Index b, Index p) {
         if (!may_unite(a, q) || !may_unite(b, p)) return;
         unite(a, q);
@@ -217,17 +217,18 @@ private:
     }
 
     DisjointSets sets_;
-    std::vector<std::vector<Index>> beside_;  ///< of a root: points that share a triangle with one of its cluster
+    std::vector<std::vector<Index>> beside_;  ///< for each root: points that share a triangle with a point of its cluster
 };
 
-/// Unites the points of one place where edges are as short as cracks are wide, so that distance alone does not tell the points of
-/// one place from those of the next: first the ends of pairs of border edges that run opposite ways, then points; the nearest
-/// pairs first, and never two corners of one triangle. `crack`: how far points of one place are apart at most, in the mesh's
-/// unit; 0: nothing is done. Returns for each border vertex whether it is at such a place.
+/// Merges coincident border points where edges are as short as cracks are wide, so that distance alone does not distinguish
+/// coincident points from neighbours: first the ends of pairs of opposite border edges, then single points; the nearest pairs
+/// first, and never two corners of one triangle. `crack`: maximum distance of coincident points in the mesh's unit; 0: nothing
+/// is done. Returns for each border vertex whether it is at such a position.
 std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& border, const PointTree& tree, double crack,
                                        DisjointSets& sets) {
     const std::size_t count = border.vertices.size();
-    constexpr std::size_t most = 64;  // neighbours of a point that are looked at, so that heaps of points take no square time
+    constexpr std::size_t most = 64;  // maximum number of neighbours examined per point, which
+                                      // avoids quadratic time for large sets of coincident points
     std::vector<std::uint8_t> knotted(count, 0);
     std::vector<Index> open;
     for (Index i = 0; i < count; ++i)
@@ -239,7 +240,7 @@ std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& b
         auto operator<=>(const Pair&) const = default;
     };
     std::vector<Pair> points, sides;
-    while (!open.empty()) {  // and all that is within a crack of those
+    while (!open.empty()) {  // propagates to all points within a crack width
         const Index i = open.back();
         open.pop_back();
         for (const auto& near : tree.neighbours(border.places[i], most)) {
@@ -253,7 +254,7 @@ std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& b
 
     std::vector<Index> number(soup.points.size(), no_index);
     for (Index i = 0; i < count; ++i) number[border.vertices[i]] = i;
-    std::vector<std::vector<Index>> from(count), to(count);  // other ends of border edges at knots
+    std::vector<std::vector<Index>> from(count), to(count);  // other ends of the border edges at knots
     const SoupEdges edges = group_edges(soup);
     for (std::size_t e = 0; e < edges.count(); ++e) {
         if (edges.valence(e) != 1) continue;
@@ -282,11 +283,11 @@ std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& b
     return knotted;
 }
 
-/// Unites border vertices that are near each other: closer than `limits.distance`, or across a crack. Vertices in the order of
-/// their indices; each is united with those around it that are not united yet. Returns the width of cracks. Where edges are as
-/// short as cracks are wide `settle_knots` does it.
+/// Merges border vertices that are closer than `limits.distance` or lie across a crack. Vertices are processed by index; each
+/// is united with the nearby vertices that are not merged yet. Where edges are as short as cracks are wide, `settle_knots` is
+/// used instead. Returns the width of cracks.
 double merge_near(const TriangleSoup& soup, const MergeDistances& limits, DisjointSets& sets) {
-    // Border vertices only: merging inside a surface would eat its detail.
+    // Border vertices only: merging interior vertices would destroy detail.
     TriangleSoup joined = soup;
     for (auto& t : joined.triangles)
         for (Index& v : t) v = sets.find(v);
@@ -320,7 +321,7 @@ Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack)
     const std::vector<std::uint8_t> open = vertices_of_open_components(soup);
     const std::vector<Index> place = same_place(soup.points);
     DisjointSets sets(soup.points.size());
-    // Points at one place: only those of open components, so that closed solids that touch stay apart ...
+    // Coincident points: only those of open components, so that touching closed solids stay separate ...
     std::vector<Index> first_open(soup.points.size(), no_index);
     for (Index v = 0; v < soup.points.size(); ++v) {
         if (open[v] == 0) continue;
@@ -328,7 +329,7 @@ Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack)
         if (first == no_index) first = v;
         else sets.unite(first, v);
     }
-    // ... and the ends of edges without length, wherever they are.
+    // ... and the ends of all edges of length 0.
     for (const auto& t : soup.triangles)
         for (std::size_t k = 0; k < 3; ++k)
             if (t[k] != t[(k + 1) % 3] && place[t[k]] == place[t[(k + 1) % 3]]) sets.unite(t[k], t[(k + 1) % 3]);
@@ -348,7 +349,7 @@ double crack_width(const TriangleSoup& soup) { return crack_of(find_border(soup,
 Counts sew_junctions(Worksoup& work, double tolerance) {
     auto& soup = work.soup;
     std::size_t sewn = 0;
-    constexpr int max_passes = 8;  // a triangle is split at one of its sides in each
+    constexpr int max_passes = 8;  // each pass splits a triangle at one of its sides
     for (int pass = 0; pass < max_passes; ++pass) {
         check_cancelled();
         const SoupEdges edges = group_edges(soup);
@@ -365,7 +366,7 @@ Counts sew_junctions(Worksoup& work, double tolerance) {
         std::vector<Point> places;
         for (const Index v : vertices) places.push_back(point(soup, v));
         const PointTree tree(places);
-        std::vector<std::vector<std::pair<double, Index>>> between(sides.size());  // where along the side, vertex
+        std::vector<std::vector<std::pair<double, Index>>> between(sides.size());  // position along the side, vertex
         parallel_for(sides.size(), [&](std::size_t i) {
             const Index h = sides[i];
             const Point a = point(soup, origin(soup, h)), b = point(soup, target(soup, h));
@@ -410,11 +411,11 @@ Counts sew_junctions(Worksoup& work, double tolerance) {
 
 namespace {
 
-/// Two triangles on the same three vertices that run opposite ways, by index.
+/// Two triangles (indices) with the same three vertices and opposite orientations.
 using OppositePair = std::pair<Index, Index>;
 
-/// Of triangles on the same three vertices the first of each sense is kept; returns how many go. Those left in both senses are
-/// listed in `opposite`.
+/// Among triangles with the same three vertices, keeps the first of each orientation; returns the number of dropped ones. Pairs
+/// that remain in both orientations are appended to `opposite`.
 std::size_t drop_repeated(Worksoup& work, const SoupEdges& edges, std::vector<std::uint8_t>& keep,
                           std::vector<OppositePair>& opposite) {
     const auto& soup = work.soup;
@@ -455,10 +456,10 @@ std::size_t drop_repeated(Worksoup& work, const SoupEdges& edges, std::vector<st
     return dropped;
 }
 
-/// Which pairs stand for one triangle of a surface (1: its first stays, 2: its second): where the other triangles at an edge are
-/// odd in number, one more closes the surface there, and two would tear it; where they are even, the pair is the wall between
-/// two solids (0). Pairs side by side are decided together, by the majority of the edges around them. The one stays that runs
-/// as its neighbours do.
+/// Decides which pairs represent a single triangle of a surface (1: keep its first, 2: keep its second). If the number of other
+/// triangles at an edge is odd, one more triangle closes the surface there; if it is even, the pair is the wall between two
+/// solids (0). Adjacent pairs are decided together, by the majority of the edges around them. Of a pair, the triangle with the
+/// orientation of its neighbours is kept.
 std::vector<std::uint8_t> single_sides(const TriangleSoup& soup, const SoupEdges& edges, const std::vector<std::uint8_t>& keep,
                                        const std::vector<OppositePair>& pairs) {
     std::vector<Index> pair_of(soup.triangles.size(), no_index);
@@ -501,7 +502,7 @@ Counts drop_bad_triangles(Worksoup& work) {
     const SoupEdges edges = group_edges(soup);
     std::vector<OppositePair> opposite;
     std::size_t duplicates = drop_repeated(work, edges, keep, opposite);
-    // Where most of the soup is doubled, it is a sheet written once for each side.
+    // If most of the soup is doubled, it is a sheet with a triangle for each side.
     const bool sheet = 4 * opposite.size() > soup.triangles.size() - repeated - duplicates;
     const std::vector<std::uint8_t> side =
         sheet ? std::vector<std::uint8_t>(opposite.size(), 1) : single_sides(soup, edges, keep, opposite);

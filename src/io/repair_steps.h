@@ -1,4 +1,4 @@
-// The soup under repair and the steps that change it. Private to the module.
+// The soup under repair and the repair steps. Private to the module.
 #pragma once
 
 #include "ostraka/io/repair.h"
@@ -6,17 +6,17 @@
 
 namespace ostraka::detail {
 
-/// A soup that remembers where its elements come from. "Source" is the old element it is (for the maps), no_index if it was
-/// made; "like" is the old element whose colour, label and texture it takes.
+/// A soup that tracks the origin of its elements. "Source" is the identical old element (for the maps), no_index for new
+/// elements; "like" is the old element that provides colour, label and texture coordinates.
 struct Worksoup {
     TriangleSoup soup;
     std::vector<Index> vertex_source, vertex_like;
     std::vector<Index> face_source, face_like;
     std::vector<std::array<Index, 3>> corner_like;  ///< 3 * old triangle + old corner
-    std::vector<std::uint8_t> flipped;              ///< per triangle: turned over since it was read
-    std::vector<std::uint8_t> touched;              ///< per vertex: at a place where triangles were cut out
+    std::vector<std::uint8_t> flipped;              ///< per triangle: orientation reversed since reading
+    std::vector<std::uint8_t> touched;              ///< per vertex: belongs to a triangle that was cut out
     std::vector<Index> merged_into;                 ///< old vertex -> old vertex it was merged into (or itself)
-    std::vector<Index> duplicate_of;                ///< old triangle -> old triangle kept in its stead (or itself)
+    std::vector<Index> duplicate_of;                ///< old triangle -> old triangle kept instead (or itself)
 
     explicit Worksoup(const TriangleSoup& original);
     [[nodiscard]] Index triangle_count() const { return static_cast<Index>(soup.triangles.size()); }
@@ -25,28 +25,29 @@ struct Worksoup {
                       bool is_flipped);
     void flip(Index triangle);
     void keep_triangles(const std::vector<std::uint8_t>& keep);
-    /// Drops vertices without a triangle but those with `keep`; returns how many.
+    /// Drops vertices without triangles; with `keep_original`, one copy of each original vertex is kept. Returns the number of
+    /// dropped vertices.
     std::size_t drop_isolated(bool keep_original);
 };
 
 using Counts = std::vector<std::pair<std::string, std::size_t>>;
 
-/// Opposite of each halfedge of a manifold soup, no_index on the border.
+/// Opposite halfedge of each halfedge of a manifold soup; no_index on the border.
 std::vector<Index> pair_manifold(const TriangleSoup& soup);
 
 struct MergeDistances {
     double distance;  ///< in the mesh's unit
-    double gap;       ///< share of the shortest edge at a point that cracks are narrower than
+    double gap;       ///< maximum width of cracks, as a fraction of the shortest edge at a point
 };
-/// `crack`: how wide cracks along the edges are, 0 where there are none.
+/// `crack`: receives the width of cracks along the edges, 0 if there are none.
 Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack);
-/// How wide cracks are where nine in ten vertices of the border have a mate nearer than half of their shortest edge; else 0.
+/// Width of cracks if nine in ten border vertices have a mate closer than half of their shortest edge; else 0.
 double crack_width(const TriangleSoup& soup);
-/// Border vertices that lie on a side of a triangle beyond, to the tolerance, are inserted there (T-junctions).
+/// Inserts border vertices into triangle edges on which they lie within the tolerance (T-junctions).
 Counts sew_junctions(Worksoup& work, double tolerance);
 Counts drop_bad_triangles(Worksoup& work);
 Counts orient_patches(Worksoup& work);
-/// Joins triangles at edges, two by two, and gives each fan of triangles a vertex of its own.
+/// Joins triangles at edges in pairs and gives each fan of triangles its own vertex.
 Counts take_apart(Worksoup& work);
 Counts drop_components(Worksoup& work, bool only_largest, double smallest_share);
 Counts flip_degenerate(Worksoup& work);
@@ -54,8 +55,8 @@ Counts turn_outwards(Worksoup& work);
 
 struct HoleLimits {
     std::size_t edges;
-    double share;       ///< widest, as a share of the component's diagonal
-    bool only_touched;  ///< only holes made by cutting out
+    double share;       ///< maximum width, as a fraction of the component's diagonal
+    bool only_touched;  ///< only holes created by cutting out triangles
 };
 Counts fill_holes(Worksoup& work, const HoleLimits& limits);
 

@@ -1,4 +1,4 @@
-// Orientation, and the taking apart of what is not a manifold.
+// Orientation, and splitting of non-manifold edges and vertices.
 #include "repair_steps.h"
 #include "soup_geometry.h"
 
@@ -9,7 +9,7 @@ namespace ostraka::detail {
 Counts orient_patches(Worksoup& work) {
     auto& soup = work.soup;
     const SoupEdges edges = group_edges(soup);
-    // Only edges of exactly two triangles tell how these must lie to one another.
+    // Only edges with exactly two triangles determine the relative orientation of their triangles.
     std::vector<Index> other(3 * soup.triangles.size(), no_index);
     for (std::size_t e = 0; e < edges.count(); ++e) {
         if (edges.valence(e) != 2) continue;
@@ -26,7 +26,7 @@ Counts orient_patches(Worksoup& work) {
         patch.assign(1, seed);
         turned[seed] = 0;
         std::size_t turned_count = 0;
-        for (std::size_t i = 0; i < patch.size(); ++i) {  // breadth first: conflicts meet far from the seed
+        for (std::size_t i = 0; i < patch.size(); ++i) {  // breadth first, so that conflicts occur far from the seed
             const Index t = patch[i];
             for (Index h = 3 * t; h < 3 * t + 3; ++h) {
                 if (other[h] == no_index) continue;
@@ -41,7 +41,7 @@ Counts orient_patches(Worksoup& work) {
                 }
             }
         }
-        // The majority's sense stays.
+        // The orientation of the majority is kept.
         const std::uint8_t minority = 2 * turned_count <= patch.size() ? 1 : 0;
         for (const Index t : patch) turned[t] = turned[t] == minority ? 1 : 0;
     }
@@ -57,15 +57,15 @@ void join_halfedges(std::vector<Index>& opposite, Index h, Index o) {
     if (o != no_index) opposite[o] = h;
 }
 
-/// A triangle soup whose joints are written down rather than read off the indices.
+/// A triangle soup with explicit adjacency, not derived from the vertex indices.
 struct Joints {
     Worksoup& work;
     std::vector<Index> opposite;
 
     void join(Index h, Index o) { join_halfedges(opposite, h, o); }
 
-    /// Puts vertex m at the start of halfedge h = a -> b of triangle (a, b, c), which becomes (m, b, c), and adds (a, m, c).
-    /// Returns the added triangle; its halfedges are a -> m, m -> c, c -> a.
+    /// Inserts vertex m into halfedge h = a -> b of triangle (a, b, c), which becomes (m, b, c), and adds (a, m, c). Returns
+    /// the added triangle; its halfedges are a -> m, m -> c, c -> a.
     Index halve_triangle(Index h, Index m) {
         auto& soup = work.soup;
         const Index t = h / 3, p = previous_halfedge(h), a = origin(soup, h), c = apex(soup, h);
@@ -96,8 +96,8 @@ struct Joints {
     }
 };
 
-/// Joins the triangles around one edge two by two so that no two pairs cross: sorted by angle, each triangle that has the
-/// solid on its far side (in the sense of growing angles) is joined to the next that has it on its near side.
+/// Joins the triangles around one edge in pairs so that no two pairs cross: sorted by angle, each triangle with the solid on
+/// its far side (at larger angles) is joined to the next triangle with the solid on its near side.
 std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index valence, std::vector<Index>& opposite) {
     const Index low = std::min(origin(soup, halfedges[0]), target(soup, halfedges[0]));
     const Index high = std::max(origin(soup, halfedges[0]), target(soup, halfedges[0]));
@@ -107,7 +107,7 @@ std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index 
     Vector zero(0, 0, 0), side(0, 0, 0);
     struct Leaf {
         double angle;
-        bool opens;  ///< the solid lies at greater angles
+        bool opens;  ///< the solid lies at larger angles
         Index halfedge;
     };
     std::vector<Leaf> leaves;
@@ -122,11 +122,11 @@ std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index 
         if (angle < 0) angle += 2 * CGAL_PI;
         leaves.push_back({angle, origin(soup, halfedges[i]) == high, halfedges[i]});
     }
-    // At one angle (a wall between two solids) the solid that ends comes before the one that begins.
+    // At equal angles (a wall between two solids), the end of a solid comes before the beginning of the next.
     std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) {
         return a.angle != b.angle ? a.angle < b.angle : a.opens != b.opens ? b.opens : a.halfedge < b.halfedge;
     });
-    // Matched like brackets, twice around because the circle has no beginning.
+    // Matched like brackets; two rounds, since a circle has no beginning.
     std::vector<Index> waiting;
     std::size_t joined = 0;
     for (int round = 0; round < 2; ++round)
@@ -144,7 +144,7 @@ std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index 
     return joined;
 }
 
-/// One vertex for each fan; the first fan keeps the vertex, the others get copies.
+/// One vertex per fan; the first fan keeps the vertex, the others get copies.
 std::size_t separate_fans(Joints& joints) {
     Worksoup& work = joints.work;
     auto& soup = work.soup;
@@ -174,7 +174,7 @@ std::size_t separate_fans(Joints& joints) {
     return copies;
 }
 
-/// Two edges between the same two vertices, not joined to one another: all but the first get a vertex in the middle.
+/// Splits distinct edges between the same two vertices: all but the first get a vertex at their midpoint.
 std::size_t separate_edges(Joints& joints) {
     const SoupEdges edges = group_edges(joints.work.soup);
     std::vector<std::uint8_t> halved(joints.work.soup.triangles.size(), 0);
@@ -183,12 +183,12 @@ std::size_t separate_edges(Joints& joints) {
         const Index* h = edges.first(e);
         const Index valence = edges.valence(e);
         if (valence < 2 || (valence == 2 && joints.opposite[h[0]] == h[1])) continue;
-        // A halved triangle no longer has the sides it was listed with: its edges wait for the next call.
+        // The listed sides of a split triangle are outdated: its edges are handled in the next call.
         if (std::any_of(h, h + valence, [&](Index g) { return halved[g / 3] != 0; })) continue;
         bool first = true;
         for (Index i = 0; i < valence; ++i) {
             const Index o = joints.opposite[h[i]];
-            if (o != no_index && std::find(h, h + i, o) != h + i) continue;  // a joint is met from both sides
+            if (o != no_index && std::find(h, h + i, o) != h + i) continue;  // each adjacency is met from both sides
             if (!first) {
                 joints.split_edge(h[i]);
                 halved.resize(joints.work.soup.triangles.size(), 1);
@@ -253,7 +253,8 @@ Counts turn_outwards(Worksoup& work) {
         if (work.flipped[t] != 0) as_read[c] = 0;
         volume[c] += sixfold_volume(soup, soup.triangles[t], apex_of[c]);
     }
-    // The wall of a cavity rightly looks inwards: if it was read that way and lies inside another component, it stays.
+    // The wall of a cavity is correctly oriented inwards: it is kept if it was read with this orientation and lies inside
+    // another component.
     std::vector<Index> inward, unturned;
     for (Index c = 0; c < closed.size(); ++c) {
         if (!closed[c] || !(volume[c] < 0)) continue;
@@ -274,7 +275,7 @@ Counts turn_outwards(Worksoup& work) {
 
 namespace {
 bool joined_by_edge(const TriangleSoup& soup, const std::vector<Index>& opposite, Index leaving, Index other) {
-    // Around the start of `leaving`, in both senses in case of a border.
+    // Around the start of `leaving`, in both directions if there is a border.
     for (Index h = leaving;;) {
         if (target(soup, h) == other || origin(soup, previous_halfedge(h)) == other) return true;
         h = opposite[previous_halfedge(h)];
@@ -303,7 +304,7 @@ Counts flip_degenerate(Worksoup& work) {
     for (std::size_t i = 0; i < queue.size() && i < maximum; ++i) {
         const Index t = queue[i];
         if (keep[t] == 0 || !has_no_area(soup, soup.triangles[t])) continue;
-        // The middle corner lies on the longest side, opposite to it.
+        // The middle corner lies on the longest side, which is opposite to it.
         Index h = 3 * t;
         double longest = -1;
         for (Index g = 3 * t; g < 3 * t + 3; ++g) {
@@ -311,7 +312,7 @@ Counts flip_degenerate(Worksoup& work) {
             if (length > longest) longest = length, h = g;
         }
         const Index o = opposite[h];
-        if (o == no_index) {  // on the border nothing is lost with it
+        if (o == no_index) {  // on the border, the triangle can be removed
             keep[t] = 0;
             ++dropped;
             for (Index g = 3 * t; g < 3 * t + 3; ++g) {
@@ -332,7 +333,7 @@ Counts flip_degenerate(Worksoup& work) {
         soup.triangles[other] = {m, c, b};
         work.corner_like[t] = {like_m, like_a, like_c};
         work.corner_like[other] = {like_m, like_c, like_b};
-        work.face_source[t] = work.face_source[other];  // both are parts of the triangle that had an area
+        work.face_source[t] = work.face_source[other];  // both are parts of the triangle with non-zero area
         work.face_like[t] = work.face_like[other];
         work.flipped[t] = work.flipped[other];
         join(3 * t, m_to_a);

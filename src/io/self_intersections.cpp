@@ -1,5 +1,5 @@
-// Self-intersections: candidates from the box tree, decided by exact orientation predicates. Triangles around a vertex that has
-// many of them all meet there: of those, only pairs whose directions from the vertex meet are candidates.
+// Self-intersections: candidates from the tree of bounding boxes, decided by exact orientation predicates. The triangles around
+// a vertex of very high valence all touch: among these, only pairs whose directions from the vertex overlap are candidates.
 #include "ostraka/core/parallel.h"
 #include "ostraka/io/diagnose.h"
 #include "soup_edges.h"
@@ -16,24 +16,25 @@ namespace {
 
 using detail::point;
 
-/// The side of d relative to the plane of a, b and c, exact; `exact` counts those that floating point does not decide.
+/// Exact orientation of d relative to the plane of a, b and c; `exact` counts the cases that need exact arithmetic.
 CGAL::Orientation side_of(const Point& a, const Point& b, const Point& c, const Point& d, std::size_t& exact) {
     const double ux = b.x() - a.x(), uy = b.y() - a.y(), uz = b.z() - a.z(), vx = c.x() - a.x(), vy = c.y() - a.y(),
                  vz = c.z() - a.z(), wx = d.x() - a.x(), wy = d.y() - a.y(), wz = d.z() - a.z();
-    // Of equal numbers the difference is exactly 0.
+    // The difference of equal numbers is exactly 0.
     if ((ux == 0 && vx == 0 && wx == 0) || (uy == 0 && vy == 0 && wy == 0) || (uz == 0 && vz == 0 && wz == 0))
         return CGAL::COPLANAR;
     const double p = vy * wz, q = vz * wy, r = vz * wx, s = vx * wz, t = vx * wy, u = vy * wx;
     const double value = ux * (p - q) + uy * (r - s) + uz * (t - u);
     const double size = std::fabs(ux) * (std::fabs(p) + std::fabs(q)) + std::fabs(uy) * (std::fabs(r) + std::fabs(s)) +
                         std::fabs(uz) * (std::fabs(t) + std::fabs(u));
-    // Shewchuk 1997: the error is below (7 + 56 e) e times the sum of the magnitudes, e = 2^-53, where nothing underflows.
+    // Shewchuk 1997: the error is below (7 + 56 e) e times the sum of the magnitudes, e = 2^-53, unless there is underflow.
     if (size > 1e-250 && std::fabs(value) > 1e-15 * size) return value > 0 ? CGAL::POSITIVE : CGAL::NEGATIVE;
     ++exact;
     return CGAL::orientation(a, b, c, d);
 }
 
-/// Does segment pq, whose end points lie on the sides `p_side` and `q_side` of the triangle's plane, meet the triangle?
+/// Whether segment pq, whose end points lie on the sides `p_side` and `q_side` of the triangle's plane, intersects the
+/// triangle.
 bool segment_meets(const Point& p, const Point& q, CGAL::Orientation p_side, CGAL::Orientation q_side,
                    const std::array<Point, 3>& t, std::size_t& exact) {
     if (p_side == q_side && p_side != CGAL::COPLANAR) return false;
@@ -41,8 +42,8 @@ bool segment_meets(const Point& p, const Point& q, CGAL::Orientation p_side, CGA
         exact += 4;
         return CGAL::do_intersect(Kernel::Segment_3(p, q), Kernel::Triangle_3(t[0], t[1], t[2]));
     }
-    // The line of the segment meets the plane in one point; that point lies in the triangle if the line passes its three
-    // sides on the same hand.
+    // The line of the segment intersects the plane in one point, which lies in the triangle if the line passes the three sides
+    // with the same orientation.
     bool positive = false, negative = false;
     for (std::size_t k = 0; k < 3; ++k) {
         const CGAL::Orientation side = side_of(p, q, t[k], t[(k + 1) % 3], exact);
@@ -58,7 +59,8 @@ bool on_one_side(const std::array<CGAL::Orientation, 3>& sides) {
 }
 
 bool disjoint_triangles_meet(const std::array<Point, 3>& s, const std::array<Point, 3>& t, std::size_t& exact) {
-    std::array<CGAL::Orientation, 3> s_sides, t_sides;  // of the corners of s relative to the plane of t, and the other way
+    std::array<CGAL::Orientation, 3> s_sides, t_sides;  // orientation of the corners of s relative
+                                                        // to the plane of t, and vice versa
     for (std::size_t k = 0; k < 3; ++k) s_sides[k] = side_of(t[0], t[1], t[2], s[k], exact);
     if (on_one_side(s_sides)) return false;
     for (std::size_t k = 0; k < 3; ++k) t_sides[k] = side_of(s[0], s[1], s[2], t[k], exact);
@@ -76,7 +78,7 @@ bool disjoint_triangles_meet(const std::array<Point, 3>& s, const std::array<Poi
     return false;
 }
 
-/// s[0] and t[0] are the same place. Whatever else the triangles share reaches the opposite side of one of them.
+/// s[0] and t[0] coincide. Any further intersection of the triangles reaches the opposite side of one of them.
 bool triangles_at_vertex_meet(const std::array<Point, 3>& s, const std::array<Point, 3>& t, std::size_t& exact) {
     const CGAL::Orientation s1 = side_of(t[0], t[1], t[2], s[1], exact), s2 = side_of(t[0], t[1], t[2], s[2], exact);
     if (s1 == s2 && s1 != CGAL::COPLANAR) return false;
@@ -85,15 +87,15 @@ bool triangles_at_vertex_meet(const std::array<Point, 3>& s, const std::array<Po
     return segment_meets(s[1], s[2], s1, s2, t, exact) || segment_meets(t[1], t[2], t1, t2, s, exact);
 }
 
-/// Decides whether two triangles without collinear corners share more than what joins them.
+/// Decides whether the intersection of two non-degenerate triangles exceeds their common vertices and edges.
 class PairTest {
 public:
     PairTest(const TriangleSoup& soup, const std::vector<Index>& place) : soup_(soup), place_(place) {}
 
-    /// `exact` counts predicates that took exact arithmetic.
+    /// `exact` counts the predicates that needed exact arithmetic.
     bool operator()(Index first, Index second, std::size_t& exact) const {
         auto s = soup_.triangles[first], t = soup_.triangles[second];
-        // Shared places are turned to the front of both.
+        // Rotates shared positions to the front of both triangles.
         int shared = 0;
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = static_cast<std::size_t>(shared); j < 3; ++j)
@@ -117,11 +119,11 @@ private:
     const std::vector<Index>& place_;
 };
 
-/// Vertices (places) that more triangles share than this are hubs.
+/// Positions with more triangles than this are hubs.
 constexpr std::size_t many_triangles = 256;
 
-/// For each triangle 1 + the corner's place that has the most triangles, where those are many, else 0; left out of the tree where
-/// it has no area.
+/// For each triangle, 1 + the position of the corner with the most triangles if that is a hub, else 0; degenerate triangles are
+/// excluded from the tree.
 std::vector<Index> hubs_of(const TriangleSoup& soup, const std::vector<Index>& place,
                            const std::vector<std::uint8_t>& without_area) {
     std::vector<Index> count(soup.points.size(), 0), hubs(soup.triangles.size(), detail::TriangleTree::left_out);
@@ -138,7 +140,8 @@ std::vector<Index> hubs_of(const TriangleSoup& soup, const std::vector<Index>& p
     return hubs;
 }
 
-/// A triangle over the box of the directions from `hub` to the opposite side of a triangle, on the unit sphere.
+/// Adds a triangle whose bounding box contains the directions from `hub` to the opposite side of a triangle, on the unit
+/// sphere.
 void add_directions(const TriangleSoup& soup, const std::vector<Index>& place, Index hub, Index triangle, TriangleSoup& arcs) {
     std::array<std::array<double, 3>, 2> ends{};
     std::size_t end = 0;
@@ -150,9 +153,10 @@ void add_directions(const TriangleSoup& soup, const std::vector<Index>& place, I
         d = d / std::sqrt(d.squared_length());
         ends[end++] = {d.x(), d.y(), d.z()};
     }
-    double half = 0;  // of the chord, squared
+    double half = 0;  // half of the chord, squared
     for (std::size_t k = 0; k < 3; ++k) half += (ends[1][k] - ends[0][k]) * (ends[1][k] - ends[0][k]) / 4;
-    const double beyond = half / (1 + std::sqrt(std::max(0.0, 1 - half))) + 1e-9;  // the arc's height over its chord; rounding
+    const double beyond = half / (1 + std::sqrt(std::max(0.0, 1 - half))) + 1e-9;  // height of the arc over its chord, plus
+                                                                                   // rounding errors
     std::array<double, 3> low{}, high{};
     for (std::size_t k = 0; k < 3; ++k) {
         low[k] = std::min(ends[0][k], ends[1][k]) - beyond;
@@ -163,17 +167,17 @@ void add_directions(const TriangleSoup& soup, const std::vector<Index>& place, I
     arcs.triangles.push_back({first, first + 1, first + 1});
 }
 
-/// Tests the pairs that a tree names, within bounds that do not depend on the threads.
+/// Tests the candidate pairs of a tree, within limits that do not depend on the threads.
 class BoundedSearch {
 public:
     BoundedSearch(const TriangleSoup& soup, const std::vector<Index>& place, std::size_t limit)
         : meets_(soup, place), limit_(limit), most_work_(200 * soup.triangles.size() + 100'000'000) {}
 
-    /// `triangle`: the soup's triangle for one of the tree, in the order of the tree's soup; all of them where it is empty.
+    /// `triangle`: maps triangles of the tree to triangles of the soup; empty: identical.
     void search(const detail::TriangleTree& tree, const std::vector<Index>& triangle) {
         const std::size_t leaves = tree.leaf_count();
         for (std::size_t begin = 0; begin < leaves && result.complete;) {
-            // What a batch may take at most is about what is left.
+            // The maximum work of a batch is about the remaining budget.
             const std::size_t room = std::min((most_work_ - std::min(work_, most_work_)) / work_of_leaf,
                                               (limit_ - result.pairs.size()) / pairs_of_leaf);
             const std::size_t count = std::min(std::clamp<std::size_t>(room, 64, 8192), leaves - begin);
@@ -186,7 +190,7 @@ public:
     SelfIntersections result;
 
 private:
-    // A unit of work is a test in floating point, some hundred nanoseconds.
+    // A unit of work is a floating-point test, some hundred nanoseconds.
     static constexpr std::size_t work_of_leaf = 1 << 18, pairs_of_leaf = 4096, boxes_of_test = 16, tests_of_exact = 16;
 
     struct Leaf {
@@ -224,7 +228,7 @@ private:
     std::vector<Leaf> leaves_;
 };
 
-/// Pairs of triangles of one hub, hub after hub.
+/// Pairs of triangles at the same hub, for each hub.
 void search_hubs(const TriangleSoup& soup, const std::vector<Index>& place, const std::vector<Index>& hubs,
                  BoundedSearch& search) {
     std::vector<Index> at_hubs;

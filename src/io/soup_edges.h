@@ -1,4 +1,4 @@
-// Edges of a triangle soup, found without promising anything of its topology. Private to the module.
+// Edges of a triangle soup, without assumptions about its topology. Private to the module.
 #pragma once
 
 #include "ostraka/core/disjoint_sets.h"
@@ -11,10 +11,10 @@ namespace ostraka::detail {
 inline Index next_halfedge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
 inline Index previous_halfedge(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/// Undirected edges, each with the halfedges that run along it. Halfedge 3 t + k runs from corner k to corner k + 1 of
-/// triangle t. Triangles that name a vertex twice are left out.
+/// Undirected edges with their halfedges. Halfedge 3 t + k runs from corner k to corner k + 1 of triangle t. Triangles with a
+/// repeated vertex are ignored.
 struct SoupEdges {
-    std::vector<Index> halfedges;  ///< grouped by edge; inside a group by triangle
+    std::vector<Index> halfedges;  ///< grouped by edge; within a group, sorted by triangle
     std::vector<Index> begin;      ///< edge e has halfedges [begin[e], begin[e + 1])
     [[nodiscard]] std::size_t count() const { return begin.size() - 1; }
     [[nodiscard]] Index valence(std::size_t edge) const { return begin[edge + 1] - begin[edge]; }
@@ -26,21 +26,21 @@ inline Index target(const TriangleSoup& soup, Index h) { return soup.triangles[h
 inline Index apex(const TriangleSoup& soup, Index h) { return soup.triangles[h / 3][(h + 2) % 3]; }
 inline bool repeats_corner(const std::array<Index, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-/// Sets of vertices that triangles join.
+/// Connected components of vertices (connected by triangles).
 DisjointSets joined_vertices(const TriangleSoup& soup);
 
-/// Linear but for the sorting of about six halfedges a vertex.
+/// Linear time, except for the sorting of about six halfedges per vertex.
 SoupEdges group_edges(const TriangleSoup& soup);
 
-/// For each point the lowest index of a point at the same place (negative zero is zero). Expected linear time.
+/// For each point, the lowest index of a point with the same position (negative zero equals zero). Expected linear time.
 std::vector<Index> same_place(const std::vector<std::array<double, 3>>& points);
 
-/// Throws Error (input) if a triangle names a vertex that does not exist, a coordinate is not finite or beyond 1e100, or
-/// there are more elements than indices.
+/// Throws Error (input) if a vertex index is out of range, if a coordinate is not finite or beyond 1e100, or if there are more
+/// elements than an Index can number.
 void check_soup(const TriangleSoup& soup);
 
-/// Sets of corners (3 t + k) that lie in one fan of triangles around their vertex: corners of triangles that meet at an
-/// edge, whatever its valence.
+/// Sets of corners (3 t + k) that lie in one fan of triangles around their vertex: corners of triangles that share an edge,
+/// whatever its valence.
 DisjointSets fans_of_corners(const TriangleSoup& soup, const SoupEdges& edges);
 
 }  // namespace ostraka::detail

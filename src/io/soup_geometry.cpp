@@ -11,8 +11,8 @@ bool has_no_area(const TriangleSoup& soup, const std::array<Index, 3>& t) {
     const Point a = point(soup, t[0]), b = point(soup, t[1]), c = point(soup, t[2]);
     const Vector u = b - a, v = c - a;
     const double lengths = u.squared_length() * v.squared_length();
-    // Differences of doubles are right to half a unit in the last place, so is their product to a few: far from zero
-    // needs no exact arithmetic.
+    // Differences of doubles are exact to half a unit in the last place, their product to a few units: values far from zero
+    // need no exact arithmetic.
     if (lengths > 1e-200 && lengths < 1e300 && CGAL::cross_product(u, v).squared_length() > 1e-26 * lengths) return false;
     return CGAL::collinear(a, b, c);
 }
@@ -37,8 +37,8 @@ double diagonal(const CGAL::Bbox_3& box) {
 }
 
 namespace {
-/// Crossings of the segment with each component but its own, by parity; false if the segment touches an edge or a vertex. Only
-/// the first `most` boxes of the tree that it meets are looked into.
+/// Parity of the crossings of the segment with each other component; returns false if the segment touches an edge or a vertex.
+/// Only the first `most` intersected boxes of the tree are examined.
 bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const std::vector<Index>& component, Index own,
                      const Point& from, const Point& to, std::size_t most, std::vector<std::pair<Index, bool>>& parity) {
     bool clean = true;
@@ -71,7 +71,7 @@ bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const s
 
 std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
                                               const std::vector<bool>& closed, const std::vector<Index>& inner) {
-    std::vector<std::uint8_t> enclosed(closed.size(), 0);  // not bits: threads write side by side
+    std::vector<std::uint8_t> enclosed(closed.size(), 0);  // not a bit vector: threads write adjacent elements
     if (inner.empty() || closed.size() < 2) return enclosed;
     std::vector<CGAL::Bbox_3> boxes(closed.size());
     std::vector<Index> first_triangle(closed.size(), no_index);
@@ -82,17 +82,17 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
         for (const Index v : soup.triangles[t]) boxes[c] += point(soup, v).bbox();
     }
     const TriangleTree tree(soup);
-    // Thousands of shells around each other would take the square of their number.
+    // Thousands of nested shells would take quadratic time.
     const std::size_t most = std::max<std::size_t>(20'000, 200'000'000 / inner.size());
     const double ray_length = 2 * diagonal(box_of_triangles(soup));
     parallel_for(
         inner.size(),
         [&](std::size_t i) {
             const Index own = inner[i];
-            // The component's own triangles do not matter, so the ray may start on one of them.
+            // Triangles of the component itself are ignored, so the ray may start on one of them.
             const auto& t = soup.triangles[first_triangle[own]];
             const Point start = CGAL::centroid(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
-            // Fixed directions without any special position; the next one is taken if a ray grazes an edge.
+            // Fixed generic directions; if a ray touches an edge, the next direction is used.
             for (int attempt = 0; attempt < 16; ++attempt) {
                 const double s = 0.7316 + attempt * 0.3947, z = std::cos(1.13 + attempt * 0.717);
                 const double r = std::sqrt(1 - z * z);

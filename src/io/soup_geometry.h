@@ -1,4 +1,4 @@
-// Measures of a triangle soup. Private to the module.
+// Geometric quantities of a triangle soup. Private to the module.
 #pragma once
 
 #include "ostraka/io/diagnose.h"
@@ -15,25 +15,25 @@ inline Vector normal(const TriangleSoup& soup, const std::array<Index, 3>& t) {
 inline double area(const TriangleSoup& soup, const std::array<Index, 3>& t) {
     return 0.5 * std::sqrt(normal(soup, t).squared_length());
 }
-/// Six times the volume of the tetrahedron over a triangle.
+/// Six times the signed volume of the tetrahedron spanned by a triangle and the apex.
 inline double sixfold_volume(const TriangleSoup& soup, const std::array<Index, 3>& t, const Point& apex) {
     return CGAL::cross_product(point(soup, t[0]) - apex, point(soup, t[1]) - apex) * (point(soup, t[2]) - apex);
 }
 
-/// Are the three corners of a triangle exactly on one line (or fewer than three)?
+/// Whether the corners of a triangle are exactly collinear or coincide.
 bool has_no_area(const TriangleSoup& soup, const std::array<Index, 3>& t);
 /// 1 for each triangle with `has_no_area`.
 std::vector<std::uint8_t> triangles_without_area(const TriangleSoup& soup);
 
-/// Box of the vertices that have a triangle.
+/// Bounding box of the vertices with triangles.
 CGAL::Bbox_3 box_of_triangles(const TriangleSoup& soup);
 double diagonal(const CGAL::Bbox_3& box);
 
 SelfIntersections self_intersections(const TriangleSoup& soup, const std::vector<Index>& place,
                                      const std::vector<std::uint8_t>& without_area, std::size_t limit);
 
-/// Which of the closed components listed in `inner` lie wholly inside another closed component: a ray is cast from one of
-/// their vertices, and their boxes must be nested. `closed` tells for each component whether it is closed.
+/// For each of the closed components listed in `inner`, whether it lies completely inside another closed component: tested by a
+/// ray from one of its triangles; their boxes must be nested. `closed`: for each component, whether it is closed.
 std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const std::vector<Index>& component_of_triangle,
                                               const std::vector<bool>& closed, const std::vector<Index>& inner);
 

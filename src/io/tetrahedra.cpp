@@ -1,4 +1,4 @@
-// Tetrahedral meshes: Medit's .mesh (text) and VTK's .vtu (text). Their surface is what everything else works on.
+// Tetrahedral meshes: Medit's .mesh (text) and VTK's .vtu (text). All other modules use their surface.
 #include "formats.h"
 #include "ostraka/core/error.h"
 #include "text_reader.h"
@@ -24,7 +24,8 @@ double volume_of(const PolygonSoup& soup, const Tetrahedron& t) {
            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
-/// The faces of one tetrahedron only become the polygons of the soup, outward; labels are those of polygons with these corners.
+/// Faces of exactly one tetrahedron become the polygons of the soup, oriented outwards; their labels are those of the file's
+/// polygons with the same corners.
 void take_surface(PolygonSoup& soup, const std::string& file) {
     const std::vector<Tetrahedron>& cells = soup.extras.tetrahedra;
     if (cells.empty()) return;
@@ -127,7 +128,7 @@ private:
     }
     std::size_t count() {
         const std::int64_t value = number("a count");
-        // An entry takes two bytes at least.
+        // An entry has at least two bytes.
         if (value < 0 || static_cast<std::size_t>(value) > reader_.remaining() / 2 + 1)
             reader_.fail("a section of " + std::to_string(value) + " entries does not fit the file", "the file is cut off");
         return static_cast<std::size_t>(value);
@@ -168,7 +169,7 @@ private:
             static_cast<void>(reference());
         }
     }
-    /// A section that is not kept: a count, then a line each.
+    /// Skips a section that is not kept: a count, then one line per entry.
     void other(const std::string& word) {
         if (word.empty() || !std::isalpha(static_cast<unsigned char>(word.front())))
             reader_.fail("there is " + in_quotes(word) + " where a section should begin", "export it again as text (.mesh)");

@@ -56,7 +56,7 @@ double TextReader::number(const char* what) {
     double value = 0;
     auto [stop, code] = std::from_chars(position_, end_, value);
     if (code == std::errc::result_out_of_range) {
-        // Too small is as good as zero; too large is not a coordinate.
+        // An underflow counts as zero; an overflow is no valid coordinate.
         long double wide = 0;
         const auto again = std::from_chars(position_, end_, wide);
         if (again.ec != std::errc() || std::fabs(wide) > static_cast<long double>(std::numeric_limits<double>::max())) {
@@ -114,7 +114,7 @@ std::int64_t TextReader::integer(const char* what) {
 
 void TextReader::fail(const std::string& what, const std::string& remedy, const char* at) const {
     if (at == nullptr) at = position_;
-    // A continued line keeps its number: its line feed was replaced by a vertical tab.
+    // Continued lines are counted: their line feeds were replaced by vertical tabs.
     const auto line = 1 + std::count_if(begin_, at, [](char c) { return c == '\n' || c == '\v'; });
     fail_input(file_ + ", line " + std::to_string(line), what, remedy);
 }

@@ -1,4 +1,4 @@
-// Walks over the text of a mesh file: lines, words and numbers, with errors that name file and line.
+// Parser for the text of a mesh file: lines, words and numbers, with errors that name file and line.
 #pragma once
 
 #include "ostraka/core/progress.h"
@@ -20,31 +20,30 @@ public:
           file_(std::move(file)),
           comment_(comment) {}
 
-    /// Leaves the rest of the current line and stops at the first word of the next line that has one; false at the end of the
-    /// text.
+    /// Skips the rest of the current line and moves to the first word of the next non-empty line; false at the end of the text.
     bool next_line();
     /// Skips blanks, comments and line ends; false at the end of the text.
     bool skip_space();
-    /// True if no further word stands on this line.
+    /// True if there are no more words on this line.
     bool line_done() {
         skip_blanks();
         return position_ == end_ || *position_ == '\n' || (comment_ != 0 && *position_ == comment_);
     }
     /// The next word of this line; empty if there is none.
     std::string_view word();
-    /// The next words of this line, up to its end or comment, blanks at the end cut off.
+    /// The remaining text of this line up to its end or a comment, without trailing blanks.
     std::string_view rest_of_line();
 
-    /// The next word of this line as a number; throws Error if it is missing, malformed, or too large for a double.
-    /// NaN and infinities are refused.
+    /// The next word of this line as a number. Throws Error if it is missing, malformed, too large for a double, infinite or
+    /// NaN.
     double finite(const char* what);
-    /// As above, but true infinities and NaN are handed on (colours are checked by their reader).
+    /// As above, but accepts infinities and NaN (colours are checked by their reader).
     double number(const char* what);
-    /// The next word of this line as a whole number that fits 64 bits.
+    /// The next word of this line as a 64-bit integer.
     std::int64_t integer(const char* what);
-    /// A whole number at the current position, without skipping blanks and whatever follows it.
+    /// An integer at the current position; blanks before it are not skipped, and any character may follow.
     std::int64_t integer_part(const char* what);
-    /// Takes one character if it is next.
+    /// Consumes the next character if it is `c`.
     bool take(char c) {
         if (position_ == end_ || *position_ != c) return false;
         ++position_;
@@ -62,7 +61,7 @@ public:
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
     [[nodiscard]] const std::string& file() const { return file_; }
 
-    /// Throws Error (input) that names the file and the line at `at` (default: the current position).
+    /// Throws Error (input) with the file and the line at `at` (default: the current position).
     [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}, const char* at = nullptr) const;
 
     static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
@@ -82,10 +81,10 @@ private:
     CancelCheck check_;
 };
 
-/// A word as it can stand in a message: printable, at most 40 characters.
+/// A word in quotes for a message: printable characters only, at most 40.
 std::string in_quotes(std::string_view word);
 
-/// Lone carriage returns become line feeds where a text has no line feed at all; a byte order mark becomes blank.
+/// Replaces carriage returns by line feeds if the text has no line feeds, and a byte order mark by blanks.
 void normalise_text(std::string& text);
 
 }  // namespace ostraka::io

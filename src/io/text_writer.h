@@ -1,4 +1,4 @@
-// Collects text or bytes and hands them to an atomic file in large pieces.
+// Buffered writing of text or bytes to an atomic file.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -32,7 +32,7 @@ public:
             number(value);
         }
     }
-    /// A value's bytes; the machine is little-endian (checked in core/mesh.cpp).
+    /// The bytes of a value; the machine is little-endian (checked in core/mesh.cpp).
     template <class T>
     void bytes(const T& value) {
         buffer_.append(reinterpret_cast<const char*>(&value), sizeof value);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Spreads the lower 16 bits so that two zero bits follow each.
+/// Inserts two zero bits after each of the lower 16 bits.
 std::uint64_t spread(std::uint64_t x) {
     x = (x | (x << 32)) & 0x001F00000000FFFFull;
     x = (x | (x << 16)) & 0x001F0000FF0000FFull;
@@ -133,8 +133,8 @@ void TriangleTree::group_nodes() {
 }
 
 TriangleTree::Box TriangleTree::scaled_box(const std::array<double, 3>& low, const std::array<double, 3>& high) const {
-    // Subtraction, multiplication and rounding to single precision never change an order; stepping outwards by one
-    // unit makes up for the rounding.
+    // Subtraction, multiplication and rounding to single precision are monotone; one step outwards compensates for the
+    // rounding.
     Box box;
     for (std::size_t k = 0; k < 3; ++k) {
         box.low[k] = std::nextafterf(static_cast<float>((low[k] - corner_[k]) * scale_), -infinity);

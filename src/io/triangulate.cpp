@@ -5,7 +5,7 @@ namespace ostraka {
 
 namespace {
 
-/// Face and corner data follow the triangles; vertex data stay.
+/// Assigns face and corner data to the triangles; vertex data are unchanged.
 MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& triangle_polygon, const std::vector<Index>& triangle_corner) {
     MeshExtras result;
     result.vertex_colours = std::move(extras.vertex_colours);
@@ -36,7 +36,7 @@ bool all_are_triangles(const PolygonSoup& polygons) {
 }  // namespace
 
 TriangulatedSoup triangulate(PolygonSoup&& given) {
-    PolygonSoup polygons = std::move(given);  // so that the corners are freed on return, not when the caller ends
+    PolygonSoup polygons = std::move(given);  // moved, so that the corners are freed on return
     TriangulatedSoup result;
     result.notes = std::move(polygons.notes);
     result.soup.points = std::move(polygons.points);

@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-/// The triangles that are wrapped. The library queries them at every step: there the watch is asked.
+/// The triangles to wrap. CGAL queries them at every step, and each query checks for cancellation.
 class WatchedTriangles : public CGAL::Alpha_wraps_3::internal::Triangle_soup_oracle<Kernel> {
 public:
     using Triangles = Triangle_soup_oracle<Kernel>;

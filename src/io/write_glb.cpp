@@ -88,7 +88,7 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     for (std::size_t i = 0; textured && i < count; ++i) {
         const auto& [s, t] = corner_texture ? extras.corner_texture[i] : extras.vertex_texture[vertex_of(i)];
         writer.bytes(s);
-        writer.bytes(1 - t);  // the image's first row is at the top in glTF, at the bottom in OBJ and PLY
+        writer.bytes(1 - t);  // the first row of an image is at the top in glTF, at the bottom in OBJ and PLY
         writer.flush_if_full();
     }
     for (std::size_t i = 0; i < corner_count; ++i) {

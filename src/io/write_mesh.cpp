@@ -27,7 +27,7 @@ void check_extras(const MeshExtras& extras, const WriteOptions& options, std::si
             if (v >= vertices) throw std::logic_error("write_mesh: a tetrahedron of a vertex that is not there");
 }
 
-/// What faces have, for the polygons.
+/// Face attributes of the polygons, taken from their triangles.
 MeshExtras of_polygons(const MeshExtras& extras, const std::vector<Index>& triangle) {
     MeshExtras result = extras;
     const auto pick = [&](const auto& from, auto& to) {

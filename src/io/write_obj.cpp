@@ -17,7 +17,7 @@ Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
         }
         writer.end_line();
     }
-    // Texture coordinates of vertices carry the vertices' numbers, those of corners are numbered in order.
+    // Per-vertex texture coordinates have the numbers of the vertices; per-corner ones are numbered consecutively.
     const bool by_vertex = !extras.vertex_texture.empty(), by_corner = !by_vertex && !extras.corner_texture.empty();
     for (const auto& [s, t] : by_vertex ? extras.vertex_texture : extras.corner_texture) {
         writer.text("vt");

@@ -16,7 +16,7 @@ std::string colour_properties(bool alpha) {
            (alpha ? "property uchar alpha\n" : "");
 }
 
-/// The same values as words on lines or as bytes.
+/// Writes values as words on lines or as bytes.
 class Values {
 public:
     Values(TextWriter& writer, bool ascii) : writer_(writer), ascii_(ascii) {}

@@ -12,7 +12,7 @@ namespace {
 
 using Float3 = std::array<float, 3>;
 
-/// Unit normal, zero where the triangle has none; the scaling keeps huge and tiny triangles from overflowing.
+/// Unit normal, zero for a degenerate triangle; scaling prevents overflow for huge and underflow for tiny triangles.
 Float3 unit_normal(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c) {
     double u[3], v[3], largest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -31,7 +31,7 @@ Float3 unit_normal(const std::array<double, 3>& a, const std::array<double, 3>& 
     return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
-/// True if a reader that numbers vertices by first appearance gets the numbers of `soup`.
+/// Whether a reader that numbers vertices by first appearance obtains the vertex numbers of `soup`.
 bool order_survives(const TriangleSoup& soup) {
     Index next = 0;
     for (const auto& triangle : soup.triangles)
@@ -60,7 +60,7 @@ Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     if (ascii) {
         writer.text("solid " + one_line(options.comment) + "\n");
     } else {
-        // Not "solid": some readers take that for text.
+        // Not "solid": some readers interpret that as text.
         std::string header = one_line("binary STL; " + options.comment);
         header.resize(80, ' ');
         writer.text(header);

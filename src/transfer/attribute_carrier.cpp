@@ -5,7 +5,7 @@ namespace ostraka {
 void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
     for (const Attribute& attribute : from.attributes) {
         Attribute moved = attribute;
-        // A file speaks of the elements and the place of the old mesh.
+        // The file refers to the elements and the position of the old mesh.
         if (!moved.descriptor.file.empty()) moved.descriptor.stale = true;
         if (attribute.type == AttributeType::measure) {
             moved.measure.points.clear();
@@ -20,10 +20,10 @@ void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
                     continue;
                 }
                 moved.measure.points.push_back(place.vertex);
-                // Face indices of a refined mesh are new: there the nearest vertex stands alone.
+                // Face indices of a refined mesh are new: there, only the nearest vertex is stored.
                 if (!refined_) moved.measure.locations.push_back({place.place.face, place.place.barycentric});
             }
-            for (const auto& pins : attribute.measure.repeats) {  // a picking that loses a pin is none
+            for (const auto& pins : attribute.measure.repeats) {  // a picking that loses a pin is dropped
                 std::vector<Index> places;
                 for (const Index v : pins)
                     if (const Index place = tracer_.place(v).vertex; place != no_index) places.push_back(place);
@@ -33,7 +33,7 @@ void AttributeCarrier::carry(const Annotation& from, Annotation& to) {
                 to.note += (to.note.empty() ? "" : "; ") + ("measure '" + attribute.name + "' lost a pin");
                 lost_pins_.emplace_back(from.id, attribute.id, attribute.measure.value);
                 if (moved.measure.points.size() < 2) {
-                    // No measure without two pins: the value stays, as a descriptor that is out of date.
+                    // A measure needs two pins: without them, the value is kept as a stale descriptor.
                     moved.type = AttributeType::descriptor;
                     if (attribute.measure.value) moved.descriptor.values = {*attribute.measure.value};
                     moved.descriptor.unit = attribute.measure.unit;

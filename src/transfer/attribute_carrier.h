@@ -1,4 +1,4 @@
-// Attributes carried to the target; the pins of measures find their places there.
+// Transfer of attributes to the target, including the pins of measures.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -12,17 +12,18 @@ namespace ostraka {
 
 class AttributeCarrier {
 public:
-    /// `refined`: the target gets new faces, where only vertices keep their numbers.
+    /// `refined`: the target has new faces, and only vertices keep their indices.
     AttributeCarrier(const PathTracer& tracer, bool refined) : tracer_(tracer), refined_(refined) {}
 
     void carry(const Annotation& from, Annotation& to);
-    /// What lost a pin cannot be measured anew: the old value stays, marked. To be called after measures were refreshed.
+    /// Restores the old value, marked stale, of measures that lost a pin and cannot be recomputed. To be called after measures
+    /// were refreshed.
     void keep_old_values(AnnotationSet& set) const;
 
 private:
     const PathTracer& tracer_;
     bool refined_;
-    std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;  ///< annotation, attribute, value before
+    std::vector<std::tuple<int, int, std::optional<double>>> lost_pins_;  ///< annotation id, attribute id, old value
 };
 
 }  // namespace ostraka

@@ -31,7 +31,7 @@ void from_map(Mesh& mesh, const char* name, std::size_t count, std::vector<Value
     mesh.remove_property_map(map);
 }
 
-/// Unites the sets of poly-lines on edges, and of points on vertices, that merge.
+/// Unites the annotation sets of edges and vertices that are merged by an edge collapse.
 class AnnotationMerger final : public CollapseVisitor {
 public:
     AnnotationMerger(const Mesh& mesh, AnnotationTable& table)
@@ -118,7 +118,7 @@ void BoundMesh::keep_curved() {
 AnnotationTable BoundMesh::attach() {
     AnnotationTable table;
     if (annotations) {
-        // Free annotations bind no element of the mesh.
+        // Free annotations are not attached to elements of the mesh.
         AnnotationSet bound = *annotations;
         for (Annotation& annotation : bound.annotations)
             if (is_free(annotation)) {
@@ -167,7 +167,7 @@ MarkedParts BoundMesh::marked(const AnnotationTable& table, bool pins) const {
     const auto regions = mesh.property_map<Face, std::uint32_t>(face_annotations).first;
     const auto lines = mesh.property_map<Edge, std::uint32_t>(edge_annotations).first;
     const auto points = mesh.property_map<Vertex, std::uint32_t>(vertex_annotations).first;
-    // On the border, the outlines of regions count, but not that of the whole object.
+    // On the border, the outlines of regions are marked, except that of the whole object.
     std::vector<bool> has_outline(table.size(), false);
     for (std::uint32_t set = 0; set < table.size(); ++set)
         for (const int id : table.ids(set)) has_outline[set] = has_outline[set] || !annotations->find(id)->all;

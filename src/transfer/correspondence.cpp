@@ -45,7 +45,7 @@ Correspondence find_one(const Mesh& source, Index vertex, const SurfaceSearch& t
                         const SearchRadii& radii) {
     const Point& p = source.point(Vertex(vertex));
     const Vector normal = vertex_normal(source, Vertex(vertex));
-    // A short line first: most places lie within an edge length, and short lines meet few boxes.
+    // A short line first: most correspondences lie within an edge length, and short lines intersect few boxes.
     if (normal.squared_length() > 0) {
         for (const double length : {radii.near, radii.far}) {
             for (const SurfaceHit& hit : target.line_hits(p, normal, length))
@@ -88,15 +88,17 @@ std::vector<Correspondence> candidate_correspondences(const Mesh& source, Index 
 
 namespace {
 
-/// Area-weighted second moments of a surface about its centroid.
+/// Area-weighted moments of a surface about its centroid.
 struct Moments {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d skewness = Eigen::Vector3d::Zero();  ///< third central moment along x, y, z over the standard deviation cubed
-    double volume = 0;                                   ///< signed, about the centre, as a share of area times extent
+    Eigen::Vector3d skewness = Eigen::Vector3d::Zero();  ///< third central moment along x, y, z,
+                                                         ///< divided by the cubed standard deviation
+    double volume = 0;                                   ///< signed, relative to the centroid, as a
+                                                         ///< fraction of area times extent
 };
 
-/// Sums over faces: those about any place, and those about the centre, which need it.
+/// Sums over faces: first the moments independent of the centroid, then those relative to it.
 struct PlaceSums {
     double area = 0;
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -118,7 +120,7 @@ struct CentralSums {
     }
 };
 
-/// What `add_face(sums, face)` adds up over all faces: block by block, in their order.
+/// Sums `add_face(sums, face)` over all faces: per block, then over the blocks in order.
 template <class Sums, class AddFace>
 Sums sums_over_faces(const Mesh& mesh, const AddFace& add_face) {
     constexpr std::size_t block = 16384;
@@ -209,7 +211,7 @@ Agreement compare_alignment(const Mesh& source, const Mesh& target) {
     const Moments s = moments(source), t = moments(target);
     result.offset = (t.centre - s.centre).norm() / std::max(source_size, target_size);
     const SymmetricEigen3 es(s.covariance), et(t.covariance);
-    // An axis counts where its moment stands apart from the others' on both meshes.
+    // An axis is compared if its moment differs clearly from the others on both meshes.
     const auto distinct = [](const Eigen::Vector3d& values, int i) {
         for (int j = 0; j < 3; ++j)
             if (j != i && std::abs(values[i] - values[j]) < 0.1 * values[2]) return false;

@@ -30,7 +30,7 @@ namespace {
 
 using Places = std::vector<SurfacePlace>;
 
-/// Where two pieces in one face cross, by their weights; nothing if they do not, or only touch.
+/// Barycentric coordinates of the intersection of two segments in one face; nullopt if they do not intersect or only touch.
 std::optional<std::array<double, 3>> crossing(const Mesh& mesh, Index face, const SurfaceNode& a, const SurfaceNode& b,
                                               const SurfaceNode& c, const SurfaceNode& d) {
     const auto p = weights_in(mesh, face, a), q = weights_in(mesh, face, b), r = weights_in(mesh, face, c),
@@ -46,7 +46,7 @@ std::optional<std::array<double, 3>> crossing(const Mesh& mesh, Index face, cons
     return weights;
 }
 
-/// A curve as it grows, rid of each small loop that a new place closes.
+/// A curve under construction; each small loop that a new place closes is removed.
 class Unlooped {
 public:
     Unlooped(const Mesh& mesh, double edge) : mesh_(mesh), edge_(edge) {}
@@ -64,7 +64,7 @@ public:
     Places places_;
 
 private:
-    /// Takes out the last loop that the piece to a place closes; false if there is none.
+    /// Removes the last loop closed by the segment to `place`; false if there is none.
     bool dissolve(const SurfacePlace& place, const SurfaceNode& node) {
         if (places_.back() == place) return false;
         const Index face = common_face(mesh_, kept_.back(), node);
@@ -95,7 +95,7 @@ private:
 
     static double gap(const SurfaceNode& a, const SurfaceNode& b) { return std::sqrt(CGAL::squared_distance(a.point, b.point)); }
 
-    /// Whether the loop from a node over those behind place i and back encloses little.
+    /// Whether the loop from the node through the places after place i encloses a small area.
     [[nodiscard]] bool is_small(std::size_t i, const SurfaceNode& node, double length) const {
         if (length > 20 * edge_) return false;
         Vector sum(0, 0, 0);
@@ -113,7 +113,7 @@ private:
     const Mesh& mesh_;
     double edge_;
     std::vector<SurfaceNode> kept_;
-    std::vector<Index> faces_;  ///< of the piece that leads to each
+    std::vector<Index> faces_;  ///< face of the segment that leads to each place
 };
 
 Places unlooped(const Mesh& mesh, const Places& places, double edge) {
@@ -121,7 +121,7 @@ Places unlooped(const Mesh& mesh, const Places& places, double edge) {
     CancelCheck check;
     for (std::size_t i = 0; i < places.size(); ++i) {
         check();
-        // The end of a closed curve is its start, and no loop.
+        // The end of a closed curve coincides with its start and is no loop.
         if (i + 1 == places.size() && places.size() > 1 && places.back() == places.front()) break;
         result.add(places[i]);
     }
@@ -134,7 +134,7 @@ Places unlooped(const Mesh& mesh, const Places& places, double edge) {
 std::vector<SurfacePlace> without_small_loops(const Mesh& mesh, std::vector<SurfacePlace> places, double edge, bool closed) {
     places = unlooped(mesh, places, edge);
     if (!closed || places.size() < 4) return places;
-    // Once more from the other side, for a loop that holds the start.
+    // A second pass from the opposite point, for a loop that contains the start.
     places.pop_back();
     std::rotate(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2), places.end());
     places.push_back(places.front());

@@ -1,4 +1,4 @@
-// Small loops that curves get when they are laid on another surface, and what they enclose.
+// Removal of small loops and small parts that arise when curves are projected onto another surface.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,16 +9,16 @@
 
 namespace ostraka {
 
-/// The barycentric weights of a node in one of its faces.
+/// Barycentric coordinates of a node in one of its faces.
 std::array<double, 3> weights_in(const Mesh& mesh, Index face, const SurfaceNode& node);
 
-/// A curve without the loops in which it meets or crosses itself, where they enclose less than the square of `edge` and are at
-/// most twenty of its length long. Ends stay; a closed one, which repeats its first place, may start elsewhere afterwards. O(km)
-/// for k places, of which m lie on twenty edges.
+/// Removes loops in which a curve meets or intersects itself if they enclose less than the square of `edge` and are at most 20
+/// `edge` long. The ends are fixed; a closed curve, which repeats its first place, may start elsewhere afterwards. O(km) for k
+/// places, of which m lie on a stretch of length 20 `edge`.
 std::vector<SurfacePlace> without_small_loops(const Mesh& mesh, std::vector<SurfacePlace> places, double edge, bool closed);
 
-/// Takes parts of a region with less than some area out of it, and fills such holes, the smallest first, until it has no more
-/// than `outlines` outlines or no small part is left. A flag per face. O(n log n) for n faces.
+/// Removes parts of a region with an area below `area` and fills holes of that size, smallest first, until the region has at
+/// most `outlines` outlines or no small part is left. `selected`: one flag per face. O(n log n) for n faces.
 void dissolve_small_parts(const Mesh& mesh, double area, std::size_t outlines, std::vector<bool>& selected);
 
 }  // namespace ostraka

@@ -15,10 +15,10 @@ namespace ostraka {
 
 namespace {
 
-/// What rounding adds up to, of a surface.
+/// Relative rounding error of the area of a surface.
 constexpr double rounding_share = 1e-9;
 
-/// The faces of a mesh cut along all outlines, given out so that each has one holder.
+/// Assignment of the faces of a mesh cut along all outlines such that each has one owner.
 class Parting {
 public:
     Parting(const Mesh& mesh, const std::vector<Annotation>& regions) : mesh_(mesh), holders_(mesh.number_of_faces()) {
@@ -29,7 +29,7 @@ public:
             if (holders_[f].size() == 1) owner_[f] = holders_[f].front();
     }
 
-    /// The regions whose faces changed.
+    /// Assigns all contested pieces; returns the regions whose faces changed.
     std::vector<bool> settle(std::size_t regions) {
         std::vector<bool> changed(regions, false);
         std::vector<std::vector<Face>> pieces = contested();
@@ -62,7 +62,7 @@ public:
 private:
     static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-    /// Connected faces with the same holders, of which there is none or more than one.
+    /// Connected faces with the same set of holders, which is empty or has more than one element.
     std::vector<std::vector<Face>> contested() const {
         std::vector<std::vector<Face>> pieces;
         std::vector<bool> seen(holders_.size(), false);
@@ -78,8 +78,8 @@ private:
         return pieces;
     }
 
-    /// The owner beyond most of a piece's border, one of its holders if it has any; none if there is no such neighbour and no
-    /// holder.
+    /// The owner adjacent to most of a piece's border, restricted to its holders if it has any; without such a neighbour, its
+    /// first holder, or none.
     [[nodiscard]] std::size_t heir(const std::vector<Face>& piece) const {
         const std::vector<std::size_t>& holders = holders_[piece.front()];
         std::map<std::size_t, double> shared;
@@ -101,7 +101,7 @@ private:
     std::vector<std::size_t> owner_;
 };
 
-/// The sum of the areas of some of them, added up in their order.
+/// The sum of the areas of the regions, added in order.
 template <class Regions>
 double area_of_all(const Mesh& mesh, const Regions& regions) {
     std::vector<double> areas(regions.size());
@@ -110,7 +110,7 @@ double area_of_all(const Mesh& mesh, const Regions& regions) {
     return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
-/// Whether an area is the whole of a mesh's.
+/// Whether an area equals that of the whole mesh.
 bool is_whole(double area, const Mesh& mesh) {
     const double whole = surface_area(mesh);
     return std::abs(area - whole) <= rounding_share * whole;
@@ -127,7 +127,7 @@ bool part_surface(const Mesh& mesh, const std::vector<const Annotation*>& annota
 
 void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
                     std::vector<Laid>& laid) {
-    std::vector<std::size_t> which;  // of the regions, what is left on the target
+    std::vector<std::size_t> which;  // regions that exist on the target
     std::vector<const Annotation*> there;
     bool untangled = false;
     for (std::size_t i = 0; i < annotations.size(); ++i) {

@@ -1,4 +1,4 @@
-// Free regions that part a whole surface among them go on doing so.
+// Preserves partitions of a whole surface by free regions.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -8,13 +8,13 @@
 
 namespace ostraka {
 
-/// Whether the regions among annotations, of which there are two or more, part the whole surface of their mesh: their areas are
-/// its area, to rounding. What is `all` of the mesh does not count.
+/// Whether two or more of the annotations are regions that partition the whole surface of the mesh: their areas add up to its
+/// area, to rounding. The annotation of the whole mesh (`all`) is ignored.
 bool part_surface(const Mesh& mesh, const std::vector<const Annotation*>& annotations);
 
-/// Where the regions among annotations of `source` part its whole surface, what they became on `target` is made to do so again:
-/// pieces of it that lie in none of them, or in several, go to the one with which they share most of their border. Nothing is
-/// done where they part it already. O(n log n) for n faces of the target cut along all outlines.
+/// If the regions among the annotations partition the whole surface of `source`, makes their projections partition `target` as
+/// well: pieces in none or several of them are assigned to the region with which they share most of their border. Does nothing
+/// if they already partition it. O(n log n) for n faces of the target cut along all outlines.
 void keep_partition(const Mesh& source, const std::vector<const Annotation*>& annotations, const Mesh& target,
                     std::vector<Laid>& laid);
 

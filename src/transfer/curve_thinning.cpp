@@ -14,7 +14,7 @@ namespace {
 
 using Places = std::vector<SurfacePlace>;
 
-/// Of the places strictly between two of a curve, those that the line needs (Ramer 1972, Douglas and Peucker 1973).
+/// Appends the places strictly between two places of a curve that cannot be dropped (Ramer 1972, Douglas and Peucker 1973).
 void keep_needed(const Mesh& mesh, double tolerance, const Places& curve, std::size_t first, std::size_t last, Places& kept) {
     Places run(curve.begin() + static_cast<std::ptrdiff_t>(first), curve.begin() + static_cast<std::ptrdiff_t>(last) + 1);
     const bool turned = run.back() < run.front();

@@ -1,4 +1,4 @@
-// Places of laid curves that say next to nothing.
+// Removal of redundant places of projected curves.
 #pragma once
 
 #include "ostraka/transfer/lay_curves.h"
@@ -7,8 +7,8 @@
 
 namespace ostraka {
 
-/// Leaves out places inside faces that are nearer than `tolerance` to the straight piece between their neighbours, the same ones
-/// for all curves that share them. O(k log k) for k places.
+/// Drops places inside faces that are closer than `tolerance` to the straight segment between their neighbours; the same places
+/// are dropped in all curves that share them. O(k log k) for k places.
 void thin_out(const Mesh& mesh, double tolerance, std::vector<Laid>& laid);
 
 }  // namespace ostraka

@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    /// Whether each face of the source is in one region.
+    /// Whether each face of the source is in exactly one region.
     [[nodiscard]] bool part_all() const {
         std::vector<bool> taken(source_.number_of_faces(), false);
         std::size_t count = 0;
@@ -53,7 +53,7 @@ private:
             for (const Index f : set_.annotations[i].faces) owners_[f].push_back(i);
     }
 
-    /// How much of a face each region holds on the source, in sixteenths.
+    /// How much of a face each region covers on the source, in sixteenths.
     [[nodiscard]] std::map<std::size_t, int> held(Index face, const SurfaceSearch& source) const {
         std::map<std::size_t, int> parts;
         const Vector normal = area_vector(mesh_, Face(face));
@@ -64,7 +64,7 @@ private:
             if (!hit) hit = source.closest(place);
             for (const std::size_t i : owners_[hit->face]) ++parts[i];
         };
-        // The middles of the small triangles that lie like the face, and of those between them.
+        // The centroids of the sub-triangles with the orientation of the face, and of those in between.
         for (int i = 0; i < n; ++i)
             for (int j = 0; i + j < n; ++j) {
                 ask(3 * i + 1, 3 * j + 1);
@@ -121,8 +121,8 @@ private:
     const Mesh &source_, &mesh_;
     const AnnotationSet& set_;
     std::vector<std::vector<bool>>& selected_;
-    std::vector<std::size_t> regions_;              ///< their places in the set
-    std::vector<std::vector<std::size_t>> owners_;  ///< of each face of the source
+    std::vector<std::size_t> regions_;              ///< their positions in the set
+    std::vector<std::vector<std::size_t>> owners_;  ///< regions of each face of the source
     std::map<std::pair<std::size_t, std::size_t>, bool> disjoint_;
 };
 

@@ -1,4 +1,4 @@
-// Regions that share no face keep none in common.
+// Keeps regions disjoint that share no face on the source.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -8,10 +8,11 @@
 
 namespace ostraka {
 
-/// `selected`: for each annotation of the set flags of the faces of `mesh` that it took, an empty list where it has none. A face
-/// that several regions took which share no face on the source goes to the one that holds most of it there, of equal ones to the
-/// first; and where the regions of the set part the whole source among them, a face that none took likewise. The region that is
-/// the whole object does not count. `source_search` is asked for only where there is such a face. Linear but for those faces.
+/// `selected`: for each annotation of the set, the flags of the faces of `mesh` that were assigned to it; empty if it has none.
+/// A face assigned to several regions that share no face on the source goes to the region that covers most of it there (the
+/// first one of several with equal coverage). If the regions of the set partition the whole source, unassigned faces are
+/// assigned in the same way. The region of the whole object is ignored. `source_search` is called only if there is such a face.
+/// Linear, except for these faces.
 void keep_disjoint(const Mesh& source, const AnnotationSet& set, const std::function<const SurfaceSearch&()>& source_search,
                    const Mesh& mesh, std::vector<std::vector<bool>>& selected);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t block_size = 16384;
 
-/// Sets of faces that several threads unite: each face points to a lower one of its set, the lowest to itself.
+/// Concurrent union-find over faces: each face points to a lower one of its set, the lowest to itself.
 class FaceSets {
 public:
     explicit FaceSets(std::size_t count) : parent_(count) {
@@ -26,7 +26,7 @@ public:
             const Index parent = load(face);
             if (parent == face) return face;
             const Index next = load(parent);
-            // Shorter ways for those who come later; what was stored meanwhile leads to the same place.
+            // Path halving for later searches; concurrent stores lead to the same root.
             if (next != parent) std::atomic_ref(parent_[face]).store(next, std::memory_order_relaxed);
             face = next;
         }
@@ -92,7 +92,7 @@ void FaceParts::number(const std::vector<Edge>& walls) {
     for (const auto& part : border) border_.insert(border_.end(), part.begin(), part.end());
     parallel_for(
         part_.size(), [&](std::size_t f) { part_[f] = sets.lowest(static_cast<Index>(f)); }, block_size);
-    // The lowest face of a part comes before all others of it.
+    // The lowest face of a part precedes all its others.
     for (std::size_t f = 0; f < part_.size(); ++f) {
         if (part_[f] == f) {
             part_[f] = static_cast<Index>(begin_.size());
@@ -113,7 +113,7 @@ void FaceParts::number(const std::vector<Edge>& walls) {
 void FaceParts::measure() {
     areas_.assign(begin_.size() - 1, 0);
     borders_.assign(areas_.size(), 0);
-    // Areas side by side, some at a time; sums in the order of faces.
+    // Areas are computed in parallel, in batches; sums are formed in the order of the faces.
     constexpr std::size_t at_once = 64 * block_size;
     std::vector<double> area(std::min(part_.size(), at_once));
     for (std::size_t begin = 0; begin < part_.size(); begin += at_once) {
@@ -127,14 +127,14 @@ void FaceParts::measure() {
 
 FaceParts::Choice FaceParts::left_of(const std::vector<Halfedge>& edges) const {
     check_cancelled();
-    // How often each edge is run through along its first halfedge. (An Edge made from a halfedge remembers that one.)
+    // Net number of traversals of each edge along its first halfedge. (An Edge made from a halfedge remembers that halfedge.)
     std::map<Index, int> net;
     for (const Halfedge h : edges) {
         const Index e = mesh_.edge(h).idx();
         net[e] += mesh_.halfedge(Edge(e), 0) == h ? 1 : -1;
     }
-    std::vector<Halfedge> walls;                         // those on whose left it lies
-    std::map<std::pair<Index, Index>, std::size_t> own;  // how many between two parts
+    std::vector<Halfedge> walls;                         // halfedges whose left side is inside
+    std::map<std::pair<Index, Index>, std::size_t> own;  // number of walls between each two parts
     for (const auto& [e, count] : net) {
         if (count == 0) continue;
         const Halfedge left = mesh_.halfedge(Edge(e), count > 0 ? 0 : 1), right = mesh_.opposite(left);

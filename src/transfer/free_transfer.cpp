@@ -16,7 +16,7 @@ namespace ostraka {
 
 namespace {
 
-/// What laying says of an annotation.
+/// The counts and flags of a projection as a score.
 TransferScore score_of(const Laid& laid) {
     TransferScore score;
     score.id = laid.annotation.id;
@@ -33,7 +33,7 @@ TransferScore score_of(const Laid& laid) {
     return score;
 }
 
-/// Lengths, areas and distances of one annotation, and what is to be asked about its overlap.
+/// Computes lengths, areas and distances of one annotation, and returns the overlap query if requested.
 std::optional<OverlapQuestion> measured(const Mesh& source, const Annotation& from, const Mesh& target, const Annotation& to,
                                         bool overlap, TransferScore& score) {
     const Segments a = segments_of(source, from), b = segments_of(target, to);
@@ -54,7 +54,7 @@ std::optional<OverlapQuestion> measured(const Mesh& source, const Annotation& fr
     return question;
 }
 
-/// Both results in the order of the set.
+/// Merges both results in the order of the set.
 void join_in_order(const AnnotationSet& set, const std::vector<bool>& free, std::vector<Annotation> laid,
                    std::vector<TransferScore> scores, TransferResult& result) {
     std::vector<Annotation> plain = std::move(result.annotations.annotations);

@@ -1,4 +1,4 @@
-// The free annotations of a transfer.
+// Transfer of free annotations.
 #pragma once
 
 #include "ostraka/geom/surface_search.h"
@@ -22,8 +22,8 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Adds the annotations marked `free` to a transfer of the others, whose result is there: laid by their curves, scored, and put
-/// in their places in the set. Times are added to the result's.
+/// Adds the annotations marked in `free` to the result of a transfer of the others: projects them by their curves, computes
+/// their scores, and inserts them at their positions in the set. Times are added to those of the result.
 void transfer_free(const Mesh& source, const AnnotationSet& set, const std::vector<bool>& free, const SurfaceSearch& target,
                    const TransferOptions& options, Clock& clock, TransferResult& result);
 

@@ -28,7 +28,7 @@ namespace {
 
 using Places = std::vector<SurfacePlace>;
 
-/// A strand of the source and what it became. What curves share of it they share on the target.
+/// A strand of the source and its projection. Curves that share a strand on the source share it on the target.
 struct LaidStrand {
     CurveStrand from;
     bool bounds_region = false;
@@ -82,7 +82,7 @@ private:
 
     std::vector<Places> places_of(const Annotation& annotation) const {
         if (is_free(annotation)) {
-            curves_on(source_, annotation);  // it fits
+            curves_on(source_, annotation);  // throws if the curves do not fit
             return annotation.curves;
         }
         std::vector<Places> curves;
@@ -102,7 +102,7 @@ private:
         return curves;
     }
 
-    /// With places between neighbours that are farther apart than an edge of the target. Both neighbours' curves get the same.
+    /// Subdivides segments longer than an edge of the target. Curves of both adjacent regions get the same places.
     Places divided(const Places& curve) const {
         Places places;
         for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -117,7 +117,7 @@ private:
         return places;
     }
 
-    /// Part k of `parts` on the way from a to b, computed from the lower place on.
+    /// Point k of `parts` on the way from a to b, computed from the smaller place on.
     SurfacePlace between(const SurfacePlace& a, const SurfacePlace& b, int k, int parts) const {
         if (b < a) return between(b, a, parts - k, parts);
         const SurfaceNode from = node_at(source_, a), to = node_at(source_, b);
@@ -151,7 +151,7 @@ private:
 
     // Traces.
 
-    /// The strands of all curves, and of each annotation those that make up each of its curves.
+    /// Finds the strands of all curves; returns, for each annotation and curve, its sequence of strands.
     std::vector<std::vector<std::vector<StrandUse>>> find_strands(const std::vector<const Annotation*>& annotations,
                                                                   const std::vector<std::vector<Places>>& drawn) {
         std::vector<CurveStrand> found;
@@ -170,7 +170,7 @@ private:
         return uses;
     }
 
-    /// The places of a strand on the target, and those at which the traces between them cross edges.
+    /// Computes the places of a strand on the target, including those where the traces between them cross edges.
     void lay(LaidStrand& strand) {
         check_cancelled();
         const Places& from = strand.from.places;
@@ -200,7 +200,7 @@ private:
         return {place_of(target_, one.to)};
     }
 
-    /// A curve of its strands. Strands of which nothing is left, or not their ends, are bridged.
+    /// Joins the strands of a curve. Gaps left by strands that vanished or lost their ends are bridged.
     Places put_together(const std::vector<StrandUse>& uses, Laid& laid) {
         Places places;
         for (const StrandUse& use : uses) {
@@ -233,9 +233,10 @@ private:
         along_edges(node_at(target_, places.back()), node_at(target_, to), places);
     }
 
-    /// Which places of a strand to use: both ends; from the place nearest to its origin on, those that are not much farther from
-    /// the last than on the source. Between two near places with one way back, those without are left out: they lie in folds. A
-    /// loop has its first place last again if it can be trusted.
+    /// Selects the places of a strand to use: both ends, and starting from the place nearest to its origin, those whose
+    /// distance from the previous one is not much larger than on the source. Between two nearby places where the mapping is
+    /// invertible, places where it is not are skipped: they lie in folds. A loop repeats its first place at the end if that
+    /// place is used.
     std::vector<std::size_t> trusted(LaidStrand& strand) {
         const Places& curve = strand.from.places;
         const bool closed = strand.from.closed;
@@ -271,11 +272,11 @@ private:
         for (std::size_t i = 0; i < n; ++i)
             if (use[i]) good.push_back(i);
         strand.without_place = n - good.size();
-        if (closed && use[0]) good.push_back(n);  // the first again
+        if (closed && use[0]) good.push_back(n);  // repeats the first place
         return good;
     }
 
-    /// Marks the places to use among the next `steps` from `start` on, along the strand or against it.
+    /// Marks the places to use among the next `steps` places from `start`, forwards or backwards along the strand.
     void spread(const std::vector<const MappedPlace*>& places, std::size_t start, int sense, std::size_t steps,
                 std::vector<bool>& use) const {
         const std::size_t n = places.size();
@@ -304,7 +305,7 @@ private:
         }
     }
 
-    /// Goes on from the place of a, the last there, to that of b.
+    /// Appends the trace from the place of a, which is the last of `places`, to the place of b.
     void append(const SurfacePlace& a, const SurfacePlace& b, std::size_t& detours, Places& places) {
         const auto [entry, fresh] = traces_.try_emplace(std::minmax(a, b));
         if (fresh) {
@@ -326,8 +327,9 @@ private:
         std::size_t detours = 0;
     };
 
-    /// Adds the way from the place of a to that of b: a straight trace, across the normals that places correspond along; where
-    /// none arrives, by halves, unless the middle has no way back; over folds by the shortest curve.
+    /// Appends the way from the place of a to that of b: a straight trace in the plane of the correspondence normals; if it
+    /// does not arrive, the segment is halved, unless the mapping is not invertible at its midpoint; across folds, the
+    /// geodesic.
     void join(const SurfacePlace& a, const SurfacePlace& b, int depth, Trace& trace) {
         const MappedPlace from = at(a), to = at(b);
         const double apart = gap_between(from.to.point, to.to.point), least = 1e-9 * search_.diagonal();
@@ -355,7 +357,7 @@ private:
         along_edges(from.to, to.to, trace.places);
     }
 
-    /// By the corners of their faces and the edges between; a gap between two components stays a gap.
+    /// Connects the places through corners of their faces and an edge path; a gap between two components is left open.
     void along_edges(const SurfaceNode& a, const SurfaceNode& b, Places& places) {
         const auto nearest = [&](const SurfaceNode& node) {
             if (node.kind == SurfaceNode::Kind::vertex) return Vertex(node.element);
@@ -374,7 +376,7 @@ private:
         if (const SurfacePlace last = place_of(target_, b); places.back() != last) places.push_back(last);
     }
 
-    /// The end of an outline that came from the border goes to the nearest place of the target's.
+    /// Extends the end of an outline that started at the border to the nearest border point of the target.
     void lead_to_border(Places& way) {
         if (border_.empty())
             for (const Halfedge h : target_.halfedges())
@@ -421,7 +423,7 @@ private:
         laid.annotation.all = from.all;
     }
 
-    /// Says where a region or line has other outlines than on the source.
+    /// Adds a note if a region or line has another number of outlines than on the source.
     static void note_change(const Annotation& from, std::size_t before, Laid& laid) {
         const std::size_t after = laid.annotation.curves.size();
         if (from.all || laid.lost || after == before || after == 0 || !laid.note.empty()) return;
@@ -436,7 +438,7 @@ private:
     const Mesh& target_;
     RegionSettling settling_;
     PlaceMapping mapping_;
-    double edge_;  ///< of the target
+    double edge_;  ///< typical edge length of the target
     std::vector<LaidStrand> strands_;
     std::map<SurfacePlace, MappedPlace> mapped_;
     std::map<std::pair<SurfacePlace, SurfacePlace>, Trace> traces_;

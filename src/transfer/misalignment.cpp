@@ -28,7 +28,8 @@ std::vector<Eigen::Vector3d> sample_of(const Mesh& mesh) {
     return points;
 }
 
-/// The sample, moved step by step onto the target: each step lays the points onto the planes of the faces nearest to them.
+/// The sample, registered to the target step by step: each step minimises the distances of the points from the planes of their
+/// nearest faces.
 class Fit {
 public:
     Fit(const Mesh& source, const SurfaceSearch& target) : target_(target), points_(sample_of(source)), hits_(points_.size()) {
@@ -36,7 +37,7 @@ public:
         find_nearest();
     }
 
-    /// Of the nearest nine in ten.
+    /// Mean of the smallest nine tenths of the distances.
     [[nodiscard]] double distance() const {
         double sum = 0;
         for (const std::size_t i : kept_) sum += hits_[i].distance;
@@ -56,7 +57,7 @@ public:
             a += row * row.transpose();
             b += row * normal.dot(vector_of(hits_[i].point) - points_[i]) / size;
         }
-        // What the surface leaves open, such as turns of a sphere, stays as it is.
+        // Damping suppresses motions that the surface does not determine, such as rotations of a sphere.
         a.diagonal().array() += 1e-4 * static_cast<double>(kept_.size());
         const Eigen::VectorXd x = solve_ldlt<Eigen::Dynamic>(a, b);
         const Eigen::Vector3d turn = x.head<3>(), move = size * x.segment<3>(3);
@@ -109,8 +110,9 @@ Misalignment find_misalignment(const Mesh& source, const SurfaceSearch& target) 
     found.distance = fit.distance();
     const double size = target.diagonal(), edge = std::max(mean_edge_length(source), target.typical_edge());
     if (!(found.distance > 0.0003 * size)) return found;
-    // Flat faces leave a surface of radius r by h^2 / 8r, all to its inner side, as a smaller one would; parts of objects have
-    // radii of a fifth of the diagonal, say. What that explains says nothing of the scale.
+    // Flat faces deviate from a surface of radius r by h^2 / 8r, always to its inner side, as for a smaller surface; parts of
+    // objects are assumed to have radii of a fifth of the diagonal. A distance explained by this gives no evidence of a
+    // different scale.
     const bool scaling = found.distance > 0.0003 * size + edge * edge / (1.6 * size);
     for (int round = 0; round < rounds; ++round) fit.step(scaling);
     Misalignment mended = found;

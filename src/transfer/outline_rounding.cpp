@@ -13,20 +13,21 @@ namespace ostraka {
 
 namespace {
 
-/// What the rounding aims at.
+/// Target values of the rounding.
 struct RoundingGoal {
     double area = 0;       ///< of the source region
     double perimeter = 0;  ///< of the source region's outline
     double edge = 0;       ///< typical edge length of the target
-    bool coarser = false;  ///< the target cannot show the outline's detail: a shorter outline is as good, and no teeth are added
+    bool coarser = false;  ///< the target cannot resolve the detail: a shorter outline is accepted, no teeth are added
 };
 
 bool is_selected(const Mesh& mesh, const std::vector<bool>& selected, Halfedge h) {
     return !mesh.is_border(h) && selected[mesh.face(h)];
 }
 
-/// The change of perimeter if the face changed sides, or nothing if that would change the topology of the region or of the rest:
-/// the face must have one or two outline edges; with one, the corner opposite must lie off the outline. Faces on the border stay.
+/// Whether a face can change sides without changing the topology of the region or its complement: the face must have one or two
+/// outline edges; with one, the opposite corner must not lie on the outline. Faces on the border cannot. `perimeter_change`
+/// receives the change of perimeter.
 bool can_flip(const Mesh& mesh, const std::vector<bool>& selected, Face f, double& perimeter_change) {
     int outline_edges = 0;
     perimeter_change = 0;
@@ -53,8 +54,8 @@ bool can_flip(const Mesh& mesh, const std::vector<bool>& selected, Face f, doubl
     return outline_edges == 1 ? changes == 0 : changes == 2;
 }
 
-/// What a change of side of each face near the true outline would change. Those that leave the topology as it is stand together,
-/// so that looking for the best of them is fast.
+/// The changes caused by flipping each face near the exact outline. Flips that preserve the topology are stored contiguously
+/// for a fast search for the best one.
 class Moves {
 public:
     Moves(const Mesh& mesh, const std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares)
@@ -69,8 +70,8 @@ public:
         Index face;
         double area, perimeter;
     };
-    /// The move that lowers 20 |A / A_goal - 1| + |P - P_wanted| / P_goal + 6 W / (h P_goal) most, of equal ones the first;
-    /// nothing if none does.
+    /// The flip that lowers 20 |A / A_goal - 1| + |P - P_wanted| / P_goal + 6 W / (h P_goal) most, the first of equal ones;
+    /// nullopt if none does.
     [[nodiscard]] std::optional<Move> best(double area, double perimeter, double wanted, const RoundingGoal& goal) const {
         const double by_area = 20 / goal.area, by_perimeter = 1 / goal.perimeter, by_wrong = 6 / (goal.edge * goal.perimeter);
         const double too_large = area - goal.area, too_long = perimeter - wanted;
@@ -88,7 +89,7 @@ public:
         return Move{shares_[owner_[best]].first, area_[best], perimeter_[best]};
     }
 
-    /// After a face has changed sides: what its neighbours' changes would change is another.
+    /// Updates the changes of the faces around a face that has been flipped.
     void update_around(Index face) {
         for (const Vertex v : corners(mesh_, Face(face)))
             for (const Halfedge h : CGAL::halfedges_around_target(v, mesh_)) {
@@ -136,15 +137,15 @@ private:
     const Mesh& mesh_;
     const std::vector<bool>& selected_;
     const std::vector<std::pair<Index, double>>& shares_;
-    std::unordered_map<Index, std::size_t> position_;  ///< of a face in `shares`
-    std::vector<std::size_t> slot_;                    ///< of a face of `shares` in the lists below, or none
-    std::vector<std::size_t> owner_;                   ///< by slot: position in `shares`
+    std::unordered_map<Index, std::size_t> position_;  ///< index in `shares` of a face
+    std::vector<std::size_t> slot_;                    ///< slot of each entry of `shares` in the lists below, or none
+    std::vector<std::size_t> owner_;                   ///< by slot: index in `shares`
     std::vector<double> area_, perimeter_, wrong_;     ///< by slot: the changes
 };
 
-/// Without a goal: each face goes to the side that holds most of it.
+/// Without a goal: assigns each face to the side that covers most of it.
 void round_by_share(const Mesh& mesh, std::vector<bool>& selected, const std::vector<std::pair<Index, double>>& shares) {
-    // A flip may open the way for its neighbours.
+    // A flip may make flips of neighbours possible.
     double change = 0;
     for (int pass = 0; pass < 8; ++pass) {
         check_cancelled();
@@ -158,11 +159,11 @@ void round_by_share(const Mesh& mesh, std::vector<bool>& selected, const std::ve
     }
 }
 
-/// Moves single faces across the outline of `selected`, never changing the topology of the region. `shares` tells of the faces
-/// near the true outline which share of them lies inside; only those move: one at a time, that one which lowers
+/// Flips single faces across the outline of `selected` without changing the topology of the region. `shares`: fraction inside
+/// of each face near the exact outline; only these are flipped. Each step flips the face that lowers
 ///     20 |A / A_source - 1| + |P / P_source - 1| + 6 W / (h P_source)
-/// most, until none does. W is the area on the wrong side: faces cut in halves may change sides at no cost, and they are enough
-/// to meet area A and perimeter P. O(k m) for k faces along the outline and m moves, both small beside the mesh.
+/// most, until none does. W is the area on the wrong side: faces cut in halves can be flipped at no cost, and suffice to match
+/// area A and perimeter P. O(k m) for k faces along the outline and m flips, both small compared to the mesh.
 void round_region(const Mesh& mesh, FilledRegion& region, const std::vector<std::pair<Index, double>>& shares,
                   const RoundingGoal& goal) {
     const double wanted = goal.coarser ? std::min(goal.perimeter, region.perimeter) : goal.perimeter;
@@ -177,9 +178,8 @@ void round_region(const Mesh& mesh, FilledRegion& region, const std::vector<std:
     }
 }
 
-/// The same along outlines that regions share: a face goes over to the region that holds most of it, and the one that had it
-/// gives it up in the same move, so that regions that partition the surface still do. Topologies stay. `faces` need not be
-/// sorted.
+/// The same along shared outlines: a face moves to the region that covers most of it, and is removed from its previous region
+/// in the same step, so that a partition of the surface is preserved. Topologies are unchanged. `faces` need not be sorted.
 void round_shared(const Mesh& mesh, std::vector<FilledRegion>& regions, std::vector<SharedFace> faces) {
     std::sort(faces.begin(), faces.end(), [](const SharedFace& a, const SharedFace& b) {
         return std::make_pair(a.face, a.region) < std::make_pair(b.face, b.region);
@@ -220,7 +220,7 @@ OutlineRounding::OutlineRounding(const Mesh& source, const AnnotationSet& set, c
       put_aside_(vertex_paths.size()) {
     for (std::size_t i = 0; i < vertex_paths.size(); ++i) {
         if (set.annotations[i].type != AnnotationType::region) continue;
-        TransferScore ignored;  // the same places were settled, and counted, for the paths
+        TransferScore ignored;  // these correspondences were already counted for the paths
         for (const SourcePath& vertex_path : vertex_paths[i])
             for (const PathTracer::Step& step : tracer.trace_curves(vertex_path, ignored)) steps_[i].push_back(step);
     }
@@ -232,7 +232,7 @@ OutlineRounding::OutlineRounding(const Mesh& source, const AnnotationSet& set, c
 void OutlineRounding::round(std::size_t region, FilledRegion& filled, double edge, bool balance) {
     if (steps_[region].empty()) return;
     std::vector<SurfaceCurve> curves;
-    std::set<Index> shared;  // vertices along outlines that other regions have in common with this one
+    std::set<Index> shared;  // vertices along outlines shared with other regions
     for (const PathTracer::Step& step : steps_[region]) {
         const SurfaceCurve& curve = tracer_.curves()[step.curve];
         if (users_[step.curve] > 1)

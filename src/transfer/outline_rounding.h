@@ -1,4 +1,4 @@
-// Transferred regions rounded to the outlines as they truly run.
+// Rounding of transferred regions to the exact course of their outlines.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// A face near an outline that several regions share, and which share of it lies inside one of them.
+/// A face near an outline shared by several regions, and the fraction of it inside one of them.
 struct SharedFace {
     Index face;
     std::size_t region;
@@ -18,14 +18,15 @@ struct SharedFace {
 
 class OutlineRounding {
 public:
-    /// Draws the outlines of all regions of `set` across the target's faces; `paths` are theirs, by annotation.
+    /// Traces the outlines of all regions of `set` across the faces of the target; `vertex_paths` are their paths, by
+    /// annotation.
     OutlineRounding(const Mesh& source, const AnnotationSet& set, const Mesh& target,
                     const std::vector<std::vector<SourcePath>>& vertex_paths, PathTracer& tracer);
 
-    /// Rounds what only this region borders on; faces along outlines that regions share are put aside. `edge` is the typical
-    /// edge length of the target. Regions may be rounded side by side.
+    /// Rounds the parts of the outline that belong to this region only; faces along shared outlines are deferred. `edge`:
+    /// typical edge length of the target. Regions may be rounded in parallel.
     void round(std::size_t region, FilledRegion& filled, double edge, bool balance);
-    /// Rounds what was put aside, for all regions in one move.
+    /// Rounds the deferred faces of all regions.
     void round_shared_outlines(std::vector<FilledRegion>& regions);
 
 private:
@@ -35,7 +36,7 @@ private:
     const PathTracer& tracer_;
     double source_edge_;
     std::vector<std::vector<PathTracer::Step>> steps_;  ///< by annotation
-    std::vector<int> users_;                            ///< by curve: how many regions it bounds
+    std::vector<int> users_;                            ///< by curve: number of regions that it bounds
     std::vector<std::vector<SharedFace>> put_aside_;    ///< by annotation
 };
 

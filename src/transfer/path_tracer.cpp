@@ -28,7 +28,7 @@ double PathTracer::longest_edge(Index face) const {
 }
 
 double PathTracer::limit(const Correspondence& a, const Correspondence& b, double source_length) const {
-    // Snapping to vertices adds up to an edge at both ends, and edge paths are at most about twice as long as straight ones.
+    // Snapping to vertices adds up to one edge at each end, and edge paths are at most about twice as long as straight ones.
     return 3 * source_length + 3 * (longest_edge(a.place.face) + longest_edge(b.place.face));
 }
 
@@ -55,7 +55,7 @@ std::vector<Correspondence> PathTracer::settle(const SourcePath& vertex_path, Tr
     const auto joined = [&](const Correspondence& a, const Correspondence& b, double length) {
         return a.vertex == b.vertex || !path(a.vertex, b.vertex, limit(a, b, length)).empty();
     };
-    // Runs of vertices whose places follow each other; a vertex without a place is a run of its own.
+    // Runs of consecutive vertices with consistent correspondences; a vertex without a correspondence is a run of its own.
     std::vector<std::size_t> breaks;  // a break lies before vertex i
     for (std::size_t i = vertex_path.closed ? 0 : 1; i < n; ++i) {
         const std::size_t before = i == 0 ? n - 1 : i - 1;
@@ -80,8 +80,8 @@ std::vector<Correspondence> PathTracer::settle(const SourcePath& vertex_path, Tr
             start = first % n;
         }
     }
-    if (longest == 0) return result;  // no vertex has a place
-    // From the trusted run outwards, each vertex must be joined to the last good one.
+    if (longest == 0) return result;  // no vertex has a correspondence
+    // From the trusted run outwards, each vertex must be connected to the last accepted one.
     const auto spread = [&](int sense, std::size_t steps, std::size_t from) {
         std::size_t last = from;
         double length = 0;
@@ -139,7 +139,7 @@ std::vector<Index> PathTracer::connect(Index a, Index b, double longest, Transfe
 
 TracedPath PathTracer::trace_edges(const SourcePath& vertex_path, TransferScore& score) {
     std::vector<Correspondence> places = settle(vertex_path, score);
-    std::vector<std::size_t> at;  // path positions with a place
+    std::vector<std::size_t> at;  // path positions with a correspondence
     for (std::size_t i = 0; i < places.size(); ++i)
         if (places[i].vertex != no_index) at.push_back(i);
     TracedPath traced;
@@ -158,13 +158,13 @@ TracedPath PathTracer::trace_edges(const SourcePath& vertex_path, TransferScore&
                                                        source_.point(Vertex(vertex_path.vertices[(m + 1) % places.size()]))));
         const std::vector<Index> found = connect(places[i].vertex, places[j].vertex, limit(places[i], places[j], length), score,
                                                  used.empty() ? nullptr : &used);
-        if (found.empty()) continue;  // two components: the gap stays
+        if (found.empty()) continue;  // two components: a gap is left
         traced.walk.insert(traced.walk.end(), found.begin() + 1, found.end());
         if (!used.empty())
             for (const Index v : found) used[v] = true;
     }
     if (vertex_path.ends_on_border) {
-        // The outline ran along the border here; on the target it is led to the border again.
+        // The outline followed the border here; on the target, it is extended to the border again.
         const auto on_border = [&](Vertex v) { return target_.is_border(v); };
         for (const bool at_end : {true, false}) {
             const Index tip = at_end ? traced.walk.back() : traced.walk.front();
@@ -196,7 +196,7 @@ std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_
         const auto key = std::minmax(vertex_path.vertices[i], vertex_path.vertices[j]);
         const bool backwards = key.first != vertex_path.vertices[i];
         const auto known = curve_cache_.find(key);
-        // A relocated place is the path's own: its curves are not shared.
+        // A relocated correspondence is specific to this path: its curves are not shared.
         if (known != curve_cache_.end() && !places[i].relocated && !places[j].relocated) {
             steps.push_back({known->second, backwards});
             continue;
@@ -209,7 +209,8 @@ std::vector<PathTracer::Step> PathTracer::trace_curves(const SourcePath& vertex_
         std::optional<SurfaceCurve> curve =
             trace_line(target_, from, to, up, 2 * straight + 1e-9 * longest_edge(places[i].place.face));
         if (!curve) {
-            // The straight line fails (a fold, say): along edges instead, from face to corner, corner to corner, corner to face.
+            // The straight trace fails (at a fold, for example): edges are used instead, from face to corner, corner to corner,
+            // corner to face.
             curve.emplace();
             curve->nodes.push_back(from);
             const auto to_node = [&](const SurfaceNode& node, Index face) {

@@ -1,4 +1,4 @@
-// Paths of source vertices drawn on the target: edge paths, or curves across faces.
+// Paths of source vertices traced on the target: edge paths, or curves across faces.
 #pragma once
 
 #include "ostraka/geom/shortest_path.h"
@@ -11,17 +11,17 @@
 
 namespace ostraka {
 
-/// Successive vertices of an outline or a poly-line on the source.
+/// Consecutive vertices of an outline or a poly-line on the source.
 struct SourcePath {
     std::vector<Index> vertices;  ///< a closed path does not repeat its first vertex
     bool closed = false;
-    bool ends_on_border = false;  ///< an open path cut from an outline where it met the border
+    bool ends_on_border = false;  ///< an open path that was cut from an outline at the border of the mesh
 };
 
 /// A path on the target.
 struct TracedPath {
-    std::vector<Index> walk;  ///< all vertices passed, before pruning
-    std::vector<Index> path;  ///< what is left after spikes were dealt with; empty if the path shrank to nothing
+    std::vector<Index> walk;  ///< all vertices visited, before pruning
+    std::vector<Index> path;  ///< vertices left after removal of spikes; empty if the path vanished
     bool closed = false;
 };
 
@@ -29,20 +29,20 @@ class PathTracer {
 public:
     PathTracer(const Mesh& source, const SurfaceSearch& target, const TransferOptions& options);
 
-    /// Finds the places of many vertices at once (all threads).
+    /// Finds the correspondences of many vertices at once (all threads).
     void match(std::vector<Index> vertices);
     [[nodiscard]] const Correspondence& place(Index vertex) const { return places_.at(vertex); }
 
-    /// The places of a path's vertices after the check for layers: neighbours must be joined by a path not much longer than
-    /// the path between them. The longest run of vertices that agree is trusted; others are placed again among their
-    /// candidates, or left out.
+    /// The correspondences of a path's vertices after a check for layers: consecutive ones must be connected by a path not much
+    /// longer than the source path between them. The longest consistent run of vertices is trusted; other vertices are assigned
+    /// another of their candidates, or dropped.
     std::vector<Correspondence> settle(const SourcePath& vertex_path, TransferScore& score);
 
     /// Thesis, Algorithm 1.
     TracedPath trace_edges(const SourcePath& vertex_path, TransferScore& score);
 
-    /// The path as lines from face to face; each source edge gives one or more curves, cached so that outlines that share
-    /// an edge share the curve. Returns, per step, the index into `curves()` and whether it is run backwards.
+    /// The path as curves across faces; each source edge gives one or more curves, which are cached so that outlines with a
+    /// common edge share the curve. Returns, per step, the index into `curves()` and whether the curve is traversed backwards.
     struct Step {
         std::size_t curve;
         bool backwards;
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] const std::vector<SurfaceCurve>& curves() const { return curves_; }
 
 private:
-    /// Path between two target vertices, found from the lower to the higher index so that both directions agree.
+    /// Path between two target vertices, searched from the lower to the higher index so that both directions agree.
     const std::vector<Index>& path(Index a, Index b, double limit);
     [[nodiscard]] double limit(const Correspondence& a, const Correspondence& b, double source_length) const;
     [[nodiscard]] double longest_edge(Index face) const;
@@ -69,8 +69,7 @@ private:
     std::map<std::pair<Index, Index>, std::size_t> curve_cache_;  ///< by pair of source vertices
 };
 
-/// Takes out "a, b, a" again and again; `closed` looks across the end as well. A closed path of fewer than three vertices
-/// becomes empty.
+/// Removes "a, b, a" repeatedly; if `closed`, also across the end. A closed path of fewer than three vertices becomes empty.
 std::vector<Index> prune_spikes(const std::vector<Index>& walk, bool closed);
 
 }  // namespace ostraka

@@ -10,13 +10,13 @@ namespace ostraka {
 
 namespace {
 
-/// The edge of equilateral triangles of the mesh's mean area.
+/// Edge length of an equilateral triangle with the mesh's mean face area.
 double mean_triangle_edge(const Mesh& mesh) {
     return std::sqrt(4 / std::sqrt(3.0) * surface_area(mesh) / std::max<double>(1, static_cast<double>(mesh.number_of_faces())));
 }
 
-/// The weights of corners 1 and 2 of a face, and the distance d, with x(b) + d n(b) = p, by Newton's method from its middle and a
-/// first distance; nothing where it does not converge.
+/// Solves x(b) + d n(b) = p for the weights b of corners 1 and 2 of a face and the distance d by Newton's method, starting from
+/// the centroid and `first_distance`; nullopt if it does not converge.
 std::optional<Eigen::Vector3d> meet_along_normals(const Mesh& mesh, Index face, const Point& p, double first_distance) {
     const auto corner = corners(mesh, Face(face));
     std::array<Eigen::Vector3d, 3> x, n;
@@ -27,7 +27,7 @@ std::optional<Eigen::Vector3d> meet_along_normals(const Mesh& mesh, Index face, 
     }
     Eigen::Vector3d unknown(1.0 / 3, 1.0 / 3, first_distance);
     const double size = std::max((x[1] - x[0]).norm(), (x[2] - x[0]).norm());
-    // Where normals nearly meet the root is double, and each round halves the error only.
+    // Where normals nearly intersect, the root is double and convergence is only linear (factor 1/2).
     for (int round = 0; round < 60; ++round) {
         const double u = unknown[0], v = unknown[1], w = unknown[2];
         const Eigen::Vector3d up = (1 - u - v) * n[0] + u * n[1] + v * n[2];
@@ -39,7 +39,7 @@ std::optional<Eigen::Vector3d> meet_along_normals(const Mesh& mesh, Index face, 
         unknown += change;
         if (!(std::abs(unknown[0]) + std::abs(unknown[1]) + std::abs(unknown[2]) / size < 1e6)) return std::nullopt;
         if (std::abs(change[0]) + std::abs(change[1]) < 1e-14 && std::abs(change[2]) <= 1e-14 * size) return unknown;
-        // Rounding may keep the last digits moving.
+        // Accepts a solution whose last digits keep changing because of rounding.
         if (round > 20 && off.norm() <= 1e-11 * size) return unknown;
     }
     return std::nullopt;
@@ -108,7 +108,7 @@ MappedPlace PlaceMapping::operator()(const SurfacePlace& place) const {
     return result;
 }
 
-/// In a face as good as without height, which cannot be cut inside, the place beside it on its longest edge.
+/// Moves a place in a nearly degenerate face, whose interior cannot be cut, to the longest edge of the face.
 std::array<double, 3> PlaceMapping::on_longest_edge(Index face, std::array<double, 3> weights) const {
     const auto corner = corners(target_, Face(face));
     std::size_t apex = 0;
@@ -123,12 +123,12 @@ std::array<double, 3> PlaceMapping::on_longest_edge(Index face, std::array<doubl
     return weights;
 }
 
-/// Whether the line along the normal of the (coarser) target meets the source at this place first. What lies in a fold of the
-/// source that this line meets elsewhere before was not laid there from the target, and has no way back.
+/// Whether the line along the normal of the (coarser) target first meets the source at this place. A place in a fold of the
+/// source that the line meets only after another part of the surface has no inverse image.
 bool PlaceMapping::is_mutual(const MappedPlace& one) const {
     const std::vector<Face> own = faces_of(source_, one.from);
     const auto faces_up = [&](Index f) { return on_source_->normal(f) * one.up >= min_cosine_; };
-    // On the rim of a fold the line may as well pass by.
+    // At the edge of a fold, the line may miss the surface.
     if (!std::all_of(own.begin(), own.end(), faces_up)) return false;
     const double at = std::abs((one.from.point - one.to.point) * one.up), tolerance = 1e-4 * edge_;
     for (const SurfaceHit& hit : on_source_->line_hits(one.to.point, one.up, at))
@@ -136,8 +136,8 @@ bool PlaceMapping::is_mutual(const MappedPlace& one) const {
     return true;
 }
 
-/// The place of the target whose interpolated normal runs through p, from the nearest place on and over the edges that the
-/// weights lead across.
+/// The place of the target whose interpolated normal passes through p; the search starts at the nearest place and crosses edges
+/// as the weights indicate.
 std::optional<SurfaceHit> PlaceMapping::along_target_normal(const Point& p, const Vector& normal) const {
     const auto start = search_.closest_compatible(p, normal, min_cosine_, far_);
     if (!start) return std::nullopt;
@@ -160,7 +160,8 @@ std::optional<SurfaceHit> PlaceMapping::along_target_normal(const Point& p, cons
     return std::nullopt;
 }
 
-/// The place of a face with these weights, none below zero, unless it is too far or faces away.
+/// The place of a face with these weights, clamped to be non-negative; nullopt if it is too far away or its normal is
+/// incompatible.
 std::optional<SurfaceHit> PlaceMapping::hit_in(Index face, const std::array<double, 3>& weights, const Point& p,
                                                const Vector& normal) const {
     SurfaceHit hit;

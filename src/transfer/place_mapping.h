@@ -1,4 +1,4 @@
-// Where places of one mesh are on another, along the normals of the coarser of the two.
+// Mapping of places of one mesh to another along the normals of the coarser mesh.
 #pragma once
 
 #include "ostraka/geom/surface_search.h"
@@ -10,32 +10,32 @@
 
 namespace ostraka {
 
-/// A place of the source and where it is on the target.
+/// A place of the source and its corresponding place on the target.
 struct MappedPlace {
     SurfaceNode from;
-    Vector normal{0, 0, 0};  ///< of the source there
+    Vector normal{0, 0, 0};  ///< of the source at `from`
     CorrespondenceKind kind = CorrespondenceKind::none;
     SurfaceNode to;
-    Vector up{0, 0, 0};   ///< of the target there
-    bool mutual = false;  ///< from there the same line meets the place first: there is one way back
+    Vector up{0, 0, 0};   ///< of the target at `to`
+    bool mutual = false;  ///< the line from `to` first meets the source at `from`: the mapping is invertible there
 };
 
-/// The vertex normals, interpolated; of no particular length.
+/// Interpolated vertex normal, not normalised.
 Vector smooth_normal(const Mesh& mesh, const SurfaceNode& node);
 
 inline double gap_between(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
-/// Finds places of a source on a target. Both must outlive it.
+/// Finds corresponding places of a source on a target. Both must outlive it.
 class PlaceMapping {
 public:
     PlaceMapping(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options);
 
     [[nodiscard]] MappedPlace operator()(const SurfacePlace& place) const;
 
-    [[nodiscard]] double edge() const { return edge_; }  ///< typical, of the target
-    [[nodiscard]] double far() const { return far_; }    ///< beyond that nothing corresponds
+    [[nodiscard]] double edge() const { return edge_; }  ///< typical edge length of the target
+    [[nodiscard]] double far() const { return far_; }    ///< search radius
     [[nodiscard]] double min_cosine() const { return min_cosine_; }
-    [[nodiscard]] bool by_target_normals() const { return on_source_.has_value(); }  ///< the target is the coarser
+    [[nodiscard]] bool by_target_normals() const { return on_source_.has_value(); }  ///< true: the target is the coarser mesh
 
 private:
     [[nodiscard]] std::array<double, 3> on_longest_edge(Index face, std::array<double, 3> weights) const;
@@ -48,7 +48,7 @@ private:
     const SurfaceSearch& search_;
     const Mesh& target_;
     double edge_, far_, min_cosine_;
-    std::optional<SurfaceSearch> on_source_;  ///< where the target is the coarser
+    std::optional<SurfaceSearch> on_source_;  ///< set if the target is the coarser mesh
 };
 
 }  // namespace ostraka

@@ -48,7 +48,8 @@ void RegionSettling::settle(const Annotation& from, std::size_t outlines, Laid& 
     else settle_elements(target_, to);
 }
 
-/// Components of the source that the region covers whole have no outline: a place of each tells the component here.
+/// Components of the source that the region covers completely have no outline: one face of each is mapped to find the component
+/// of the target.
 std::vector<Index> RegionSettling::whole_components(const Annotation& from) const {
     if (is_free(from) && from.faces.empty()) return {};
     std::vector<bool> selected = face_flags(source_, from.faces), seen(source_.number_of_faces(), false);
@@ -77,7 +78,7 @@ std::vector<Index> RegionSettling::whole_components(const Annotation& from) cons
     return faces;
 }
 
-/// Outlines that cross: the region by winding numbers on the target cut along them, its outline read off anew.
+/// For intersecting outlines: computes the region by winding numbers on the target cut along them, and extracts a new outline.
 void RegionSettling::untangle(const Annotation& from, double expected, std::size_t outlines, Laid& laid) const {
     Annotation& to = laid.annotation;
     laid.untangled = true;
@@ -101,7 +102,7 @@ void RegionSettling::untangle(const Annotation& from, double expected, std::size
         bring_back(target_, cut, to);
         return;
     }
-    // Face by face, from where their places are on the source.
+    // Classifies each face by its corresponding place on the source.
     to.curves.clear();
     const SurfaceSearch back(source_);
     to.faces = flagged(region_by_vote(source_, back, from.faces, target_, options_));

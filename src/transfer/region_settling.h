@@ -1,4 +1,4 @@
-// What laid curves enclose.
+// Interior of projected curves.
 #pragma once
 
 #include "ostraka/geom/surface_search.h"
@@ -8,12 +8,13 @@
 
 namespace ostraka {
 
-/// Finds the elements of annotations whose curves were laid, and untangles outlines that cross. All must outlive it.
+/// Computes the elements of annotations from their projected curves, and resolves intersecting outlines. The arguments must
+/// outlive this object.
 class RegionSettling {
 public:
     RegionSettling(const Mesh& source, const SurfaceSearch& target, const CorrespondenceOptions& options);
 
-    /// `outlines` is the number that the region has on the source.
+    /// `outlines`: number of outlines of the region on the source.
     void settle(const Annotation& from, std::size_t outlines, Laid& laid) const;
 
 private:

@@ -16,7 +16,7 @@ std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>&
     std::vector<SourcePath> vertex_paths;
     for (const Outline& outline : extract_outlines(mesh, faces)) {
         const std::size_t n = outline.size();
-        // Edge i runs from vertex i to vertex i + 1; one on the border has no face on its right.
+        // Edge i runs from vertex i to vertex i + 1; a border edge has no face on its right.
         std::vector<bool> border(n, false);
         bool any = false;
         for (std::size_t i = 0; i < n; ++i) {
@@ -80,7 +80,7 @@ const SurfaceSearch& RegionTransfer::source_search() {
 
 namespace {
 
-/// Area and perimeter of what is selected.
+/// Area and perimeter of the selected faces.
 FilledRegion measured(const Mesh& mesh, std::vector<bool> selected) {
     check_cancelled();
     FilledRegion region;
@@ -96,7 +96,7 @@ FilledRegion measured(const Mesh& mesh, std::vector<bool> selected) {
     return region;
 }
 
-/// Connected parts of a set of faces; for each, one face and whether any edge of it separates it from another face.
+/// Connected patch of a set of faces: one of its faces, and whether any of its edges separates it from a face outside the set.
 struct Patch {
     Index face;
     bool bounded = false;
@@ -118,7 +118,7 @@ std::vector<Patch> patches_of(const Mesh& mesh, const std::vector<Index>& faces)
     return patches;
 }
 
-/// Where all outlines vanished, a patch that is most of its component has lost its holes, not its area: it counts as unbounded.
+/// If all outlines vanished, a patch that covers most of its component has lost only its holes: it counts as unbounded.
 void free_large_patches(const Mesh& mesh, const std::vector<Index>& region, std::vector<Patch>& patches) {
     const std::vector<bool> selected = face_flags(mesh, region);
     std::vector<bool> seen(selected.size(), false);
@@ -181,14 +181,14 @@ FilledRegion RegionTransfer::fill(std::size_t region, TransferScore& score) {
     if (traced.vanished > 0 && traced.vanished < traced.pieces)
         score.note += (score.note.empty() ? "" : "; ") + std::to_string(traced.vanished) + " of " +
                       std::to_string(traced.pieces) + " pieces of its outline vanished";
-    // Nothing but vanished outlines: the region is no larger than the target's faces, unless a patch never had an outline.
+    // All outlines vanished: the region is not larger than the target's faces, unless a patch never had an outline.
     const bool bounded = std::all_of(patches.begin(), patches.end(), is_bounded);
     if (traced.edges.empty() && bounded) return {};
 
     const FaceParts::Choice choice = parts_->left_of(traced.edges);
     FilledRegion filled{parts_->faces(choice), choice.area, choice.perimeter};
     if (!bounded) {
-        // Patches without outlines cover their component: a place inside leads to it.
+        // Patches without outlines cover their component, which is found from a point inside.
         for (const Patch& patch : patches) {
             if (patch.bounded) continue;
             const Face face(patch.face);
@@ -218,7 +218,7 @@ std::vector<bool> RegionTransfer::vote(std::size_t region) {
 }
 
 void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score) const {
-    // The faces that the outline itself runs through, drawn exactly.
+    // The faces crossed by the outline, which is traced exactly.
     TransferScore ignored;
     PathTracer tracer(source_, search_, options_);
     std::vector<Index> vertices;
@@ -228,7 +228,7 @@ void RegionTransfer::cover(std::vector<bool>& selected, const std::vector<Source
     for (const SourcePath& vertex_path : vertex_paths) tracer.trace_curves(vertex_path, ignored);
     score.detours += ignored.detours;
     const Mesh& mesh = search_.mesh();
-    // The crossed faces and the edges the outline follows part the others into pieces, each on one side as a whole.
+    // The crossed faces and the edges that the outline follows divide the others into pieces, each of which is on one side.
     std::vector<bool> crossed(mesh.number_of_faces(), false), wall(mesh.number_of_edges(), false);
     for (const SurfaceCurve& curve : tracer.curves())
         for (std::size_t i = 0; i < curve.faces.size(); ++i) {
@@ -256,7 +256,7 @@ std::function<bool(const SurfaceHit&)> RegionTransfer::membership(const std::vec
     const auto selected = std::make_shared<std::vector<bool>>(face_flags(*mesh_, faces));
     if (origin_ == nullptr) return [selected](const SurfaceHit& hit) { return static_cast<bool>((*selected)[hit.face]); };
     return [selected, origin = origin_, &mesh = *mesh_](const SurfaceHit& hit) {
-        // New faces stand in the order of their old ones.
+        // New faces have the order of their old faces.
         const auto [first, last] = std::equal_range(origin->begin(), origin->end(), hit.face);
         double best = std::numeric_limits<double>::infinity();
         bool inside = false;

@@ -1,4 +1,4 @@
-// The interior of a transferred region.
+// Interior of transferred regions.
 #pragma once
 
 #include "face_parts.h"
@@ -11,17 +11,17 @@
 
 namespace ostraka {
 
-/// The outlines of a region as paths. Where an outline runs along the border of an open mesh it is cut: the border of the
-/// target bounds the region there.
+/// The outlines of a region as paths. An outline is cut where it follows the border of an open mesh: there, the border of the
+/// target bounds the region.
 std::vector<SourcePath> region_paths(const Mesh& mesh, const std::vector<Index>& faces);
 
-/// The longest of the shortest paths within the edges of a walk, approximately (two sweeps): what a region that shrank to a
-/// tree of edges leaves as a line.
+/// Approximation (by two sweeps) of the longest of the shortest paths within the edges of a walk: the line that represents a
+/// region that shrank to a tree of edges.
 std::vector<Index> diameter_path(const std::vector<Index>& walk);
 
-/// What lies within the outlines of a region, and its measures.
+/// The faces within the outlines of a region, and their measures.
 struct FilledRegion {
-    std::vector<bool> selected;  ///< a flag per face; no flags if the outlines vanished
+    std::vector<bool> selected;  ///< one flag per face; empty if the outlines vanished
     double area = 0, perimeter = 0;
 };
 
@@ -29,24 +29,24 @@ class RegionTransfer {
 public:
     RegionTransfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options);
 
-    /// Takes the outlines as traced, by annotation, on `mesh`: the target, or the target refined with `origin` giving each face's
-    /// old one. Both outlive this.
+    /// Sets the traced outlines, by annotation, on `mesh`: the target, or the refined target with `origin` giving the old face
+    /// of each face. Both must outlive this object.
     void set_outlines(const std::vector<std::vector<TracedPath>>& traced, const Mesh& mesh, const std::vector<Index>* origin);
 
-    /// What lies within a region's outlines. Where these make no sense, the score is marked as voted: then a vote must follow.
-    /// Regions may be filled side by side.
+    /// The faces within the outlines of a region. If the outlines are inconsistent, the score is marked as voted, and `vote`
+    /// must be called. Regions may be filled in parallel.
     FilledRegion fill(std::size_t region, TransferScore& score);
-    /// Each face asked for its place on the source.
+    /// Classifies each face by its corresponding place on the source.
     std::vector<bool> vote(std::size_t region);
-    /// The faces that the outlines run through taken in, or left out, as the options say.
+    /// Includes or excludes the faces that the outlines cross, as the options demand.
     void cover(std::vector<bool>& selected, const std::vector<SourcePath>& vertex_paths, TransferScore& score) const;
 
-    /// Whether a place on the target lies in some faces of the mesh.
+    /// Returns a predicate: whether a place on the target lies in the given faces of the mesh.
     [[nodiscard]] std::function<bool(const SurfaceHit&)> membership(const std::vector<Index>& faces) const;
 
     [[nodiscard]] double target_edge() const { return target_edge_; }
 
-    /// Built when it is first asked for, by any thread.
+    /// Built at the first call, from any thread.
     const SurfaceSearch& source_search();
 
 private:

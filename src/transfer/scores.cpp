@@ -22,8 +22,8 @@ Distortions distortions(const TransferScore& score) {
 
 namespace {
 
-/// How much of a region of one mesh has its places on the other one in the corresponding region there, from samples: in pieces
-/// that may be worked on side by side.
+/// Estimates by sampling the area of a region of one mesh whose corresponding places lie in the corresponding region of the
+/// other mesh. The pieces may be processed in parallel.
 class RegionSamples {
 public:
     RegionSamples(const Mesh& mesh, const RegionArea& area, const SurfaceSearch& other, const CorrespondenceOptions& options,
@@ -53,8 +53,8 @@ public:
             sample_face(i, sums_[piece]);
     }
 
-    /// The area of what lies inside, when all pieces are done. Faces that were passed over share the lot of those inside that
-    /// were not.
+    /// The area inside, after all pieces have been sampled. For skipped faces, the fraction inside is that of the sampled inner
+    /// faces.
     [[nodiscard]] double area_inside() const {
         Sums sums;
         for (const Sums& part : sums_) {
@@ -100,7 +100,7 @@ private:
                         const auto hit = other_.closest_compatible(place, normal, min_cosine_, search_radius_);
                         if (hit && contains_(*hit)) ++hits;
                     }
-            return asked > 0 ? static_cast<double>(hits) / asked : 1.0;  // too small a part to be met
+            return asked > 0 ? static_cast<double>(hits) / asked : 1.0;  // too small a part to be hit
         };
         if (!in_band) {
             const double inside = area * share_inside(1);
@@ -112,7 +112,7 @@ private:
         const double size =
             std::sqrt(std::max({CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)}));
         const int k = std::clamp(static_cast<int>(std::ceil(size / fine_)), 2, 8);
-        // A strip away from the outline, four samples that agree will do.
+        // In a face away from the outline, four samples suffice if they agree.
         const bool at_rim = std::any_of(vertices.begin(), vertices.end(), [&](Vertex v) -> bool { return on_rim_[v]; });
         double share = share_inside(at_rim ? k : 2);
         if (!at_rim && k > 2 && share < 1) share = share_inside(k);
@@ -124,7 +124,8 @@ private:
     const FreeRegion* free_;
     const SurfaceSearch& other_;
     std::function<bool(const SurfaceHit&)> contains_;
-    std::vector<bool> on_rim_, near_;  ///< vertices on the outline; those and their neighbours make the band sampled finely
+    std::vector<bool> on_rim_, near_;  ///< vertices on the outline; these and their
+                                       ///< neighbours form the band that is sampled finely
     double fine_, search_radius_, min_cosine_;
     std::size_t stride_;
     std::vector<Sums> sums_;  ///< by piece
@@ -134,10 +135,11 @@ private:
 
 void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const std::vector<OverlapQuestion>& questions,
                     const CorrespondenceOptions& options) {
-    constexpr std::size_t at_once = 32;  // their flags fill memory
+    constexpr std::size_t at_once = 32;  // limits the memory of their flags
     for (std::size_t first = 0; first < questions.size(); first += at_once) {
         const std::size_t count = std::min(at_once, questions.size() - first);
-        std::vector<std::optional<RegionSamples>> samples(2 * count);  // of a region on the source, then of it on the target
+        std::vector<std::optional<RegionSamples>> samples(2 * count);  // for each region: samples on the source,
+                                                                       // then on the target
         parallel_for(
             samples.size(),
             [&](std::size_t i) {

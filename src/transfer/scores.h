@@ -1,4 +1,4 @@
-// How much of a region arrived where it belongs.
+// Overlap of a region before and after transfer.
 #pragma once
 
 #include "ostraka/annotation/curves.h"
@@ -9,13 +9,13 @@
 
 namespace ostraka {
 
-/// One of the two meshes, with the search tree of its surface (for a refined target: that of the target itself).
+/// One of the two meshes with its search tree (for a refined target: the tree of the target itself).
 struct ScoredMesh {
     const Mesh& mesh;
     const SurfaceSearch& search;
 };
 
-/// A free region, to be asked about places.
+/// Point location in a free region.
 class FreeRegion {
 public:
     FreeRegion(const Mesh& mesh, const Annotation& annotation);
@@ -29,33 +29,34 @@ private:
     CutFaces cut_;
 };
 
-/// What a region holds of its mesh.
+/// The elements of a region on its mesh.
 struct RegionArea {
-    std::vector<Index> faces;  ///< in it, in part or whole
-    std::vector<Index> rim;    ///< the vertices at its outline
+    std::vector<Index> faces;  ///< faces in the region, completely or partly
+    std::vector<Index> rim;    ///< vertices on its outline
     std::shared_ptr<const FreeRegion> free;
 };
 RegionArea region_area(const Mesh& mesh, const Annotation& annotation);
 
-/// A region on both meshes, and whether a place on the target lies in it.
+/// A region on both meshes, and the predicate whether a place on the target lies in it.
 struct OverlapQuestion {
     RegionArea source, target;
     std::function<bool(const SurfaceHit&)> in_target;
-    TransferScore* score;  ///< gets overlap and wrong side; its areas are known
+    TransferScore* score;  ///< receives overlap and wrong_side; its areas are already set
 };
 
-/// Overlap and wrong side from both sides, since the surfaces differ: what of the source region arrived inside, and what of the
-/// target region came from inside. Faces near a region's outline are sampled by up to 64 smaller triangles each, finer than the
-/// other mesh's faces (four, if these agree, where no corner is on the outline); the others at their centroids, or, of more than
-/// some thousand of them, every so many. All questions are worked on side by side.
+/// Computes overlap and wrong side from both sides, since the surfaces differ: the part of the source region that arrived
+/// inside, and the part of the target region that came from inside. Faces near the outline of a region are subdivided into up
+/// to 64 triangles, finer than the other mesh's faces, and sampled at their centroids (only four triangles if these agree and
+/// no corner is on the outline). Other faces are sampled at their centroids; of more than some thousand such faces, only a
+/// regular subset. All regions are processed in parallel.
 void score_overlaps(const ScoredMesh& source, const ScoredMesh& target, const std::vector<OverlapQuestion>& questions,
                     const CorrespondenceOptions& options);
 
-/// The region's faces found one by one: those target faces whose centroid has its nearest compatible point in the region.
+/// Classifies the faces one by one: selects the target faces whose centroid has its nearest compatible point in the region.
 std::vector<bool> region_by_vote(const Mesh& source, const SurfaceSearch& source_search, const std::vector<Index>& region,
                                  const Mesh& target, const CorrespondenceOptions& options);
 
-/// Outline of a region, or the pieces of a line, or points as segments without length.
+/// The outline of a region, the segments of a line, or points as degenerate segments.
 using Segments = std::vector<std::pair<Point, Point>>;
 Segments segments_of(const Mesh& mesh, const Annotation& annotation);
 double length_of(const Segments& segments);

@@ -14,7 +14,7 @@ std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet
     transferring.overlap = false;
     transferring.refine = false;
     transferring.force = true;  // the same object, however coarse
-    // Each for itself, whether or not it is part of a partition.
+    // Each annotation by itself, whether or not it is part of a partition.
     if (transferring.outlines == TransferOptions::Outlines::partitions) transferring.outlines = TransferOptions::Outlines::kept;
     // Coarse surfaces lie farther away than the usual search radius.
     transferring.correspondence.max_distance = std::max(transferring.correspondence.max_distance, 0.1);

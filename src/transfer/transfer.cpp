@@ -42,7 +42,7 @@ void check_annotations(const Mesh& source, const AnnotationSet& set) {
     }
 }
 
-/// One transfer: the parts share the correspondences, the paths and the search trees.
+/// State of one transfer: correspondences, paths and search trees are shared by its steps.
 class Transfer {
 public:
     Transfer(const Mesh& source, const AnnotationSet& set, const SurfaceSearch& target, const TransferOptions& options)
@@ -158,14 +158,14 @@ private:
         if (line.size() >= 2) to.polylines.push_back(std::move(line));
     }
 
-    /// Curves of all annotations become edges at once; then each path is read off the refined mesh.
+    /// Inserts the curves of all annotations as edges at once, then reads the paths from the refined mesh.
     void insert(std::vector<Annotation>& transferred) {
         std::vector<std::vector<std::vector<PathTracer::Step>>> steps(vertex_paths_.size());
         for (std::size_t i = 0; i < vertex_paths_.size(); ++i)
             for (const SourcePath& vertex_path : vertex_paths_[i])
                 steps[i].push_back(tracer_.trace_curves(vertex_path, result_.scores[i]));
         std::vector<SurfaceCurve> curves = tracer_.curves();
-        // Points become vertices too: curves of a single node.
+        // Points become vertices as well: curves of a single node.
         std::map<Index, std::size_t> point_curve;
         for (const Annotation& annotation : set_.annotations)
             for (const Index v : annotation.points) {
@@ -222,7 +222,7 @@ private:
         }
     }
 
-    /// Calls body(i) for each annotation, side by side; the largest first, so that none of them is left alone at the end.
+    /// Calls body(i) for each annotation in parallel, largest first for a balanced load.
     template <class Body>
     void for_each_annotation(const Body& body) const {
         std::vector<std::size_t> order(set_.annotations.size());
@@ -262,7 +262,7 @@ private:
         });
     }
 
-    /// A line that is shorter than the target's edges becomes a point.
+    /// A line shorter than the target's edges becomes a point.
     void finish_line(std::size_t i, Annotation& to) {
         if (!to.polylines.empty()) return;
         for (const TracedPath& vertex_path : traced_[i])
@@ -273,7 +273,7 @@ private:
         add_note(to.note, "was a line, too short for this mesh");
     }
 
-    /// Writes the faces of a region down, or what is left of it where there are none.
+    /// Stores the faces of a region or, if there are none, the line or point that it is reduced to.
     void finish(std::size_t i, Annotation& to, const std::vector<bool>& selected) {
         TransferScore& score = result_.scores[i];
         if (set_.annotations[i].all) {
@@ -282,7 +282,7 @@ private:
         }
         to.faces = flagged(selected);
         if (!to.faces.empty()) return;
-        // Nothing but a trace is left: the longest one stands for the region.
+        // Only the traced outlines are left: the longest path represents the region.
         std::vector<Index> line;
         for (const TracedPath& vertex_path : traced_[i])
             if (std::vector<Index> path = diameter_path(vertex_path.walk); path.size() > line.size()) line = std::move(path);
@@ -329,7 +329,7 @@ void Transfer::score_all(const std::vector<Annotation>& transferred) {
         score_overlaps({source_, regions_.source_search()}, {on(), search_}, questions, options_.correspondence);
 }
 
-/// All but the overlap, which is asked for if it is to be measured.
+/// Computes all scores except the overlap, for which a query is returned if it is to be measured.
 std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Annotation& to, TransferScore& score) {
     score.target_type = to.type;
     if (score.outcome == TransferOutcome::kept && to.points.empty() && to.polylines.empty() && to.faces.empty())
@@ -349,7 +349,7 @@ std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Ann
     score.target_area = area_of(on(), to.faces);
     if (!options_.overlap || to.faces.empty()) return {};
     if (from.all) {
-        // All of one mesh is all of the other, if they are the same object.
+        // If the meshes show the same object, the whole of one corresponds to the whole of the other.
         if (distortions(score).area < 0.05) {
             score.overlap = 1;
             score.wrong_side = 0;
@@ -365,8 +365,8 @@ std::optional<OverlapQuestion> Transfer::score(const Annotation& from, const Ann
 
 namespace {
 
-/// Which annotations are laid by their curves: free ones, all where that is asked for, and regions that part the surface, which
-/// only curves part again without a saw.
+/// Which annotations are projected by their curves: free ones, all if requested, and regions that partition the surface, whose
+/// partition only curves preserve without zigzags.
 std::vector<bool> laid_by_curves(const Mesh& source, const AnnotationSet& set, const TransferOptions& options) {
     using Outlines = TransferOptions::Outlines;
     const bool along_edges = options.refine || options.cover != TransferOptions::Cover::overlapping;

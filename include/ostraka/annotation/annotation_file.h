@@ -1,4 +1,4 @@
-// Annotation files (*.ant.json): the thesis's Appendix B.1 exactly, with optional additions (doc/annotations.md).
+// Annotation files (*.ant.json): the format of the thesis's Appendix B.1 with optional additions (doc/annotations.md).
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -9,40 +9,41 @@
 namespace ostraka {
 
 struct ReadAnnotationsOptions {
-    bool force_mesh = false;  ///< take the file although it was made for another mesh; indices and edges are checked all the same
+    bool force_mesh = false;  ///< accept a file made for another mesh; indices and edges are still checked
 
     void describe(OptionList& visit);
 };
 
-/// Reads the annotations of `mesh`: our files, the thesis's (no format and no mesh member) and, as well as may be and with
-/// notes, the prototype's (.ant). Checks the schema, indices, edges, ids, and that the mesh is the one the file was made for.
-/// Throws Error (input) that names the file, the JSON pointer and the remedy. Linear in the size of file and selections.
+/// Reads the annotations of `mesh` from our files, the thesis's files (no format and no mesh member) or, as far as possible and
+/// with notes, the prototype's files (.ant). Checks the schema, indices, edges, ids, and whether the file was made for this
+/// mesh. Throws Error (input) with the file, the JSON pointer and the remedy. Linear in the size of the file and the
+/// selections.
 AnnotationSet read_annotations(const Path& file, const Mesh& mesh, const ReadAnnotationsOptions& options = {});
 
-/// The same for a document in memory; `where` stands for the file's name in errors.
+/// The same for a document in memory; `where` is its name in error messages.
 AnnotationSet annotations_from_json(const JsonValue& document, const Mesh& mesh, const std::string& where,
                                     const ReadAnnotationsOptions& options = {});
 
-/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. `mesh_file` is stored without its
-/// folder. Throws Error if a selection does not fit the mesh.
+/// Writes the set atomically; the same set, mesh, name and provenance give the same bytes. Only the file name of `mesh_file` is
+/// stored, not its folder. Throws Error if a selection does not fit the mesh.
 void write_annotations(const Path& file, const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file,
                        const Provenance& provenance);
 Json annotations_to_json(const AnnotationSet& set, const Mesh& mesh, const std::string& mesh_file, const Provenance& provenance);
 
-/// Attributes alone, as recipes hold them too; `list` must have passed a schema, pins are not checked. `pointer` is the place of
-/// the list in the document.
+/// Reads a list of attributes, which recipes contain as well. `list` must have been validated against a schema; pins are not
+/// checked. `pointer`: JSON pointer of the list in the document.
 std::vector<Attribute> attributes_from_json(const JsonValue& list, const std::string& where, const std::string& pointer);
 
-/// Checks a set in memory as reading checks a file: ids, colours, indices, edges, pins. Throws Error (input); `where` is named
-/// first.
+/// Applies the checks of the reader to a set in memory: ids, colours, indices, edges, pins. Throws Error (input) whose message
+/// begins with `where`.
 void check_annotations(const AnnotationSet& set, const Mesh& mesh, const std::string& where);
 
-/// As an annotation file holds it. Throws Error (input) for a checksum of what is no local file.
+/// Reads the `information` of an annotation file. Throws Error (input) if anything other than a local file has a checksum.
 std::vector<Information> information_from_json(JsonValue::ConstArray list, const std::string& where, const std::string& pointer);
 
-/// Local files that annotations and their attributes refer to, relative to `folder`: defects where one is missing, lies outside
-/// of the folder, or its bytes are not those that the checksum is of; remarks where none is known. An array (.npy) of an
-/// attribute must have a number for each vertex or for each face of `mesh`, an axis (.json) must be one that was found.
+/// Checks the local files that annotations and their attributes refer to, relative to `folder`. Defects: a file is missing,
+/// lies outside the folder or does not match its checksum. Remarks: the checksum is unknown. The array (.npy) of an attribute
+/// must have one number per vertex or per face of `mesh`; an axis file (.json) must contain an axis.
 std::vector<Finding> check_files(const AnnotationSet& set, const Mesh& mesh, const Path& folder);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Colours of annotations, and annotations as colours of a mesh.
+// Colours of annotations, and coloured meshes.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -6,26 +6,26 @@
 
 namespace ostraka {
 
-/// Colour number `index` of a calm palette (render: category_colour): the first nine can be told apart by colour-blind readers.
+/// Colour `index` of a muted palette (render: category_colour); the first nine can be distinguished by colour-blind readers.
 std::array<int, 3> distinct_colour(std::size_t index);
 
-/// A region that is the whole mesh, or 95 % of its faces.
+/// Whether the region covers the whole mesh or at least 95 % of its faces.
 bool covers_nearly_all(const Mesh& mesh, const Annotation& annotation);
 
-/// The colour of an annotation that joins the set and has none of its own: neutral where it covers nearly all, else the
-/// first of the palette that no annotation of the set has.
+/// A colour for an annotation about to be added to the set: neutral if it covers nearly all of the mesh, else the first colour
+/// of the palette not used in the set.
 std::array<int, 3> fresh_colour(const Mesh& mesh, const AnnotationSet& set, const Annotation& joining);
 
-/// New colours for the regions of a set, which share no face: each its own as long as the palette lasts, neighbours of different
-/// hues, neutral what covers nearly all. Linear.
+/// Assigns colours to the regions of a set without common faces: distinct colours as long as the palette lasts, different hues
+/// for adjacent regions, the neutral colour for regions that cover nearly all of the mesh. Linear.
 void colour_regions(const Mesh& mesh, AnnotationSet& set);
 
-/// The regions of a set, largest area first; of equal ones the later in the set first, so that painting them in this order leaves
-/// the smallest, then the earliest, on top.
+/// The regions of a set, by descending area; for equal areas, the later one in the set first. Painting them in this order
+/// leaves the smallest (then the earliest) region on top.
 std::vector<const Annotation*> regions_largest_first(const Mesh& mesh, const AnnotationSet& set);
 
-/// Faces in the colour of the smallest region that covers them, grey where none does; vertices likewise, and those of poly-lines
-/// and points in their colours on top. Linear in the mesh and the selections.
+/// Colours each face by the smallest region that covers it (grey: none), each vertex likewise, and then the vertices of
+/// poly-lines and points by their annotation. Linear in the size of the mesh and the selections.
 MeshExtras colour_by_annotation(const Mesh& mesh, const AnnotationSet& set);
 
 }  // namespace ostraka

@@ -10,43 +10,43 @@
 
 namespace ostraka {
 
-/// Whether it has curves of its own.
+/// Whether the annotation has its own curves.
 inline bool is_free(const Annotation& annotation) { return !annotation.curves.empty(); }
 bool any_free(const AnnotationSet& set);
 
-/// Its curves with their coordinates. Throws Error (input), naming the annotation, where they do not fit the mesh.
+/// The curves of an annotation with coordinates. Throws Error (input), naming the annotation, if they do not fit the mesh.
 std::vector<SurfaceCurve> curves_on(const Mesh& mesh, const Annotation& annotation);
 
-/// Which faces a free region holds, in part or whole.
+/// For each face, whether it is inside, outside or partly inside a free region.
 CurveFilling filling_of(const Mesh& mesh, const Annotation& annotation);
 
-/// Gives a free annotation the elements nearest to its curves: of a region the faces of which at least half is inside, and those
-/// of whole components that `faces` lists and no curve runs through; of a poly-line a path of edges; of points the vertices.
-/// Throws Error (input) as `curves_on`, and for outlines that contradict each other.
+/// Computes the elements of a free annotation nearest to its curves. Region: faces with at least half of their area inside, and
+/// the connected components listed in `faces` that no curve traverses. Line: a path of edges. Point: vertices. Throws Error
+/// (input) as `curves_on` does, and if outlines contradict each other.
 void settle_elements(const Mesh& mesh, Annotation& annotation);
 
-/// Area and perimeter of a region: of a free one those of its curves.
+/// Area and perimeter of a region; for a free region, computed from its curves.
 RegionMeasures measure_region(const Mesh& mesh, const Annotation& annotation);
-/// Area of a region, 0 of others.
+/// Area of a region; 0 for other types.
 double area_of(const Mesh& mesh, const Annotation& annotation);
 
-/// The faces of a region, ascending, each with the share of its area that is inside: 1, or less where a free outline cuts it.
+/// The faces of a region, ascending, each with the fraction of its area inside: 1, or less if a free outline cuts the face.
 std::vector<std::pair<Index, double>> face_shares(const Mesh& mesh, const Annotation& region);
-/// Length of a line: of its curves if it is free.
+/// Length of a line; for a free line, computed from its curves.
 double length_of(const Mesh& mesh, const Annotation& annotation);
-/// The outlines of a region, the poly-lines of a line, the points of points, as coordinates; closed ones repeat their first.
+/// Coordinates of the outlines of a region, the poly-lines of a line or the points; closed curves repeat their first point.
 std::vector<std::vector<Point>> drawn_curves(const Mesh& mesh, const Annotation& annotation);
 
-/// A mesh cut along the free curves of annotations, where all of them follow edges. The surface is the same.
+/// A mesh cut along the free curves of annotations, so that all curves follow edges. The surface is unchanged.
 struct CutMesh {
-    Mesh mesh;                       ///< old vertices first, under their old indices
+    Mesh mesh;                       ///< old vertices first, with unchanged indices
     AnnotationSet annotations;       ///< without curves; measures keep their pins
     std::vector<Index> face_origin;  ///< new face -> old face, ascending
-    std::vector<SurfaceNode> nodes;  ///< of the vertices beyond the old ones: where they are on the old mesh
+    std::vector<SurfaceNode> nodes;  ///< for each new vertex, its position on the old mesh
     std::size_t old_vertices = 0;
-    std::vector<std::vector<Index>> more_paths;  ///< of the other curves: all vertices along each
+    std::vector<std::vector<Index>> more_paths;  ///< for each additional curve, all vertices along it
 
-    /// Values of old vertices, interpolated at the new ones; values of old faces, handed to their parts.
+    /// Vertex values interpolated at the new vertices; face values copied to the parts of the face.
     [[nodiscard]] std::vector<double> vertex_values(const Mesh& before, const std::vector<double>& values) const;
     template <class Value>
     [[nodiscard]] std::vector<Value> face_values(const std::vector<Value>& values) const {
@@ -57,12 +57,12 @@ struct CutMesh {
     }
 };
 
-/// Cuts along the curves of the set, and along `more`. Linear in the mesh plus O(k log k) per face with k nodes; where two
-/// outlines cross each other, in the sizes of both.
+/// Cuts along the curves of the set and along `more`. Linear in the size of the mesh plus O(k log k) per face with k nodes; if
+/// two outlines intersect, also in the sizes of both.
 CutMesh cut_along_curves(const Mesh& mesh, const AnnotationSet& set, const std::vector<SurfaceCurve>& more = {});
 
-/// Mesh and annotations where all follow edges, for what only looks at them: as they are if none is free, else cut. What is given
-/// must outlive it.
+/// Mesh and annotations in which all annotations follow edges, for read-only use: the given ones if no annotation is free, else
+/// cut ones. The arguments must outlive this object.
 class AlongEdges {
 public:
     AlongEdges(const Mesh& mesh, const AnnotationSet& set) : mesh_(&mesh), set_(&set) {
@@ -78,8 +78,8 @@ private:
     std::optional<CutMesh> cut_;
 };
 
-/// An annotation of the cut mesh on the mesh that was cut: a free one, unless it follows the edges of that as well. Places
-/// between others on a straight piece are left out.
+/// Maps an annotation of the cut mesh back to the original mesh. It becomes free unless it follows edges of the original mesh.
+/// Places in the interior of a straight piece are dropped.
 void bring_back(const Mesh& mesh, const CutMesh& cut, Annotation& annotation);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Annotated parts of a mesh as a mesh of their own.
+// Annotated parts of a mesh as separate meshes.
 #pragma once
 
 #include "ostraka/annotation/curves.h"
@@ -6,20 +6,20 @@
 
 namespace ostraka {
 
-/// A part cut out along its outlines, with what is annotated on it.
+/// A part cut out along its outlines, with its annotations.
 struct CutPart {
     Mesh mesh;
-    AnnotationSet annotations;     ///< what lies on it as it was; outlines that were free follow its edges
-    std::vector<Index> vertices;   ///< of `whole`, for each vertex
-    std::vector<Index> faces;      ///< of `whole`, for each face; no_index where a face closes a cut
-    std::size_t cuts = 0;          ///< borders that the object did not have, or not altogether
-    std::size_t closed = 0;        ///< of these, closed by triangles
-    std::optional<CutMesh> whole;  ///< the mesh cut along free outlines; none where none is free: then the mesh itself
+    AnnotationSet annotations;     ///< annotations that lie completely on the part; free outlines now follow its edges
+    std::vector<Index> vertices;   ///< index in `whole` of each vertex
+    std::vector<Index> faces;      ///< index in `whole` of each face; no_index for faces that close a cut
+    std::size_t cuts = 0;          ///< number of borders that are not, or not entirely, borders of the object
+    std::size_t closed = 0;        ///< number of cuts closed by triangles
+    std::optional<CutMesh> whole;  ///< the mesh cut along free outlines; nullopt if no annotation is free: then the mesh itself
 };
 
-/// Cuts regions (places in the set) out of a mesh, without others; no `regions`: everything that is not left out. `close` closes
-/// the borders that the cut made by triangles, which are annotated as "cut", where the set had none of that tag with it. Throws
-/// Error (input) where one of them is no region or nothing is left.
+/// Cuts out the union of `regions` (indices into the set; empty: the whole mesh) without the regions in `left_out`. `close`:
+/// fills the borders created by the cut with triangles and annotates them as "cut". Throws Error (input) if an index does not
+/// refer to a region or if nothing is left.
 CutPart cut_out_part(const Mesh& mesh, const AnnotationSet& set, const std::vector<std::size_t>& regions,
                      const std::vector<std::size_t>& left_out = {}, bool close = false);
 

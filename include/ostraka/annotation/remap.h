@@ -1,4 +1,4 @@
-// Annotations follow a mesh through maps of its elements, as `mesh repair` writes them.
+// Mapping of annotations to a changed mesh by index maps, as written by `mesh repair`.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -6,23 +6,23 @@
 
 namespace ostraka {
 
-/// A file {"format": "ostraka-map", "version": 1, "kind": "vertex" | "face", "from": count, "to": count, "map": [...]}: for each
-/// old element its new index, -1 (no_index) where it was dropped. Throws Error (input) that names file, place and remedy unless
-/// kind and counts are those given.
+/// Reads a file {"format": "ostraka-map", "version": 1, "kind": "vertex" | "face", "from": count, "to": count, "map": [...]}:
+/// for each old element its new index, -1 (no_index) if it was removed. Throws Error (input) with file, position and remedy
+/// unless kind and counts have the given values.
 std::vector<Index> read_index_map(const Path& file, const std::string& kind, std::size_t from, std::size_t to);
 
-/// The annotations of `before` on `after`. Faces follow `face_map`; if it is empty, a face follows its corners. Points and
-/// poly-lines follow `vertex_map`; a poly-line is cut where its vertices are not joined any more, a region without faces becomes
-/// a line or a point; notes say so. Values of measures are marked stale.
+/// Maps the annotations of `before` to `after`. Faces are mapped by `face_map`, or by their corners if it is empty. Points and
+/// poly-lines are mapped by `vertex_map`; a poly-line is split where consecutive vertices are no longer connected, and a region
+/// without faces becomes a line or a point; notes report both. Values of measures are marked stale.
 AnnotationSet remap_annotations(const Mesh& before, const AnnotationSet& set, const Mesh& after,
                                 const std::vector<Index>& vertex_map, const std::vector<Index>& face_map = {});
 
-/// The annotations of `whole` on a piece of it, whose vertices and faces are those listed of the whole. Left out is what is not
-/// on the piece as it was: points that lack one, lines and regions of which less than a line or a region is left.
+/// The annotations of `whole` on a piece of it; `vertices` and `faces` are the indices in `whole` of the elements of the piece.
+/// Dropped are point annotations with a missing vertex, and lines and regions of which not even a line or a region remains.
 AnnotationSet annotations_of_piece(const Mesh& whole, const AnnotationSet& set, const Mesh& piece,
                                    const std::vector<Index>& vertices, const std::vector<Index>& faces);
 
-/// Labels per face along a map; new faces that no old one maps to get `no_label`.
+/// Maps labels of faces; new faces without an old face get `no_label`.
 std::vector<std::int32_t> remap_labels(const std::vector<std::int32_t>& labels, const std::vector<Index>& face_map,
                                        std::size_t face_count);
 

@@ -1,4 +1,4 @@
-// Borders of regions for the eye: smooth where the regions' own run in steps along the edges of the mesh.
+// Smooth borders of regions for display, where the regions' outlines zigzag along the edges of the mesh.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,20 +9,20 @@
 namespace ostraka {
 
 struct SmoothRegions {
-    /// What a face that has several labels has of one of them: a place in the face belongs to the label of the largest weight.
+    /// The weights of one label in a face with several labels: a point in the face has the label with the largest weight.
     struct Patch {
         Index face = 0;
         int label = 0;
-        std::array<float, 3> weights{};  ///< at the corners, linear between them
+        std::array<float, 3> weights{};  ///< at the corners, linearly interpolated in between
     };
     std::vector<Patch> patches;                ///< by ascending face
-    std::vector<std::vector<Point>> outlines;  ///< between the labels, as poly-lines
+    std::vector<std::vector<Point>> outlines;  ///< borders between the labels, as poly-lines
 };
 
-/// Each vertex has of each label the share of the area around it, smoothed `rounds` times with its neighbours; a place has the
-/// label of the largest of the weights interpolated there, and outlines are where two of them are equal. A border moves by less
-/// than an edge or two. A label that so would vanish keeps its faces as they are, with their outline. Labels are any numbers, one
-/// a face. O(n) but for the sorting of what lies on borders.
+/// Each vertex has a weight per label: its fraction of the area around the vertex, smoothed `rounds` times over the one-ring. A
+/// point has the label with the largest interpolated weight; outlines lie where the two largest are equal. A border moves by
+/// one or two edges at most. A label that would vanish keeps its faces and their outline. `label_of_face`: arbitrary integers,
+/// one per face. O(n), except for the sorting of elements on borders.
 SmoothRegions smooth_regions(const Mesh& mesh, const std::vector<int>& label_of_face, int rounds = 2);
 
 }  // namespace ostraka

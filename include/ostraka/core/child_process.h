@@ -1,4 +1,4 @@
-// Programs that are started by this one.
+// Child processes.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -10,45 +10,45 @@
 namespace ostraka {
 
 struct ChildOptions {
-    Path folder = {};               ///< where it runs; empty: where this program does
-    Path output = {}, errors = {};  ///< files for what it prints; the same file for both: in the order in which it is printed
-    bool pipes =
-        false;        ///< it reads what is written to `to`, and what it prints is read from `from`; else it has nothing to read
-    int threads = 0;  ///< OMP_NUM_THREADS; 0: as in this program
+    Path folder = {};               ///< working directory; empty: that of this process
+    Path output = {}, errors = {};  ///< files for stdout and stderr; if both are the same file, the order of printing is kept
+    bool pipes = false;             ///< stdin is connected to `to` and stdout to `from`; false: stdin is empty
+    int threads = 0;                ///< OMP_NUM_THREADS; 0: as in this process
 };
 
-/// A running program, in a process group of its own: signals of the terminal are this program's to answer. It is killed where it
-/// still runs at the end.
+/// A running program in its own process group, so that signals of the terminal reach this process only. The destructor kills
+/// the program if it still runs.
 class ChildProcess {
 public:
-    /// words: the program (found as the shell does) and its arguments. Throws Error (failure) where it cannot be started.
+    /// words: the program (searched in PATH as a shell does) and its arguments. Throws Error (failure) if it cannot be started.
     ChildProcess(std::vector<std::string> words, const ChildOptions& options);
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// Waits until it ends: true; or until `stop` says so, which is asked every few milliseconds: false.
+    /// Waits for the program to end and returns true, or false as soon as `stop()` is true; `stop` is polled every few
+    /// milliseconds.
     bool wait(const std::function<bool()>& stop);
-    /// Sends a signal to it and to what it has started.
+    /// Sends a signal to the program and to the processes it has started.
     void signal(int number) const;
-    /// Once it has ended: its exit code; 128 + N where signal N ended it.
+    /// Exit code after the program has ended; 128 + N if signal N ended it.
     [[nodiscard]] int code() const;
     /// "ended with code 3", "ended by signal 11".
     [[nodiscard]] std::string ending() const;
 
     [[nodiscard]] int to() const { return to_; }
     [[nodiscard]] int from() const { return from_; }
-    /// What it reads ends here.
+    /// Closes the program's standard input.
     void close_input();
 
 private:
     int id_ = 0, status_ = 0, to_ = -1, from_ = -1;
 };
 
-/// Kills all that are running, with what they have started: for a process that ends at once.
+/// Kills all running child processes and the processes they have started. For a process that exits immediately.
 void kill_children();
 
-/// The folder of the program that is running.
+/// The folder of the running executable.
 Path own_program_folder();
 
 }  // namespace ostraka

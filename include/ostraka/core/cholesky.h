@@ -1,4 +1,4 @@
-// Sparse Cholesky factorisation: CHOLMOD, supernodal, behind a wall.
+// Sparse Cholesky factorisation with CHOLMOD (supernodal). CHOLMOD's headers are included in the source file only.
 #pragma once
 
 #include <Eigen/Sparse>
@@ -7,22 +7,25 @@
 
 namespace ostraka {
 
-/// Column-major, lower triangle and diagonal only, indices in order within a column.
+/// Column-major; lower triangle and diagonal only; row indices sorted within each column.
 using LowerTriangle = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
 class SparseCholesky {
 public:
     SparseCholesky();
     ~SparseCholesky();
-    /// Orders and analyses the pattern. Unknowns with very many neighbours are ordered last. Throws Error (failure).
+    /// Symbolic analysis: computes the elimination order. Unknowns with very many neighbours are eliminated last. Throws Error
+    /// (failure).
     void analyse(const LowerTriangle& matrix);
-    /// False if the matrix is not positive definite. Throws Error (failure) for lack of memory.
+    /// Numerical factorisation. Returns false if the matrix is not positive definite. Throws Error (failure) if memory runs
+    /// out.
     bool factor(const LowerTriangle& matrix);
-    /// Least over greatest diagonal entry of the factor, squared: an upper bound of the reciprocal condition number.
+    /// Square of the ratio of the smallest to the largest diagonal entry of the factor: an upper bound of the reciprocal
+    /// condition number.
     [[nodiscard]] double reciprocal_condition() const;
-    /// Solves for all columns at once; in place.
+    /// Solves in place for all right-hand sides (columns).
     void solve(Eigen::MatrixXd& columns);
-    [[nodiscard]] double entries() const;  ///< of the factor
+    [[nodiscard]] double entries() const;  ///< number of entries of the factor
 
 private:
     struct State;

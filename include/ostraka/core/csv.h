@@ -1,4 +1,4 @@
-// CSV tables (RFC 4180), and nothing in them that can become a formula.
+// CSV tables (RFC 4180), protected against formula injection.
 #pragma once
 
 #include <string>
@@ -7,23 +7,24 @@
 
 namespace ostraka {
 
-/// A cell that no spreadsheet takes for a formula: text that begins with a tab or a line break, or in which one of = + - @, also
-/// in their wide and small forms, stands at the front or behind a semicolon, a tab, a line break or a special blank (plain blanks
-/// between apart) gets an apostrophe in front, and so does text that `unguarded` would shorten.
+/// Protects a cell from being read as a formula by a spreadsheet: puts an apostrophe in front of text that begins with a tab or
+/// a line break, or that has one of = + - @ (including their full-width and small forms) at the front or after a semicolon, a
+/// tab, a line break or a non-ASCII blank, ignoring plain blanks in between. Text that `unguarded` would shorten gets an
+/// apostrophe as well.
 std::string guarded(const std::string& text);
 std::string unguarded(const std::string& text);
 
-/// One row of a CSV file (RFC 4180), guarded unless a cell is a plain number, ended by a line feed.
+/// One row of a CSV file (RFC 4180) with a line feed at the end. Cells are guarded unless they are plain numbers.
 std::string csv_row(const std::vector<std::string>& cells);
 
 struct CsvRow {
-    std::size_t line = 0;  ///< where it begins, from 1
+    std::size_t line = 0;  ///< line on which the row begins, from 1
     std::vector<std::string> cells;
 };
-/// Rows of a CSV file, empty ones left out; cells as they stand, not unguarded. A byte order mark is skipped. Throws Error
-/// (input) naming file and line where a quoted cell does not end or is followed by text.
+/// The non-empty rows of a CSV file; cells are not unguarded. A byte order mark is skipped. Throws Error (input), naming file
+/// and line, if a quoted cell is not closed or is followed by text.
 std::vector<CsvRow> csv_rows(std::string_view text, char separator, const std::string& where);
-/// The separator among comma, semicolon and tab that the first line has most of.
+/// The most frequent separator of the first line: comma, semicolon or tab.
 char csv_separator(std::string_view text);
 
 }  // namespace ostraka

@@ -1,5 +1,5 @@
-// Small dense linear algebra behind plain functions, compiled once. Those with the name of an algorithm of Eigen are that, to the
-// bit.
+// Small dense linear algebra behind plain functions, compiled once. Functions named after an algorithm of Eigen return exactly
+// what Eigen returns.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,7 +13,7 @@ class SymmetricEigen;
 /// Eigenvalues (ascending) and vectors of A x = lambda B x, A symmetric, B symmetric and positive definite.
 SymmetricEigen<Eigen::Dynamic> generalised_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix, of which the lower triangle is read. N: 2, 3 or
+/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix; only its lower triangle is read. N: 2, 3 or
 /// Eigen::Dynamic.
 template <int N>
 class SymmetricEigen {
@@ -24,7 +24,7 @@ public:
 
     [[nodiscard]] const Vector& eigenvalues() const { return values_; }
     [[nodiscard]] const Matrix& eigenvectors() const { return vectors_; }
-    /// False where the iteration did not converge, as for numbers that are not finite.
+    /// False if the iteration did not converge, for example because an entry is not finite.
     [[nodiscard]] bool found() const { return found_; }
 
 private:
@@ -42,7 +42,7 @@ SymmetricEigen<2>::SymmetricEigen(const Matrix& symmetric);
 extern template class SymmetricEigen<3>;
 extern template class SymmetricEigen<Eigen::Dynamic>;
 
-/// The eigenvalues alone, ascending.
+/// The eigenvalues only, ascending.
 Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& symmetric);
 
 /// Singular value decomposition (Jacobi) of a 3 x 3 matrix: U diag(s) V^T, singular values descending.
@@ -52,7 +52,7 @@ public:
     [[nodiscard]] const Eigen::Matrix3d& matrixU() const { return u_; }
     [[nodiscard]] const Eigen::Matrix3d& matrixV() const { return v_; }
     [[nodiscard]] const Eigen::Vector3d& singularValues() const { return values_; }
-    /// False for numbers that are not finite.
+    /// False if an entry is not finite.
     [[nodiscard]] bool found() const { return found_; }
 
 private:
@@ -77,8 +77,8 @@ private:
     Eigen::VectorXd values_;
 };
 
-/// The rotation of the smallest angle that turns the direction of `from` into that of `to` (vectors of any length but zero); of
-/// opposite directions a half turn about an axis across them.
+/// The rotation by the smallest angle that maps the direction of `from` to the direction of `to` (non-zero vectors). For
+/// opposite directions: a half turn about an axis perpendicular to them.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Solves A x = b for a symmetric, positive or negative semidefinite A by LDL^T. N: 3, 4, 6 or Eigen::Dynamic.
@@ -89,14 +89,14 @@ extern template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix4d&
 extern template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&, const Eigen::Matrix<double, 6, 1>&);
 extern template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
 
-/// The smallest of the x that minimise |A x - b|, by a complete orthogonal decomposition. `threshold`: pivots below this share of
-/// the largest count as zero; 0: as Eigen takes it.
+/// The minimiser x of |A x - b| with the smallest norm, by a complete orthogonal decomposition. `threshold`: pivots below this
+/// fraction of the largest pivot count as zero; 0: Eigen's default.
 Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold = 0);
 
 /// The X that minimises |A X - B| for an A of full rank with more rows than columns (Householder).
 Eigen::MatrixXd solve_full_rank(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// The factor of a symmetric positive definite matrix (LL^T).
+/// Cholesky factorisation (LL^T) of a symmetric positive definite matrix.
 class Cholesky {
 public:
     Cholesky();
@@ -106,7 +106,7 @@ public:
     Cholesky& operator=(Cholesky&&) noexcept;
 
     void compute(const Eigen::MatrixXd& a);
-    /// False where the matrix is not positive definite.
+    /// False if the matrix is not positive definite.
     [[nodiscard]] bool found() const;
     /// Estimate of the reciprocal condition number.
     [[nodiscard]] double rcond() const;

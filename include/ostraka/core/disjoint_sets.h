@@ -1,4 +1,4 @@
-// Which elements belong together (union-find).
+// Union-find.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,7 +9,8 @@
 
 namespace ostraka {
 
-/// Disjoint sets of the elements 0, 1, ..., each alone at first. A set is named by one of its members, its root.
+/// Disjoint sets of the elements 0, 1, ...; initially each element is its own set. A set is represented by one of its members,
+/// its root.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
@@ -22,8 +23,8 @@ public:
         return static_cast<Index>(i);
     }
 
-    /// Joins two sets under the smaller of their roots: where all are joined so, a root is the smallest member of its set,
-    /// whatever the order. False: they were one already.
+    /// Joins two sets under the smaller of their roots. If only this function joins sets, every root is the smallest member of
+    /// its set, whatever the order of the calls. Returns false if both were in the same set already.
     bool unite(std::size_t a, std::size_t b) {
         const auto [low, high] = std::minmax({find(a), find(b)});
         parent_[high] = low;

@@ -1,4 +1,4 @@
-// The typed error every module throws and `main` alone catches.
+// The error type that all modules throw and only `main` catches.
 #pragma once
 
 #include <stdexcept>
@@ -7,13 +7,13 @@
 namespace ostraka {
 
 enum class ErrorKind {
-    input,     ///< a file or a mesh is not what it should be (exit code 1)
-    failure,   ///< the work could not be done: no space, no memory, no solution (exit code 1)
-    usage,     ///< the caller's words or options do not make sense (exit code 2)
-    cancelled  ///< the caller wanted the work to stop (exit code 130)
+    input,     ///< a file or a mesh is invalid (exit code 1)
+    failure,   ///< the work could not be done: no disk space, no memory, no solution (exit code 1)
+    usage,     ///< the arguments or options are invalid (exit code 2)
+    cancelled  ///< the caller cancelled the work (exit code 130)
 };
 
-/// What went wrong, where (file, line, element), and the remedy.
+/// The problem, its location (file, line, element) and the remedy.
 class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, const std::string& where, const std::string& what, const std::string& remedy = {});
@@ -30,7 +30,7 @@ private:
     std::string remedy_;
 };
 
-/// Shorthands, so that a check stays on one line.
+/// Shorthands that throw an Error, so that a check stays on one line.
 [[noreturn]] void fail_input(const std::string& where, const std::string& what, const std::string& remedy = {});
 [[noreturn]] void fail_work(const std::string& where, const std::string& what, const std::string& remedy = {});
 [[noreturn]] void fail_usage(const std::string& what, const std::string& remedy = {});

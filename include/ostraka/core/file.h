@@ -1,5 +1,5 @@
-// Files: read whole, written atomically. A name that begins with "memory:" is that of a file in this process's memory: it is read
-// and written like any other, and touches no disk.
+// Files: read as a whole, written atomically. A name that begins with "memory:" denotes a file in the memory of this process:
+// it is read and written like any other file but never touches the disk.
 #pragma once
 
 #include <cstdio>
@@ -13,32 +13,32 @@ namespace ostraka {
 
 using Path = std::filesystem::path;
 
-/// Throws Error (input) as read_file does where the file is missing, a directory or cannot be opened.
+/// Throws Error (input), as read_file does, if the file is missing, is a directory or cannot be opened.
 void check_readable(const Path& file);
 
 /// The file's bytes. Throws Error (input) if it is missing, a directory, unreadable or larger than memory allows.
 std::string read_file(const Path& file);
 
-/// Whether the name is that of a file in memory.
+/// Whether the name denotes a file in memory.
 bool is_memory(const Path& file);
-/// Removes the file in memory, or all that lie in the folder of that name.
+/// Removes a file in memory, or all files in memory below a folder.
 void forget_memory(const Path& file);
 
-/// The same questions for files on disk and in memory.
+/// Queries for files on disk and in memory.
 bool file_exists(const Path& file);
-/// In bytes; 0 where there is no such file.
+/// Size in bytes; 0 if there is no such file.
 std::size_t size_of_file(const Path& file);
 bool is_folder(const Path& folder);
-/// Names of the files in a folder (not of its folders), sorted. `others`: gets the names of what is neither a file nor a folder,
-/// such as links to nothing.
+/// Names of the files directly in a folder, sorted. `others`: receives the names of entries that are neither files nor folders,
+/// such as dangling links.
 std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* others = nullptr);
-/// Makes the folder and those it lies in. Throws Error (failure) where it cannot be made or is a file.
+/// Creates the folder and its missing parents. Throws Error (failure) if it cannot be created or is a file.
 void make_folder(const Path& folder);
 void remove_file(const Path& file);
-/// Whether two names are of one place: links and relative spellings seen through, whether anything stands there or not.
+/// Whether two paths denote the same place, after resolving links and relative parts. The place need not exist.
 bool same_place(const Path& a, const Path& b);
 
-/// Lists what `read_file` reads on this thread while it lives.
+/// While it lives, records the files that `read_file` reads on this thread.
 class ReadRecord {
 public:
     ReadRecord();
@@ -49,22 +49,22 @@ public:
         Path file;
         std::string sha256;
     };
-    std::vector<Entry> files;  ///< in the order in which they were first read
+    std::vector<Entry> files;  ///< in the order of first reading
 
 private:
     ReadRecord* outer_;
 };
 
-/// Who may read a file that is written.
+/// Permissions of a written file.
 enum class FileAccess {
-    usual,      ///< as the file of that name before, else as the process's umask says
+    usual,      ///< as the replaced file, or by the process's umask if there is none
     owner_only  ///< mode 0600, for secrets
 };
 
-/// A file that appears under its name only when complete: bytes go to a temporary file beside it, `commit` flushes
-/// them to the disk and renames, or leaves the renaming to the OutputTransaction that is open; without `commit` (an exception,
-/// say) the temporary file is removed and whatever stood under the name stays. Devices and pipes (/dev/null, /dev/stdout) are
-/// written to directly. Throws Error (failure) when the folder is missing or the disk is full.
+/// A file that appears under its name only when it is complete: bytes go to a temporary file in the same folder; `commit`
+/// flushes it to the disk and renames it, or leaves the renaming to an open OutputTransaction. Without `commit` (after an
+/// exception, for example) the temporary file is removed and an existing file of that name stays. Devices and pipes (/dev/null,
+/// /dev/stdout) are written to directly. Throws Error (failure) if the folder is missing or the disk is full.
 class AtomicFile {
 public:
     explicit AtomicFile(Path file, FileAccess access = FileAccess::usual);
@@ -79,13 +79,13 @@ private:
     Path file_;
     Path temporary_;
     std::FILE* stream_ = nullptr;
-    std::string memory_;  ///< of a file in memory
+    std::string memory_;  ///< contents of a file in memory
 };
 
-/// Several outputs that appear together or not at all: while one is open on this thread, files that AtomicFile commits on it and
-/// in parallel loops that it starts are on the disk but wait under their temporary names until `commit` renames them all; without
-/// it they are removed, and so are folders that were made and are empty. Where a name cannot be taken, what stood under the
-/// others comes back (but on file systems without hard links).
+/// Makes several outputs appear together or not at all. While a transaction is open on this thread, files that AtomicFile
+/// commits on this thread and in parallel loops started by it are on disk under temporary names until `commit` renames them
+/// all. Without `commit` they are removed, and so are empty folders that were created for them. If one file cannot be renamed,
+/// the files that the others replaced are restored (except on file systems without hard links).
 class OutputTransaction {
 public:
     OutputTransaction();
@@ -100,32 +100,34 @@ private:
     friend void replace_outputs(const Path&, const std::string&);
     friend void make_folder(const Path&);
     std::vector<std::pair<Path, Path>> waiting_;          ///< temporary name, name
-    std::vector<Path> made_;                              ///< folders, each after the one that it is in
+    std::vector<Path> made_;                              ///< created folders, parents first
     std::vector<std::pair<Path, std::string>> replaced_;  ///< folder, owner
     OutputTransaction* outer_;
 };
 
-/// For a folder that one command fills: the innermost open transaction, when it commits, also removes what an earlier one of the
-/// same `owner` wrote directly into `folder` and this one did not. A list in the folder (`.OWNER.outputs`, as sha256sum writes
-/// it) remembers what was written; what is not on it, or was changed since, stays. Throws std::logic_error where none is open.
+/// For a folder that is filled by one command: when the innermost open transaction commits, it also removes the files that an
+/// earlier transaction of the same `owner` wrote directly into `folder` and this one did not. The written files are listed in
+/// the folder (`.OWNER.outputs`, in the format of sha256sum); files that are not listed, or that were changed since, stay.
+/// Throws std::logic_error if no transaction is open.
 void replace_outputs(const Path& folder, const std::string& owner);
 
-/// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files named as it names them
-/// that no process holds locked; where files cannot be locked, those not touched for a day. AtomicFile does so when its process
-/// first writes to a folder. Returns how many.
+/// Removes the temporary files that AtomicFile left in `folder` when its process was killed: regular files with the names of
+/// temporary files that no process holds locked; where files cannot be locked, those not modified for a day. AtomicFile calls
+/// this when its process first writes to a folder. Returns the number of files removed.
 std::size_t remove_stale_temporaries(const Path& folder);
 
 /// Writes `bytes` atomically to `file`.
 void write_file(const Path& file, std::string_view bytes, FileAccess access = FileAccess::usual);
 
-/// For a process that ends at once while its threads still work: waits for a commit that is under way, then removes all temporary
-/// files, scratch folders and empty folders that it has made, and refuses to make others.
+/// For a process that exits while its threads still work: waits for a commit in progress, then removes all temporary files,
+/// scratch folders and empty folders that this process created, and refuses to create others.
 void abandon_outputs();
 
-/// A new folder of this process alone in the system's folder for temporary files, removed with all that it holds at the end.
+/// A new folder, private to this process, in the system's folder for temporary files; the destructor removes it with its
+/// contents.
 class ScratchFolder {
 public:
-    /// `purpose`: a word for its name. Throws Error (failure) where it cannot be made.
+    /// `purpose`: a word that becomes part of the name. Throws Error (failure) if the folder cannot be created.
     explicit ScratchFolder(const std::string& purpose);
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;
@@ -136,12 +138,11 @@ private:
     Path path_;
 };
 
-/// Throws Error (usage) if an output names the same file as an input (links and relative spellings seen through),
-/// or the same file as another output, and Error (failure) if the folder of an output does not exist. To be called before any
-/// work.
+/// Throws Error (usage) if an output is the same file as an input or another output (after resolving links and relative parts),
+/// and Error (failure) if the folder of an output does not exist. To be called before any work.
 void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs);
 
-/// Lower-case extension with the dot.
+/// Extension in lower case, with the dot.
 std::string extension(const Path& file);
 
 /// SHA-256 in hexadecimal.

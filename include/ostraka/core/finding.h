@@ -1,4 +1,4 @@
-// What a check found.
+// Findings of a check.
 #pragma once
 
 #include <compare>
@@ -7,7 +7,7 @@
 namespace ostraka {
 
 struct Finding {
-    bool defect = false;  ///< false: a remark on something that is allowed but worth knowing
+    bool defect = false;  ///< false: a remark on something allowed
     std::string where;    ///< JSON pointer
     std::string text;
     auto operator<=>(const Finding&) const = default;

@@ -1,12 +1,13 @@
-// Faces that hang together.
+// Connected components of faces (flood fill).
 #pragma once
 
 #include "ostraka/core/mesh.h"
 
 namespace ostraka {
 
-/// The faces reached from `start` over edges, in breadth-first order, `start` first: those not `seen` yet, which are from then
-/// on. A halfedge of a face reached is crossed if `crosses(halfedge)` is true; it is asked once for each, also on the border.
+/// Faces that can be reached from `start` across edges, in breadth-first order, `start` first. Only faces not yet marked in
+/// `seen` are visited; they are marked. An edge is crossed if `crosses(halfedge)` is true for the halfedge in the face already
+/// reached; `crosses` is called once for each such halfedge, border edges included.
 template <class Crosses>
 std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& seen, Crosses&& crosses) {
     std::vector<Face> reached{start};
@@ -21,7 +22,7 @@ std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& s
         }
     return reached;
 }
-/// Over all edges: the rest of the connected component.
+/// Across all edges: the connected component without the faces already seen.
 inline std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& seen) {
     return flood_faces(mesh, start, seen, [](Halfedge) { return true; });
 }

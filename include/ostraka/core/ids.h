@@ -7,11 +7,11 @@
 
 namespace ostraka {
 
-/// As the schemas have it.
+/// The maximum that the schemas allow.
 inline constexpr int largest_id = std::numeric_limits<int>::max();
 
-/// Ids that no entry (with a member `id`) has, one after the other: one more than the largest, at least 0; where the largest id
-/// is taken, the lowest from 0 that is free.
+/// Unused ids for a list of entries (with a member `id`): one more than the largest id in use, at least 0; if the largest id is
+/// in use, the smallest unused id from 0.
 class FreeIds {
 public:
     template <class Entries>

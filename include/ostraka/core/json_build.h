@@ -1,4 +1,4 @@
-// JSON built from values and lists of them.
+// JSON built from C++ values and lists.
 #pragma once
 
 #include "ostraka/core/json.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// Of a boolean, number, text or JSON value, an optional of these (null where there is none), or a list of any.
+/// JSON value of a boolean, a number, a text, a JSON value, an optional of these (null if empty), or a list of any of these.
 template <class T>
 JsonValue json_value(T&& value, JsonAllocator& allocator) {
     using Type = std::remove_cvref_t<T>;
@@ -27,7 +27,7 @@ JsonValue json_value(T&& value, JsonAllocator& allocator) {
         return list;
     }
 }
-/// The list of `of(element)` for each element.
+/// JSON array of `of(element)` for each element.
 template <class Elements, class Of>
 JsonValue json_list(const Elements& elements, JsonAllocator& allocator, Of&& of) {
     JsonValue list(rapidjson::kArrayType);
@@ -36,15 +36,15 @@ JsonValue json_list(const Elements& elements, JsonAllocator& allocator, Of&& of)
 }
 /// [value]
 JsonValue json_list_of(JsonValue value, JsonAllocator& allocator);
-/// A whole number below 1e9 without a decimal point, as a person writes it.
+/// A JSON number; whole numbers below 1e9 have no decimal point.
 JsonValue json_number(double value);
-/// Adds names and values in turn.
+/// Adds members, given as alternating names and values.
 template <class Value, class... Rest>
 void add_members(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
     add_member(object, name, json_value(std::forward<Value>(value), allocator), allocator);
     if constexpr (sizeof...(rest) > 0) add_members(object, allocator, std::forward<Rest>(rest)...);
 }
-/// Adds names and values in turn but for values that say nothing: empty texts and lists, none where there may be one, false.
+/// As add_members, but skips false and empty texts, lists and optionals.
 template <class Value, class... Rest>
 void add_given(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
     bool given = false;
@@ -55,9 +55,9 @@ void add_given(JsonValue& object, JsonAllocator& allocator, std::string_view nam
     if (given) add_members(object, allocator, name, std::forward<Value>(value));
     if constexpr (sizeof...(rest) > 0) add_given(object, allocator, std::forward<Rest>(rest)...);
 }
-/// Copies those members that the object has.
+/// Copies the listed members that the object `from` has.
 void copy_members(JsonValue& object, JsonAllocator& allocator, const JsonValue& from, std::initializer_list<const char*> names);
-/// {name: value, ...} of names and values in turn.
+/// {name: value, ...} from alternating names and values.
 template <class... Members>
 JsonValue json_object(JsonAllocator& allocator, Members&&... members) {
     JsonValue object(rapidjson::kObjectType);

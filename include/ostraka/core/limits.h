@@ -1,4 +1,4 @@
-// Numbers from outside: how large places may be, and directions of any length.
+// Limits of coordinates read from files, and normalisation of vectors of any length.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -8,18 +8,18 @@
 
 namespace ostraka {
 
-/// Lengths to the fourth power must stay finite and above zero in all that is computed with places.
+/// Products of four lengths must neither overflow nor underflow in computations with coordinates.
 inline constexpr double largest_coordinate = 1e60;
 
-/// No coordinate is NaN or beyond `largest_coordinate`.
+/// True if no coordinate is NaN or beyond `largest_coordinate` in absolute value.
 inline bool is_place(double x, double y, double z) {
     // NaN compares as false.
     return std::abs(x) <= largest_coordinate && std::abs(y) <= largest_coordinate && std::abs(z) <= largest_coordinate;
 }
 inline bool is_place(const Point& p) { return is_place(p.x(), p.y(), p.z()); }
 
-/// A multiple of `v`, of whatever length, whose squares neither overflow nor vanish: the largest component comes to 1/2 to 1, by
-/// a power of two, so that nothing is rounded. The null vector for one without length or that is not finite.
+/// `v` scaled by a power of two (hence without rounding) so that its largest component lies between 1/2 and 1 and squares
+/// neither overflow nor underflow. The null vector if `v` is null or not finite.
 inline Vector scaled_vector(const Vector& v) {
     const double largest = std::max({std::abs(v.x()), std::abs(v.y()), std::abs(v.z())});
     if (!(largest > 0 && std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()))) return CGAL::NULL_VECTOR;
@@ -28,7 +28,7 @@ inline Vector scaled_vector(const Vector& v) {
     return {std::ldexp(v.x(), -exponent), std::ldexp(v.y(), -exponent), std::ldexp(v.z(), -exponent)};
 }
 
-/// The vector of length 1 along `v`, of whatever length; the null vector for one without length or that is not finite.
+/// The unit vector along `v`; the null vector if `v` is null or not finite. Works for vectors of any length.
 inline Vector unit_vector(const Vector& v) {
     const Vector scaled = scaled_vector(v);
     return scaled == CGAL::NULL_VECTOR ? scaled : scaled / std::sqrt(scaled.squared_length());

@@ -1,4 +1,4 @@
-// Texts inside HTML pages.
+// Text embedded in HTML pages.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace ostraka {
 
-/// JSON with escapes for < > &: it may stand inside an HTML page without ending its script.
+/// JSON with < > & escaped, so that it cannot end the script element of an HTML page.
 inline std::string with_markup_escaped(std::string_view json) {
     std::string text;
     text.reserve(json.size());
-    // Outside of strings JSON has none of these characters.
+    // Outside strings, JSON has none of these characters.
     for (const char c : json) {
         if (c == '<') text += "\\u003C";
         else if (c == '>') text += "\\u003E";

@@ -1,19 +1,18 @@
-// How much memory this process has and may have.
+// Memory use and memory limit of this process.
 #pragma once
 
 #include <string>
 
 namespace ostraka {
 
-/// Bytes that this process occupies; 0 where the system does not say.
+/// Resident memory of this process in bytes; 0 if the system does not report it.
 double resident_memory();
 
-/// Bytes that the work of this thread may occupy: the limit of its watch, else the memory of the machine; 0 where nothing is
-/// known.
+/// Memory limit in bytes for the work of this thread: the limit of its watch, else the memory of the machine; 0 if unknown.
 double memory_limit();
 
-/// To be called before large work. Throws Error (failure) where `bytes` more than what is occupied now pass the limit: `what`
-/// needs them, `remedy` needs less.
+/// To be called before large work. Throws Error (failure) if `bytes` in addition to the memory now in use exceed the limit. For
+/// the message: `what` needs the memory, `remedy` needs less.
 void require_memory(double bytes, const std::string& what, const std::string& remedy);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The one kernel, the one mesh type and the small questions every module asks of a mesh.
+// The kernel, the mesh type and basic queries used by all modules.
 #pragma once
 
 #include <CGAL/Bbox_3.h>
@@ -25,35 +25,34 @@ using Face = Mesh::Face_index;
 using Index = std::uint32_t;
 inline constexpr Index no_index = static_cast<Index>(-1);
 
-/// Triangles over indexed points, as a file gives them: nothing is promised of their topology.
+/// Indexed triangles as read from a file; no guarantee about their topology.
 struct TriangleSoup {
     std::vector<std::array<double, 3>> points;    ///< in the unit of the file
     std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 
-/// What keeps a soup from being an oriented 2-manifold (with or without border).
+/// Reasons why a soup is not an oriented 2-manifold (with or without border).
 struct ManifoldDefects {
-    std::size_t repeated_corners = 0;      ///< triangles that name a vertex twice
+    std::size_t repeated_corners = 0;      ///< triangles with a repeated vertex
     std::size_t nonmanifold_edges = 0;     ///< edges with more than two triangles
-    std::size_t misoriented_edges = 0;     ///< edges that two triangles run through in the same direction
-    std::size_t nonmanifold_vertices = 0;  ///< vertices with more than one fan; counted only if the edges are sound
-    Index example_triangle = no_index;     ///< a triangle at which the first defect was met
+    std::size_t misoriented_edges = 0;     ///< edges that two triangles traverse in the same direction
+    std::size_t nonmanifold_vertices = 0;  ///< vertices with several fans of triangles; counted only if no edge has a defect
+    Index example_triangle = no_index;     ///< a triangle at which the first defect was found
     [[nodiscard]] bool any() const { return repeated_corners + nonmanifold_edges + misoriented_edges + nonmanifold_vertices > 0; }
 };
 
-/// Builds the halfedge mesh in time linear in its size, keeping the order of vertices and triangles;
-/// isolated vertices stay. Returns the defects found; `mesh` is left empty unless there are none.
-/// Throws Error if a triangle's index is out of range.
+/// Builds the halfedge mesh in linear time, keeping the order of vertices and triangles and the isolated vertices. Returns the
+/// defects found; `mesh` is empty if there are any. Throws Error if an index of a triangle is out of range.
 ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh);
 
-/// As above, and throws Error that names the defects.
+/// As above, but throws an Error that names the defects.
 Mesh build_mesh(const TriangleSoup& soup);
 
-/// The points and triangles of a mesh without garbage, in index order.
+/// The points and triangles of a mesh without garbage (no removed elements), in index order.
 TriangleSoup to_soup(const Mesh& mesh);
 
-/// The corners of a triangle, starting at the target of its stored halfedge's predecessor so that a mesh
-/// built from a soup gives back the soup's corner order.
+/// The corners of a triangle, starting at the target of its stored halfedge, so that a mesh built from a soup returns the
+/// corner order of the soup.
 std::array<Vertex, 3> corners(const Mesh& mesh, Face face);
 
 /// Area vector: half the cross product of two edges (length = area, direction = outward normal).
@@ -66,19 +65,18 @@ Point centroid(const Mesh& mesh, Face face);
 /// the null vector where all of them vanish.
 Vector vertex_normal(const Mesh& mesh, Vertex vertex);
 
-/// Axis-aligned box of the vertices that have a face (of all vertices if none has).
+/// Axis-aligned bounding box of the vertices with faces (of all vertices if no vertex has a face).
 CGAL::Bbox_3 bounding_box(const Mesh& mesh);
-/// Length of the box's diagonal; every relative tolerance refers to it.
+/// Length of the diagonal of the bounding box; all relative tolerances refer to it.
 double box_diagonal(const Mesh& mesh);
-/// Mean length of the edges, 0 without edges.
+/// Mean edge length; 0 for a mesh without edges.
 double mean_edge_length(const Mesh& mesh);
 
-/// The halfedge from `a` to `b`, or the null halfedge; walks the ring of `a`.
+/// The halfedge from `a` to `b`, or the null halfedge. Visits the one-ring of `a`.
 Halfedge find_halfedge(const Mesh& mesh, Vertex a, Vertex b);
 
-/// SHA-256 (hexadecimal) over the indexed geometry: vertex and face counts as uint64, coordinates as float64
-/// (negative zero as zero), triangle indices as uint32, all little-endian. Files of any format that hold the same
-/// mesh agree.
+/// SHA-256 (hexadecimal) of the indexed geometry: vertex and face counts as uint64, coordinates as float64 (negative zero as
+/// zero), triangle indices as uint32, all little-endian. Equal for files of any format that hold the same mesh.
 std::string mesh_checksum(const Mesh& mesh);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Names that people may have meant.
+// Suggestions for misspelt names.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace ostraka {
 
-/// Fewest insertions, deletions, replacements of letters and swaps of neighbours (optimal string alignment) from one text to
-/// the other, or more than `limit` where it is more. Time: length x limit.
+/// Optimal string alignment distance: the minimum number of insertions, deletions, substitutions and swaps of adjacent letters
+/// that turn one text into the other; any number above `limit` if it exceeds `limit`. Time: O(length x limit).
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit);
 
-/// Of several names the one that is nearest to what was written, capital letters or not, the first of equally near ones; else the
-/// only one in which a word begins so ("width" for "seat width"); empty where none is near: within two edits, or one in three
-/// letters.
+/// The name most similar to `name`, ignoring case; the first of several equally similar ones. It must be within two edits, or
+/// within one edit per three letters of a longer name. Otherwise the only name with a word that begins with `name` ("width" for
+/// "seat width"), or an empty text.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& names);
 
 }  // namespace ostraka

@@ -1,8 +1,9 @@
-// One list of options per operation or options struct: it gives flags, JSON keys, help, checks, provenance and schemas.
+// One list of options per operation or options struct; flags, JSON keys, help, checks, provenance and schemas are derived from
+// it.
 //
 // An options struct has a member
 //     void describe(OptionList& visit);
-// which lists its fields once:
+// which lists its fields:
 //     visit("max-distance", max_distance, "farthest a correspondence may lie", Range{0, 1}, "share of the box diagonal");
 //     visit("metric", metric, "distance that paths minimise", Choices{"euclidean", "segment", "combined"});
 #pragma once
@@ -32,23 +33,23 @@ struct Choices {
     Choices(std::initializer_list<const char*> list) : names(list.begin(), list.end()) {}
     explicit Choices(std::vector<std::string> list) : names(std::move(list)) {}
 };
-/// Words that a text may be, beside other values: help and completion offer them.
+/// Words that are allowed besides other values; help and completion offer them.
 struct Words {
     std::vector<std::string> names;
-    std::string others;  ///< what else it may be: "three numbers"
-    /// Throws Error (usage) for a text that is neither; empty: the operation checks.
+    std::string others;  ///< description of the other values: "three numbers"
+    /// Throws Error (usage) for text that is neither; empty: the operation checks the value.
     std::function<void(const std::string&)> check = {};
 };
 using OptionRule = std::variant<Anything, Range, Choices, Words>;
 
-/// An enumeration whose values 0, 1, ... are named by the option's Choices in their order.
+/// An enumeration with the values 0, 1, ..., named in this order by the option's Choices.
 struct EnumValue {
     void* value;
     std::size_t (*get)(const void*);
     void (*set)(void*, std::size_t);
 };
 
-/// Where the value of an option is: a reference to a variable of one of these types.
+/// Reference to the variable that holds the value of an option.
 class OptionValue {
 public:
     using Place = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::vector<std::string>*,
@@ -76,51 +77,52 @@ public:
     Place place;
 };
 
-/// What kind of values an option takes; "texts", "numbers" and "integers" are lists.
+/// Type of the value of an option; "texts", "numbers" and "integers" are lists.
 enum class OptionType { boolean, integer, number, text, choice, texts, numbers, integers };
 
 struct Option {
-    std::string name;  ///< as flag (--name) and as JSON key
+    std::string name;  ///< the flag (--name) and the JSON key
     OptionValue value;
     std::string help;
     OptionRule rule;
-    std::string unit = {};       ///< of the value; empty: none, or said in the help
-    std::string group = {};      ///< under which the help lists it; empty: with the others
-    std::string initial = {};    ///< the value before anything was set, as text; empty: none
+    std::string unit = {};       ///< unit of the value; empty: none, or stated in the help
+    std::string group = {};      ///< heading in the help; empty: none
+    std::string initial = {};    ///< default value as text; empty: none
     bool needed = false;         ///< must be given
-    bool given = false;          ///< was set from outside
-    bool is_positional = false;  ///< given without its name
+    bool given = false;          ///< has been set by the caller
+    bool is_positional = false;  ///< given without the flag
     bool affects_result = true;  ///< false: not recorded in the provenance
-    bool takes_words = false;    ///< a list of which several words may follow one flag
-    bool from_files = true;      ///< false: only the caller sets it, never a study, a kit or a session (doc/security.md)
+    bool takes_words = false;    ///< a list option whose flag may be followed by several words
+    bool from_files = true;      ///< false: only the caller may set it, not a study, a kit or a session (doc/security.md)
 
     Option& required() { return needed = true, initial.clear(), *this; }
     Option& positional() { return is_positional = true, *this; }
     Option& words() { return takes_words = true, *this; }
-    /// Only how and where results are shown or kept.
+    /// For options that affect only how and where results are shown or stored.
     Option& unrecorded() { return affects_result = false, *this; }
     Option& only_by_caller() { return from_files = false, affects_result = false, *this; }
 
     [[nodiscard]] OptionType type() const;
     [[nodiscard]] bool is_list() const;
-    /// No value is there: an empty text or list, or nothing where nothing is allowed.
+    /// True if there is no value: an empty text or list, or an empty optional.
     [[nodiscard]] bool empty() const;
-    /// The value as text: numbers with 17 digits, true or false, lists of numbers with commas, of texts with "; ".
+    /// The value as text: numbers with 17 digits, true or false, lists of numbers joined by commas, lists of texts joined by ";
+    /// ".
     [[nodiscard]] std::string text() const;
     [[nodiscard]] std::vector<std::string> texts() const;
 
-    /// Sets the value from words of a command line, more than one for lists only (numbers and choices also as "1,2,3"). Throws
-    /// Error (usage) that names the option, the word and what is allowed; the rule is checked as well.
+    /// Sets the value from words of a command line; several words for lists only (numbers and choices also as "1,2,3"). Throws
+    /// Error (usage) with the option, the word and the allowed values if the word or the rule is violated.
     void set(const std::vector<std::string>& words);
     void set(bool value);
     void set(double value);
     void set(std::int64_t value);
     void set(const std::vector<double>& values);
-    /// Throws Error (usage) that names the option, its value and what is allowed.
+    /// Throws Error (usage) with the option, its value and the allowed values.
     void check(const std::string& where = {}) const;
     /// "a number from 0 to 1", "one of: a, b".
     [[nodiscard]] std::string allowed() const;
-    /// The words that its Choices or Words name.
+    /// The words of its Choices or Words.
     [[nodiscard]] std::vector<std::string> names() const;
 };
 
@@ -134,13 +136,13 @@ public:
     Option& operator()(std::string name, OptionValue value, std::string help, OptionRule rule = Anything{},
                        std::string unit = {});
 
-    /// Options that are added from here on stand under this title in the help.
+    /// Sets the heading in the help for the options added after this call.
     void group(std::string title) { group_ = std::move(title); }
 
     [[nodiscard]] Option* find(const std::string& name);
     [[nodiscard]] const Option* find(const std::string& name) const { return const_cast<OptionList*>(this)->find(name); }
     void check(const std::string& where) const;
-    /// Names and values as text, for provenance; empty where there is no value.
+    /// Names and values as text, for provenance; the text is empty for an option without a value.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
 
     [[nodiscard]] auto begin() { return options_.begin(); }
@@ -160,7 +162,7 @@ OptionList options_of(const Options& options) {
     return list;
 }
 
-/// Throws Error (usage) that names the option, its value and what is allowed.
+/// Throws Error (usage) with the option, its value and the allowed values.
 template <class Options>
 void check_options(const Options& options, const std::string& where) {
     options_of(options).check(where);
@@ -172,19 +174,19 @@ std::vector<std::pair<std::string, std::string>> list_options(const Options& opt
     return options_of(options).values();
 }
 
-/// The value of one option as text: of a choice its word.
+/// The value of one option as text; for a choice, its name.
 template <class Options>
 std::string option_text(const Options& options, const std::string& name) {
     return options_of(options).find(name)->text();
 }
 
-/// Sets one option from a word. Throws Error (usage) as Option::set.
+/// Sets one option from a word. Throws Error (usage) as Option::set does.
 template <class Options>
 void set_option(Options& options, const std::string& name, const std::string& word) {
     options_of(options).find(name)->set(std::vector{word});
 }
 
-/// The same as one text: equal for equal options.
+/// All options as one text, which is equal for equal options.
 template <class Options>
 std::string options_text(const Options& options) {
     std::string text;

@@ -1,4 +1,4 @@
-// Loops over cores whose results do not depend on the number of cores.
+// Parallel loops with results that do not depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -6,12 +6,13 @@
 
 namespace ostraka {
 
-/// Number of threads used from here on; 0 = all the machine has. Throws Error (usage) below 0 or above 1024.
+/// Sets the number of threads; 0: all that the machine has. Throws Error (usage) below 0 or above 1024.
 void set_threads(int threads);
 int threads();
 
-/// Calls body(begin, end) over blocks of fixed size that cover [0, count); which thread runs a block does not matter
-/// as long as the body writes only to its own elements. The first exception (lowest block) is rethrown.
+/// Calls body(begin, end) for blocks of fixed size that cover [0, count). The result does not depend on the assignment of
+/// blocks to threads as long as the body writes only to its own elements. Rethrows the exception of the lowest block that
+/// failed.
 void parallel_blocks(std::size_t count, std::size_t block, const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Calls body(i) for each i in [0, count).

@@ -1,4 +1,4 @@
-// How far a piece of work is, and whether it shall stop.
+// Progress and cancellation of work.
 #pragma once
 
 #include <atomic>
@@ -7,17 +7,16 @@
 
 namespace ostraka {
 
-/// Watches the work of one thread and of the parallel loops it starts.
+/// Monitors the work of one thread and of the parallel loops that it starts.
 class Watch {
 public:
-    /// Called with the phase under way and its share done (0 to 1), at most ten times a second, from any thread.
+    /// Called with the current phase and the completed fraction (0 to 1), at most ten times per second, from any thread.
     std::function<void(const std::string& phase, double share)> on_progress;
 
-    /// Bytes that the process may occupy while the work is under way; 0: what the machine has (core/memory.h).
+    /// Limit in bytes of the memory of the process during the work; 0: the memory of the machine (core/memory.h).
     double memory_limit = 0;
 
-    /// Makes the work stop at the next step of a loop, with an Error (cancelled). May be called from any thread or a signal
-    /// handler.
+    /// Makes the work stop with an Error (cancelled) at its next check. May be called from any thread or from a signal handler.
     void cancel() { cancelled_ = true; }
     [[nodiscard]] bool is_cancelled() const { return cancelled_; }
 
@@ -25,7 +24,7 @@ private:
     std::atomic<bool> cancelled_{false};
 };
 
-/// Installs a watch (or none) for this thread as long as it lives.
+/// Sets the watch (or none) of this thread during its lifetime.
 class WatchScope {
 public:
     explicit WatchScope(Watch* watch);
@@ -39,10 +38,11 @@ private:
 
 /// The watch of this thread, or none.
 Watch* current_watch();
-/// Throws Error (cancelled) if the watch of this thread says so.
+/// Throws Error (cancelled) if the watch of this thread is cancelled.
 void check_cancelled();
 
-/// For innermost loops and functors of other libraries: asks the watch at every 1024th step only. Each thread has its own.
+/// For inner loops and functors of other libraries: checks for cancellation at every 1024th call only. Not to be shared between
+/// threads.
 class CancelCheck {
 public:
     void operator()() {
@@ -53,8 +53,8 @@ private:
     unsigned steps_ = 0;
 };
 
-/// Tells the watch of the thread that makes it how far a phase is. `advance` may be called from any thread; it throws Error
-/// (cancelled) when the work shall stop.
+/// Reports the progress of a phase to the watch of the thread that constructs it. `advance` may be called from any thread; it
+/// throws Error (cancelled) if the work was cancelled.
 class Progress {
 public:
     Progress(std::string phase, std::size_t total);

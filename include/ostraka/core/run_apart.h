@@ -1,4 +1,4 @@
-// Work of other libraries that cannot be interrupted.
+// Calls of library functions that cannot be interrupted.
 #pragma once
 
 #include <functional>
@@ -7,13 +7,13 @@
 
 namespace ostraka {
 
-/// Runs `work` on a thread of its own and returns when it is done; what it throws is thrown here. Throws Error (cancelled) within
-/// a few hundredths of a second when the watch of this thread says so: the work then goes on alone, to its end or to its next
-/// check, and its results are dropped. So it must own all it touches, and write no files. It is there before the process exits.
-/// Without a watch the work runs on this thread.
+/// Runs `work` on a separate thread, waits for it and rethrows its exceptions. If the watch of this thread is cancelled, throws
+/// Error (cancelled) within a few hundredths of a second; `work` then continues in the background to its end or its next check,
+/// and its results are dropped. Therefore `work` must own all data that it uses, and must not write files. The process does not
+/// exit before `work` has ended. Without a watch, `work` runs on this thread.
 void run_apart(std::function<void()> work);
 
-/// The same for work on `data`, which is handed over and comes back.
+/// The same for work on `data`, which is moved to the work and returned.
 template <class Data, class Work>
 Data run_apart_on(Data data, Work work) {
     const auto held = std::make_shared<std::pair<Data, Work>>(std::move(data), std::move(work));

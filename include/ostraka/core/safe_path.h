@@ -1,5 +1,4 @@
-// Paths found in files that somebody else may have written: they never lead out of the folders that the user named
-// (doc/security.md).
+// Paths read from files of unknown origin: they never lead out of the folders that the user named (doc/security.md).
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -9,31 +8,33 @@
 
 namespace ostraka {
 
-/// Throws Error (input) for a name that holds a zero byte, which no file can have. `where` is the file, `at` the place in it.
+/// Throws Error (input) for a name with a zero byte, which no file can have. For the message: `where` is the file, `at` the
+/// position in it.
 void require_file_name(const std::string& name, const std::string& where, const std::string& at);
 
-/// Throws Error (input) unless `name` is one component of a path: not empty, "." or "..", without separators and control
+/// Throws Error (input) unless `name` is a single path component: not empty, not "." or "..", without separators and control
 /// characters.
 void require_plain_name(const std::string& name, const std::string& where, const std::string& at);
 
-/// Where `name`, found in a file of `folder`, leads. Throws Error (input) with `remedy` unless that is within the folder, also
-/// over links: no absolute name, and none that climbs out of it. `whose` is the folder in the message.
+/// The path of `name`, which was read from a file in `folder`. Throws Error (input) with `remedy` if the name is absolute or
+/// leads out of the folder, also through links. `whose` describes the folder in the message.
 Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& at,
                  const std::string& whose, const std::string& remedy);
 
-/// The absolute path with links resolved, also those that lead to nothing yet: writing to one makes what it names. Empty where
-/// that fails (a circle of links).
+/// The absolute path with all links resolved, including dangling links (writing to a dangling link creates its target). Empty
+/// if links form a cycle.
 Path resolved(const Path& path);
 
-/// Whether the path, links resolved, is the folder or lies in it. The path need not exist. False where it cannot be resolved.
+/// Whether the path, after resolving links, is the folder or lies in it. The path need not exist. False if it cannot be
+/// resolved.
 bool is_inside(const Path& path, const Path& folder);
 bool is_inside_any(const Path& path, const std::vector<Path>& folders);
 
-/// Throws Error (input) where writing to `file` would leave `folder` over a link, or would write to a device or a pipe.
+/// Throws Error (input) if writing to `file` would leave `folder` through a link, or would write to a device or a pipe.
 void require_writable_inside(const Path& file, const Path& folder);
 
-/// While it lives, files and folders are made on this thread, and in parallel loops that it starts, within `folder` only, links
-/// resolved: others are refused with Error (input). For work on folders that somebody else may have filled with links.
+/// While it lives, this thread and the parallel loops that it starts may create files and folders in `folder` only, after
+/// resolving links; others are refused with Error (input). For work on folders of unknown origin, which may contain links.
 class WriteScope {
 public:
     explicit WriteScope(Path folder);
@@ -41,9 +42,9 @@ public:
     WriteScope(const WriteScope&) = delete;
     WriteScope& operator=(const WriteScope&) = delete;
 
-    /// That of this thread, or none.
+    /// The scope of this thread, or nullptr.
     static const WriteScope* current();
-    /// Makes it (or none) that of this thread as long as the other one lives.
+    /// Sets the scope (or none) of this thread during its lifetime.
     class Within {
     public:
         explicit Within(const WriteScope* scope);
@@ -54,7 +55,7 @@ public:
     private:
         const WriteScope* outer_;
     };
-    /// Throws Error (input) where the file would lie outside of the scope of this thread.
+    /// Throws Error (input) if the file lies outside the scope of this thread.
     static void check(const Path& file);
 
 private:

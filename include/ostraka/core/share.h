@@ -1,4 +1,4 @@
-// The K-th of N parts of some work, for machines that do a part each.
+// Sharding: one of N parts of some work, for machines that do one part each.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +7,16 @@
 namespace ostraka {
 
 struct Share {
-    std::size_t index = 0, count = 1;  ///< index is below count; one of one is the whole
+    std::size_t index = 0, count = 1;  ///< 0 <= index < count; 0 of 1 is the whole work
 
     [[nodiscard]] bool is_whole() const { return count == 1; }
-    /// Every count-th, beginning with the index: each belongs to one share.
+    /// Whether item i belongs to this shard: i = index modulo count.
     [[nodiscard]] bool has(std::size_t i) const { return i % count == index; }
     bool operator==(const Share&) const = default;
 };
 
-/// "K/N" with K from 1 to N; the whole for an empty text. Throws Error (usage) for anything else, naming the option --shard.
+/// Parses "K/N" with K from 1 to N; an empty text is the whole work. Throws Error (usage) for anything else, naming the option
+/// --shard.
 Share share_from_text(const std::string& text);
 
 }  // namespace ostraka

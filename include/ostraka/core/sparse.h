@@ -7,15 +7,15 @@
 
 namespace ostraka {
 
-/// LDL^T factorisation of a symmetric sparse matrix (Eigen's SimplicialLDLT), of which the lower triangle is read.
+/// LDL^T factorisation of a symmetric sparse matrix (Eigen's SimplicialLDLT); only the lower triangle is read.
 class SparseLdlt {
 public:
     explicit SparseLdlt(const Eigen::SparseMatrix<double>& a);
     ~SparseLdlt();
 
-    /// False where a pivot is zero.
+    /// False if a pivot is zero.
     [[nodiscard]] bool found() const;
-    /// A row a row of the matrix, one column for each right-hand side.
+    /// b, solution: one row per row of the matrix, one column per right-hand side.
     [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
 private:

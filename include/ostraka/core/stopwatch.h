@@ -1,11 +1,11 @@
-// How long work takes.
+// Time measurement.
 #pragma once
 
 #include <chrono>
 
 namespace ostraka {
 
-/// Seconds since it was made.
+/// Seconds since construction.
 class Stopwatch {
 public:
     [[nodiscard]] double seconds() const {
@@ -16,7 +16,7 @@ private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Adds the seconds of its life to a sum.
+/// Adds the seconds of its lifetime to a sum.
 class AddedSeconds {
 public:
     explicit AddedSeconds(double& sum) : sum_(sum) {}

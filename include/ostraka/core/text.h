@@ -1,4 +1,4 @@
-// Characters and numbers of texts from outside.
+// Characters and numbers in text from files and command lines.
 #pragma once
 
 #include <cstddef>
@@ -9,42 +9,42 @@
 
 namespace ostraka {
 
-/// A character of a text and its bytes; U+FFFD and one byte where no UTF-8 character begins.
+/// A character of a text and its length in bytes; U+FFFD with length 1 if no valid UTF-8 character begins there.
 struct Character {
     char32_t code = 0;
     std::size_t length = 1;
 };
 Character character_at(std::string_view text, std::size_t at);
 
-/// The characters of a text; a byte at which no UTF-8 character begins stands for itself, `not_utf8` higher.
+/// The characters of a text; a byte at which no valid UTF-8 character begins becomes its value plus `not_utf8`.
 inline constexpr char32_t not_utf8 = 0x110000;
 std::u32string characters(std::string_view text);
 
-/// What steers terminals and the order of letters instead of being shown: U+0000 to U+001F, U+007F to U+009F, and the marks that
-/// turn the direction of writing around (U+202A to U+202E, U+2066 to U+2069).
+/// Control characters, which steer a terminal or change the order of letters: U+0000 to U+001F, U+007F to U+009F, and the
+/// bidirectional formatting characters (U+202A to U+202E, U+2066 to U+2069).
 bool is_control(char32_t code);
 
-/// The text with `instead` for each control character.
+/// The text with each control character replaced by `instead`.
 std::string without_controls(std::string_view text, std::string_view instead);
 
-/// Every byte but letters, digits and -._~ as %XX (RFC 3986).
+/// Percent-encoding: every byte except letters, digits and -._~ as %XX (RFC 3986).
 std::string percent_encoded(std::string_view text);
 
 /// The shortest digits that read back to the same double.
 std::string digits(double value);
-/// At most so many significant digits, for people.
+/// At most `significant` digits, for display.
 std::string digits(double value, int significant);
-/// The whole of `text`, blanks around it apart, as a finite number.
+/// The text as a finite number, ignoring blanks around it; nullopt if it is not one as a whole.
 std::optional<double> number_of(std::string_view text);
 std::optional<int> whole_of(std::string_view text);
-/// Without blanks around it.
+/// The text without leading and trailing blanks.
 std::string_view trimmed(std::string_view text);
-/// With small letters for the capital ones of ASCII.
+/// The text with ASCII capital letters in lower case.
 std::string lower_case(std::string_view text);
 
-/// The line of a text that begins at `at`, without its line feed; `at` moves to the next one.
+/// The line that begins at `at`, without its line feed; moves `at` to the next line.
 std::string_view line_at(std::string_view text, std::size_t& at);
-/// What stands between blanks, which are these characters.
+/// The words between blanks.
 std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks = " \t\r\n");
 
 }  // namespace ostraka

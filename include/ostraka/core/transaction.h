@@ -1,13 +1,14 @@
-// Transactions of outputs over several threads, and inputs among earlier outputs.
+// Output transactions across threads, and inputs among earlier outputs.
 #pragma once
 
 #include "ostraka/core/file.h"
 
 namespace ostraka {
 
-/// The innermost transaction that is open on this thread, or none.
+/// The innermost transaction open on this thread, or nullptr.
 OutputTransaction* current_transaction();
-/// Makes it (or none) that of this thread as long as it lives: parallel loops write into the transaction of who starts them.
+/// Sets the transaction (or none) of this thread during its lifetime: parallel loops write into the transaction of the thread
+/// that starts them.
 class TransactionScope {
 public:
     explicit TransactionScope(OutputTransaction* transaction);
@@ -19,8 +20,8 @@ private:
     OutputTransaction* outer_;
 };
 
-/// While it lives, no transaction that this thread commits removes these files, even where an earlier run wrote them into a
-/// folder of `replace_outputs`: they are inputs of this one.
+/// While it lives, transactions committed on this thread do not remove these files, even if an earlier run wrote them into a
+/// folder of `replace_outputs`: they are inputs of this run.
 class KeptFiles {
 public:
     explicit KeptFiles(std::vector<Path> files);

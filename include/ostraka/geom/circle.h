@@ -1,4 +1,4 @@
-// Circles and curves in a plane: the circle that fits a curve best, and how far the curve strays from a circle.
+// Circles in a plane: the best-fitting circle of a curve, and the deviation of the curve from it.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,64 +9,65 @@
 
 namespace ostraka {
 
-/// The radius is negative if there is none (all on one line, nothing given).
+/// The radius is negative if there is no circle (collinear or empty input).
 struct Circle {
     Eigen::Vector2d centre{0, 0};
     double radius = -1;
 };
 
-/// Circle of least algebraic error (Kasa 1976) through weighted points.
+/// Circle with minimum algebraic error (Kasa 1976) for weighted points.
 Circle fit_circle(const std::vector<Eigen::Vector2d>& points, const std::vector<double>& weights);
 
-/// Straight pieces of curves in a plane.
+/// Straight segments of curves in a plane.
 using PlaneSegments = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
 
-/// Circle of least mean squared distance (geometric fit) along the pieces: integrals along them, not sums over their ends, so
-/// that cutting pieces in two changes nothing. Damped Newton steps from the algebraic fit.
+/// Circle with minimum mean squared distance (geometric fit) to the segments. The means are integrals along the segments, not
+/// sums over their end points, so that splitting a segment changes nothing. Damped Newton iteration from the algebraic fit.
 Circle fit_circle(const PlaneSegments& segments);
 
-/// What the pieces cover of the full turn around a place, radians.
+/// Angle around a point that the segments cover, radians.
 double angle_covered(const PlaneSegments& segments, const Eigen::Vector2d& centre);
 
-/// What points at these angles around a place stand for of the full turn, radians: all but the gaps between neighbours that stand
-/// out (wider than five degrees and six times the median). The widest is one unless it is below five degrees, or no more than 1.5
-/// times as wide as the next and six times the median.
+/// Angle around a point that samples at these angles represent, radians: the full turn minus the outlying gaps between
+/// neighbours (wider than five degrees and than six times the median gap). The widest gap already counts as outlying if it is
+/// wider than five degrees and than the smaller of six times the median and 1.5 times the second widest.
 double angle_covered(std::vector<double> angles);
 
-/// A circle and how far the curve it was fitted to tells it. The rest of an open curve is not seen: all that is said holds only
-/// if that goes on as the circle does.
+/// A circle fitted to a curve, with the confidence interval of its radius. The missing part of an open curve is not observed:
+/// all statements assume that it continues as the circle does.
 struct ArcFit {
-    Circle circle;           ///< of least mean squared distance
-    double angle = 0;        ///< of the circle's turn that the curve covers, radians
-    double deviation = 0;    ///< root mean squared distance from it
-    double independent = 0;  ///< about so many of the distances from it tell something of their own
-    /// 95 % interval of the radius: infinite above where a straight line fits too, 0 to infinity where too little is there to
-    /// tell.
+    Circle circle;           ///< with minimum mean squared distance
+    double angle = 0;        ///< of the circle that the curve covers, radians
+    double deviation = 0;    ///< root mean squared distance from the circle
+    double independent = 0;  ///< estimated number of independent residuals
+    /// 95 % confidence interval of the radius: infinite upper bound if a straight line fits as well, 0 to infinity if there are
+    /// too few data.
     double radius_low = 0, radius_high = std::numeric_limits<double>::infinity();
 
-    /// The curve is one of a circle, as far as it goes: its distances from it are at most a twentieth of the radius, and of how
-    /// far the curve bulges over its chord (1 - cos of half its angle, in radii), or they are noise.
+    /// Whether the curve is part of a circle, as far as it goes: the deviation is at most a twentieth of the radius, and either
+    /// at most a twentieth of the curve's rise over its chord (radius times 1 - cos of half the angle) or noise.
     [[nodiscard]] bool is_round() const;
-    /// Half of the interval of the radius, in radii.
+    /// Half the width of the radius interval divided by the radius.
     [[nodiscard]] double uncertainty() const;
-    /// 95 % interval of the angle.
+    /// 95 % confidence interval of the angle.
     [[nodiscard]] std::pair<double, double> angles() const;
 };
 
-/// The circle that fits the pieces best, with what its residuals say of its radius: the curvature k = 1 / r has the standard
-/// error s / (r^2 sqrt(n)) * sqrt((M^-1)_rr), M the mean of j j^T over places evenly along the pieces, j = (direction from the
-/// centre, 1) the derivative of the residual, s^2 the mean squared residual, n the number of residuals that are independent: that
-/// of the places over their correlation time (initial positive sequence; Geyer 1992). With Student's t of n - 3 degrees of
-/// freedom k's interval is symmetric; the radius' is its inverse. For an arc of length L with noise s this is
-/// s sqrt(720 / n) / L^2 (the second derivative of a parabola), so that the relative error of the radius grows as the square of
-/// the inverse of the angle. No circle: radius -1.
+/// The best-fitting circle of the segments, with the uncertainty of its radius estimated from the residuals. The curvature k =
+/// 1 / r has the standard error s / (r^2 sqrt(n)) * sqrt((M^-1)_rr). M is the mean of j j^T over samples spaced evenly along
+/// the segments, j = (direction from the centre, 1) is the derivative of the residual, s^2 is the mean squared residual, and n
+/// is the number of independent residuals: the number of samples divided by their correlation time (initial positive sequence;
+/// Geyer 1992). With Student's t of n - 3 degrees of freedom, the interval of k is symmetric; the interval of the radius is its
+/// inverse. For an arc of length L with noise s, the standard error is s sqrt(720 / n) / L^2 (the second derivative of a
+/// parabola), so that the relative error of the radius grows as the square of the inverse of the angle. Radius -1 if there is
+/// no circle.
 ArcFit fit_arc(const PlaneSegments& segments);
 /// The same for points in any order.
 ArcFit fit_arc(const std::vector<Eigen::Vector2d>& points);
 
-/// Mean over the length of |distance from the circle| and of its square; 0 without length. Gauss quadrature with 3 points where a
-/// piece is short against its distance from the centre, with 8 elsewhere, longer ones halved until they are not, and cut where
-/// they cross the circle: errors near 1e-12 of the radius.
+/// Mean along the segments of |distance from the circle| and of its square; 0 if they have no length. Gauss quadrature with 3
+/// nodes for segments that are short compared to their distance from the centre, with 8 nodes otherwise; longer segments are
+/// halved until short enough, and split where they cross the circle. Errors near 1e-12 of the radius.
 struct CircleDeviation {
     double absolute = 0, square = 0;
 };

@@ -1,4 +1,4 @@
-// Points and vectors as Eigen's and back.
+// Conversion of points and vectors to and from Eigen.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -13,7 +13,7 @@ inline Eigen::Vector3d eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
 inline Eigen::Vector3d eigen(const Vector& v) { return {v.x(), v.y(), v.z()}; }
 inline Point point_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 inline Vector vector_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-/// Points, a column each.
+/// Points as columns.
 inline Eigen::Matrix3Xd columns_of(const std::vector<Point>& list) {
     Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(list.size()));
     for (std::size_t i = 0; i < list.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = eigen(list[i]);

@@ -1,4 +1,4 @@
-// Exact geodesic distances on a triangle mesh: the lengths of the shortest curves over its faces.
+// Exact geodesic distances on a triangle mesh: lengths of the shortest curves across faces.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -10,26 +10,26 @@
 
 namespace ostraka {
 
-/// For every vertex the length of the shortest curve over the faces to the nearest of `sources`, in the mesh's unit (Chen and Han
-/// 1990 with the filters of Xin and Wang 2009, as CGAL implements them). Infinite where no curve arrives, or only one longer than
-/// `limit`. With a limit only the faces within that Euclidean distance of a source are worked on. Where a face without area
-/// hinders the exact method, the shortest edge path is given, which is never shorter. Time and memory grow with the square of
-/// the number of faces at worst, near n log n in practice: 50,000 faces take seconds and hundreds of megabytes.
-/// Throws Error (usage) without sources, for a source that is not a vertex, or for a limit that is negative or not a number.
+/// For each vertex, the geodesic distance to the nearest of `sources`, in the mesh's unit (Chen and Han 1990 with the filters
+/// of Xin and Wang 2009, as implemented by CGAL). Infinite if no curve, or only one longer than `limit`, reaches the vertex.
+/// With a limit, only the faces within that Euclidean distance of a source are processed. Where a degenerate face prevents the
+/// exact method, the length of the shortest edge path is returned, which is never smaller. Time and memory are quadratic in the
+/// number of faces in the worst case, near n log n in practice: 50,000 faces take seconds and hundreds of megabytes. Throws
+/// Error (usage) if there is no source, if a source is not a vertex, or if the limit is negative or NaN.
 std::vector<double> geodesic_distances(const Mesh& mesh, const std::vector<Index>& sources,
                                        double limit = std::numeric_limits<double>::infinity());
 
-/// For every vertex the length of the shortest way along edges from vertices that start with the given lengths; infinite where
-/// none arrives, or only one longer than `limit`.
+/// For each vertex, the length of the shortest edge path from the vertices in `start`, whose initial lengths are given;
+/// infinite if no path, or only one longer than `limit`, reaches the vertex.
 std::vector<double> edge_distances(const Mesh& mesh, const std::vector<std::pair<Vertex, double>>& start,
                                    double limit = std::numeric_limits<double>::infinity());
 
-/// The length of the shortest curve over the faces between two places; infinite if none joins them. Only the faces that a curve
-/// no longer than the shortest edge path can meet are worked on. Throws Error (usage) for a place that is not on the mesh.
+/// Geodesic distance between two places; infinite if they are not connected. Only the faces that a curve no longer than the
+/// shortest edge path can meet are processed. Throws Error (usage) for a place that is not on the mesh.
 double geodesic_distance(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);
 
-/// The shortest curve over the faces between two places, straight in each face; nothing if none joins them. Where a face without
-/// area hinders the exact method, the shortest edge path.
+/// Geodesic between two places, straight in each face; nullopt if they are not connected. If a degenerate face prevents the
+/// exact method, the shortest edge path.
 std::optional<SurfaceCurve> geodesic_curve(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Curves over the surface made into edges of the mesh.
+// Insertion of surface curves as edges of the mesh.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -11,23 +11,23 @@
 namespace ostraka {
 
 struct InsertedCurves {
-    Mesh mesh;                                    ///< old vertices first, under their old indices; the surface is unchanged
+    Mesh mesh;                                    ///< old vertices first, with unchanged indices; the surface is unchanged
     std::vector<Index> face_origin;               ///< new face -> old face
-    std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: the vertex at it
-    std::vector<std::vector<Index>> paths;        ///< per curve: all vertices along it, neighbours joined by an edge
-    std::vector<SurfaceNode> new_nodes;           ///< of the vertices beyond the old ones: where they are on the old mesh
+    std::vector<std::vector<Index>> node_vertex;  ///< per curve and node: its vertex
+    std::vector<std::vector<Index>> paths;        ///< per curve: all vertices along it, consecutive ones connected by an edge
+    std::vector<SurfaceNode> new_nodes;           ///< for each new vertex, its position on the old mesh
     std::map<Index, std::vector<Index>> on_edge;  ///< old edge -> new vertices on it, from the source of its first halfedge
 };
 
-/// Adds a vertex at each node of the curves and cuts the faces so that each piece of a curve is an edge, or a path of edges
-/// where curves cross inside a face (constrained Delaunay triangulation of each face that is crossed, in its plane).
-/// Nodes with the same element and the same place become one vertex. New faces stand where their old face stood.
-/// Linear in the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of range.
+/// Adds a vertex at each node of the curves and subdivides the faces so that each piece of a curve becomes an edge, or a path
+/// of edges if curves cross inside a face (constrained Delaunay triangulation of each crossed face, in its plane). Nodes with
+/// the same element and the same position become one vertex. New faces take the position of their old face in the order. Linear
+/// in the size of the mesh plus O(k log k) per face with k nodes. Throws Error (input) for a node out of range.
 InsertedCurves insert_curves(const Mesh& mesh, const std::vector<SurfaceCurve>& curves);
 
-/// For each face that the curves run through, the share of its area that lies to their left, without changing the mesh; for
-/// `rings` rings of faces around them, 1 or 0. Ascending by face. A piece that crosses another one inside a face is left out of
-/// the account. Cost as above, for these faces only.
+/// For each face that the curves traverse, the fraction of its area to their left, without changing the mesh; for `rings` rings
+/// of faces around them, 1 or 0. Ascending by face. Pieces that cross another one inside a face are ignored. Cost as above, for
+/// these faces only.
 std::vector<std::pair<Index, double>> left_shares(const Mesh& mesh, const std::vector<SurfaceCurve>& curves, int rings = 0);
 
 }  // namespace ostraka

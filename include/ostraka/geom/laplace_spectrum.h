@@ -1,4 +1,4 @@
-// The tones of a surface: eigenvalues of its Laplacian, which bending does not change.
+// Laplacian spectrum of a surface, which is invariant under isometric bending.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -7,11 +7,11 @@
 
 namespace ostraka {
 
-/// The first `count` eigenvalues above zero of the Laplacian of the connected part with the largest area, times that area:
-/// numbers that neither place nor size nor bending change (Reuter, Wolter and Peinecke 2006). Ascending; of a ball 8 pi three
-/// times, 24 pi five times, 48 pi seven times. Cotangent Laplacian and a third of the faces' areas as mass; borders are free. By
-/// inverse iteration of a subspace from a fixed start, to 1e-6 relative or better; one sparse factorisation. Empty for parts of
-/// fewer than 4 times `count` + 4 vertices, or where they cannot be found.
+/// The first `count` positive eigenvalues of the Laplacian of the connected component with the largest area, times that area:
+/// invariant under rigid motion, scaling and isometric bending (Reuter, Wolter and Peinecke 2006). Ascending; for a sphere 8 pi
+/// three times, 24 pi five times, 48 pi seven times. Cotangent Laplacian; mass matrix of a third of the face areas; free
+/// borders. Subspace inverse iteration from a fixed start, relative error at most 1e-6; one sparse factorisation. Empty for
+/// components of fewer than 4 times `count` + 4 vertices, or if the factorisation or iteration fails.
 std::vector<double> laplace_spectrum(const Mesh& mesh, int count);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Straight lines through points.
+// Line fitting.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,13 +7,14 @@
 
 namespace ostraka {
 
-/// Mean and direction (unit vector, of either sign) of largest spread; `rms` is that of the distances from the line.
+/// Mean of the points and direction of largest variance (unit vector of either sign); `rms` is the root mean square distance
+/// from the line.
 struct LineFit {
     Eigen::Vector3d point{0, 0, 0}, direction{0, 0, 1};
     double rms = 0;
 };
 
-/// The line of least squared distance from weighted points (total least squares). Needs a positive sum of weights.
+/// The line with minimum squared distance to weighted points (total least squares). The sum of weights must be positive.
 LineFit fit_line(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The axis that normals meet.
+// Axis of a surface of revolution from its normals.
 #pragma once
 
 #include "ostraka/core/dense.h"
@@ -9,12 +9,12 @@
 
 namespace ostraka {
 
-/// Normal equations of the linear line complex of normals (Pottmann and Wallner, Computational Line Geometry, 2001): every normal
-/// of a surface of revolution meets its axis, n . m + (p x n) . a = 0 for the axis with direction a and moment m. Places should
-/// lie about the origin: what is lost grows with the square of their distance from it.
+/// Normal equations of the linear line complex of normals (Pottmann and Wallner, Computational Line Geometry, 2001): every
+/// normal n at a point p of a surface of revolution intersects the axis, n . m + (p x n) . a = 0 for the axis with direction a
+/// and moment m. Points should be centred at the origin: the loss of precision grows with the square of their distance from it.
 class LineComplex {
 public:
-    /// A place with its unit normal.
+    /// Adds a point with its unit normal.
     void add(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double weight = 1) {
         const Eigen::Vector3d q = place.cross(normal);
         weight_ += weight;
@@ -28,7 +28,7 @@ public:
         b_ += other.b_;
         d_ += other.d_;
     }
-    /// Of the places after a rigid motion.
+    /// The equations for the points after a rigid motion.
     [[nodiscard]] LineComplex moved(const Motion& motion) const {
         const Eigen::Matrix3d &r = motion.rotation, n = r * n_ * r.transpose(), b = r * b_ * r.transpose();
         Eigen::Matrix3d t;
@@ -42,10 +42,10 @@ public:
         return result;
     }
 
-    /// The axis of least error with |a| = 1, its pitch dropped.
+    /// The axis with minimum error subject to |a| = 1; its pitch is dropped.
     struct Axis {
         Eigen::Vector3d place, direction;
-        double error = 0;  ///< weighted sum of the squares of the normals' distances times the sines of their angles
+        double error = 0;  ///< weighted sum of squares of (distance of the normal from the axis times the sine of their angle)
     };
     [[nodiscard]] Axis solve() const {
         const SymmetricEigen3 of_n(n_);
@@ -57,7 +57,7 @@ public:
         const Eigen::Vector3d a = solver.eigenvectors().col(0);
         return {a.cross(-inverse * b_ * a), a, std::max(0.0, solver.eigenvalues()[0])};
     }
-    /// Root mean square distance between the axis and the normals (times the sine of the angle between them).
+    /// Root mean square distance between the axis and the normals (each times the sine of their angle).
     [[nodiscard]] double off_axis() const { return weight_ > 0 ? std::sqrt(solve().error / weight_) : 0; }
 
 private:

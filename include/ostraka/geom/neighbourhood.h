@@ -1,4 +1,4 @@
-// The vertices inside a ball that are connected with its centre there.
+// Vertices or faces inside a ball that are connected with its centre within the ball.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -8,11 +8,11 @@
 
 namespace ostraka {
 
-/// Walks balls on one mesh without allocating anew; one for each thread.
+/// Traverses balls on one mesh without repeated allocation; one object per thread.
 class Neighbourhood {
 public:
-    /// Calls visit(vertex, squared distance) for `centre` and every vertex nearer than `radius` that a path of edges inside the
-    /// ball joins to it; the order depends on the mesh alone.
+    /// Calls visit(vertex, squared distance) for `centre` and for each vertex closer than `radius` that a path of edges inside
+    /// the ball connects with it; the order depends only on the mesh.
     template <class Visit>
     void walk(const Mesh& mesh, Vertex centre, double radius, Visit&& visit) {
         begin(mesh.number_of_vertices());
@@ -40,7 +40,7 @@ public:
         }
     }
 
-    /// The same for faces, which are where their centroids are and joined over edges.
+    /// The same for faces, represented by their centroids and connected across edges.
     template <class Visit>
     void walk(const Mesh& mesh, const std::vector<Point>& centroids, Face centre, double radius, Visit&& visit) {
         begin(mesh.number_of_faces());
@@ -77,7 +77,7 @@ private:
     std::vector<Face> faces_;
 };
 
-/// One for each thread; what a walk gives does not depend on the walks before it.
+/// One object per thread; the result of a walk does not depend on earlier walks.
 inline Neighbourhood& this_threads_neighbourhood() {
     static thread_local Neighbourhood neighbourhood;
     return neighbourhood;

@@ -1,4 +1,4 @@
-// A small box of any orientation around points.
+// Oriented bounding box of points.
 #pragma once
 
 #include <array>
@@ -13,8 +13,9 @@ struct OrientedBox {
     [[nodiscard]] double volume() const { return sides[0] * sides[1] * sides[2]; }
 };
 
-/// A small box around the points: the smallest rectangle (rotating calipers, Toussaint 1983) over a fixed set of directions,
-/// principal axes among them, the best refined. Near the smallest box, not always it. Null sides without points.
+/// A small bounding box of the points: the smallest rectangle (rotating calipers, Toussaint 1983) for each of a fixed set of
+/// directions, which includes the principal axes; the best ones are refined. Close to the minimum-volume box, but not always
+/// equal. Sides of length 0 if there are no points.
 OrientedBox oriented_box(const std::vector<std::array<double, 3>>& points);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Convex hulls and rectangles in a plane.
+// Convex hulls and bounding rectangles in a plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,18 +7,18 @@
 
 namespace ostraka {
 
-/// The corners of the convex hull, counter-clockwise, none between two others on a line (Andrew 1979; exact for the coordinates
-/// as given). Fewer than three corners if all points lie on one line.
+/// The corners of the convex hull, counter-clockwise, without corners on a line between two others (Andrew 1979; exact for the
+/// given coordinates). Fewer than three corners if all points are collinear.
 std::vector<Eigen::Vector2d> convex_hull(const std::vector<Eigen::Vector2d>& points);
 
-/// Signed area (positive counter-clockwise) and the integral of the place over it, both about the first point, of a polygon.
+/// Signed area of a polygon (positive if counter-clockwise) and its first moment, both relative to a reference point.
 struct PolygonMoments {
     double area = 0;
     Eigen::Vector2d first{0, 0};  ///< integral of (place - reference)
 };
 PolygonMoments polygon_moments(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& reference);
 
-/// A rectangle in any direction.
+/// A rectangle of any orientation.
 struct PlaneRectangle {
     Eigen::Vector2d centre{0, 0};
     Eigen::Vector2d along{1, 0};     ///< unit vector of the long side
@@ -26,8 +26,9 @@ struct PlaneRectangle {
     [[nodiscard]] double area() const { return length * breadth; }
 };
 
-/// The rectangle of least area around a convex polygon (a side of it lies on one of the hull's: rotating calipers, Toussaint
-/// 1983); of several whose areas agree to 1e-9 the longest. Of two points or one: without breadth, or extent.
+/// The minimum-area rectangle around a convex polygon (one of its sides lies on a side of the hull: rotating calipers,
+/// Toussaint 1983); among rectangles whose areas agree to 1e-9, the longest. For two points the breadth is 0; for one point,
+/// the length as well.
 PlaneRectangle smallest_rectangle(const std::vector<Eigen::Vector2d>& hull);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// A small motion that brings points onto planes.
+// Point-to-plane registration steps.
 #pragma once
 
 #include "ostraka/core/dense.h"
@@ -11,18 +11,18 @@
 
 namespace ostraka {
 
-/// One step of iterative closest points, point to plane (Chen and Medioni 1991): of all rotations, translations and scalings
-/// about a centre, linearised, the one with the least sum of weights times squared distances of the moved points from their
+/// One step of iterative closest points, point to plane (Chen and Medioni 1991): among all rotations, translations and scalings
+/// about a centre, linearised, the one that minimises the weighted sum of squared distances of the moved points from their
 /// planes.
 class PlaneMotion {
 public:
-    /// Arms from the centre are taken in this unit, a length of the size of the whole.
+    /// `unit`: length scale of the data, by which the distances from the centre are divided.
     PlaneMotion(const Eigen::Vector3d& centre, double unit) : centre_(centre), unit_(unit) {
         normal_.setZero();
         right_.setZero();
     }
 
-    /// A point that is `off` below the plane with this unit normal.
+    /// Adds a point at the distance `off` below the plane with this unit normal.
     void add(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double off, double weight = 1) {
         const Eigen::Vector3d arm = (point - centre_) / unit_;
         Row row;
@@ -33,10 +33,11 @@ public:
 
     struct Step {
         Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     ///< axis times angle
-        Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< a length
+        Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< in the mesh's unit
         double growth = 0;                                      ///< logarithm of the scale
     };
-    /// `damping`, as a share of the trace, keeps what the planes leave open (of a sphere, a plane or a cylinder) as it is.
+    /// `damping`, a fraction of the trace, suppresses motions that the planes do not determine (slippable motions of a sphere,
+    /// a plane or a cylinder).
     [[nodiscard]] Step solve(double damping, bool scaled = false) const {
         const int n = scaled ? 7 : 6;
         Eigen::Matrix<double, 7, 7> damped = normal_;
@@ -66,18 +67,18 @@ private:
     Row right_;
 };
 
-/// A point that is `off` below the plane with this unit normal.
+/// A point at the distance `off` below the plane with this unit normal.
 struct PlanePoint {
     Eigen::Vector3d point, normal;
     double off, weight;
 };
 
-/// How far one step moved: the larger of the angle (radians) and of the distance in the unit of the points' spread. Nothing where
-/// the points do not spread, or weigh nothing.
+/// Size of one step: the larger of the angle (radians) and of the translation divided by the spread of the points. nullopt if
+/// the spread or the sum of weights is 0.
 using StepLength = std::optional<double>;
 
-/// A rigid pose after one more step, about the points' weighted centroid and in the unit of their spread, damped by a thousandth
-/// of the mean eigenvalue.
+/// Updates a rigid pose by one step about the weighted centroid of the points, in the unit of their spread, with a damping of a
+/// thousandth of the mean eigenvalue.
 inline StepLength step_onto_planes(const std::vector<PlanePoint>& points, Motion& pose) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double total = 0, unit = 0;

@@ -1,4 +1,4 @@
-// Points found by where they are (k-d tree).
+// Spatial search for points (k-d tree).
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// Holds a copy of the points. Queries may run in parallel; of equally near points those of lower index come first.
+/// Holds a copy of the points. Queries may run in parallel; among equally near points, those of lower index come first.
 class PointTree {
 public:
     explicit PointTree(const std::vector<Point>& points = {});
@@ -21,15 +21,15 @@ public:
 
     struct Near {
         Index index = no_index;
-        double squared = std::numeric_limits<double>::infinity();  ///< distance, squared
+        double squared = std::numeric_limits<double>::infinity();  ///< squared distance
     };
-    /// The nearest point no farther away than `search_radius`; none: no_index.
+    /// The nearest point within `search_radius`; no_index if there is none.
     [[nodiscard]] Near nearest(const Point& place, double search_radius = std::numeric_limits<double>::infinity()) const;
-    /// The `count` nearest points, or all where there are fewer, nearest first.
+    /// The `count` nearest points (all if there are fewer), nearest first.
     [[nodiscard]] std::vector<Near> neighbours(const Point& place, std::size_t count) const;
-    /// All points no farther away than `search_radius`, by index.
+    /// All points within `search_radius`, by index.
     void within(const Point& place, double search_radius, std::vector<Index>& found) const;
-    /// Squared distance of the farthest point; 0 where there is none.
+    /// Squared distance of the farthest point; 0 if there are no points.
     [[nodiscard]] double farthest_squared(const Point& place) const;
 
 private:

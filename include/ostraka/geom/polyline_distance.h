@@ -1,4 +1,4 @@
-// Distances between curves given by segments.
+// Distances between curves given as segments.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -10,8 +10,8 @@ namespace ostraka {
 
 using Segments = std::vector<std::pair<Point, Point>>;
 
-/// Two-sided Hausdorff distance between two sets of segments (degenerate ones stand for points), measured at the end
-/// points and midpoints of each and exact for those (AABB tree, O(n log n)). 0 if both are empty, infinite if one is.
+/// Two-sided Hausdorff distance between two sets of segments (degenerate segments represent points), sampled at the end points
+/// and midpoints of each set and exact for these samples (AABB tree, O(n log n)). 0 if both are empty, infinite if one is.
 double hausdorff_distance(const Segments& a, const Segments& b);
 
 }  // namespace ostraka

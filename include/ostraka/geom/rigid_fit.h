@@ -1,4 +1,4 @@
-// The motion that carries one set of points onto another, in closed form.
+// Rigid or similarity registration of corresponding points, in closed form.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,20 +15,20 @@ struct Motion {
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return scale * (rotation * p) + translation; }
     [[nodiscard]] Motion inverse() const;
-    /// First `other`, then this.
+    /// Composition: first `other`, then this motion.
     [[nodiscard]] Motion after(const Motion& other) const;
     bool operator==(const Motion&) const = default;
 };
 
 struct FitOptions {
-    bool scale = false;                     ///< a free scale as well
-    double min_scale = 0, max_scale = 1e9;  ///< a free scale is held within these
+    bool scale = false;                     ///< also estimate a scale
+    double min_scale = 0, max_scale = 1e9;  ///< limits of an estimated scale
 };
 
-/// The motion with the least sum of weights |T(from) - to|^2 (Umeyama 1991: singular values of the covariance, never a
-/// reflection; a scale held within limits is the clamped one, as the sum is a parabola in it). `weights` empty: all 1. Points
-/// that leave the motion open (one point, all on a line or equal) get one of the best ones. Throws Error (usage) if the numbers
-/// of points differ or there is none.
+/// The motion that minimises the weighted sum of |T(from) - to|^2 (Umeyama 1991: singular values of the covariance, never a
+/// reflection; a scale outside its limits is clamped, which is optimal because the sum is quadratic in it). `weights` empty:
+/// all 1. For points that do not determine the motion (a single point, collinear or equal points), one of the optimal motions.
+/// Throws Error (usage) if the numbers of points differ or are 0.
 Motion fit_motion(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
                   const std::vector<double>& weights = {}, const FitOptions& options = {});
 

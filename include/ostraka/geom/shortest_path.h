@@ -9,54 +9,55 @@
 
 namespace ostraka {
 
-/// What a step from a vertex to its neighbour costs (thesis, section 2.4.1).
+/// Cost of a step from a vertex to its neighbour (thesis, section 2.4.1).
 enum class PathMetric {
     euclidean,  ///< the length of the edge
-    segment,    ///< the distance of the neighbour to the guide (the straight segment between the path's ends)
+    segment,    ///< the distance of the neighbour from the guide (the straight segment between the ends of the path)
     combined    ///< the sum of both
 };
-PathMetric path_metric(const std::string& name);  ///< Error (usage) for an unknown name
+PathMetric path_metric(const std::string& name);  ///< Throws Error (usage) for an unknown name.
 
-/// Searches paths on one mesh again and again without allocating anew; what it holds grows with the largest search, not with the
-/// mesh. Not for use by several threads at once.
+/// Repeated path searches on one mesh without repeated allocation; the memory grows with the largest search, not with the mesh.
+/// Not thread-safe.
 class PathSearch {
 public:
     explicit PathSearch(const Mesh& mesh);
 
     struct Query {
         PathMetric metric = PathMetric::euclidean;
-        std::vector<Point> guide;             ///< polyline for the segment distance; empty: the segment between the ends
-        std::function<bool(Vertex)> blocked;  ///< vertices not to be entered (the ends never are); may be empty
-        double limit = 0;                     ///< longest path worth finding, in Euclidean length; 0 = any
+        std::vector<Point> guide;             ///< poly-line for the segment distance; empty: the segment between the ends
+        std::function<bool(Vertex)> blocked;  ///< vertices that must not be entered (never applied to the ends); may be empty
+        double limit = 0;                     ///< maximum Euclidean length of a path; 0: no limit
     };
 
-    /// The vertices from `from` to `to`, both included (one vertex if they are the same); empty if there is no path.
-    /// Dijkstra with a heap and early exit; ties go to the lower vertex index.
+    /// The vertices from `from` to `to`, both included (one vertex if they are equal); empty if there is no path. Dijkstra's
+    /// algorithm with a heap and early exit; ties are resolved in favour of the lower vertex index.
     std::vector<Index> find(Vertex from, Vertex to, const Query& query);
 
-    /// The Euclidean shortest path from `from` to the nearest vertex that `goal` accepts, within `limit`; empty if there is none.
+    /// The shortest Euclidean path from `from` to the nearest vertex that `goal` accepts, within `limit`; empty if there is
+    /// none.
     std::vector<Index> find_nearest(Vertex from, const std::function<bool(Vertex)>& goal, double limit);
 
 private:
     std::vector<Index> search(Vertex from, const std::function<bool(Vertex)>& is_goal, const std::function<double(Vertex)>& bound,
                               const std::vector<Point>& guide, const Query& query);
 
-    /// A vertex that a search has come upon.
+    /// Search state of a visited vertex.
     struct Record {
         Index vertex = no_index;
-        std::uint32_t search = 0;  ///< the number of the search it belongs to; of another one: the place is free
+        std::uint32_t search = 0;  ///< number of the search it belongs to; if it is not the current one, the slot is free
         Index previous = no_index;
         bool settled = false;
         double cost = 0;
         double length = 0;
     };
-    /// Makes one, without a cost, for a vertex that has none yet. Valid until the next call.
+    /// Finds the record of a vertex, or creates one without a cost. The reference is valid until the next call.
     Record& record(Index vertex);
 
     const Mesh& mesh_;
     std::uint32_t search_ = 0;
     std::size_t used_ = 0;
-    std::vector<Record> records_;  ///< a hash table: each as soon after its place as there is room; a power of two in size
+    std::vector<Record> records_;  ///< hash table with linear probing; its size is a power of two
 };
 
 /// Distance from a point to a segment or a polyline.

@@ -1,4 +1,4 @@
-// Some faces of a mesh as a mesh of its own.
+// A subset of the faces of a mesh as a separate mesh.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,17 +9,17 @@ namespace ostraka {
 
 struct SubMesh {
     Mesh mesh;
-    std::vector<Index> vertices;  ///< of the whole mesh, for each vertex
-    std::vector<Index> faces;     ///< of the whole mesh, for each face, ascending
+    std::vector<Index> vertices;  ///< index in the whole mesh of each vertex
+    std::vector<Index> faces;     ///< index in the whole mesh of each face, ascending
 };
 
-/// Of each face the number of the piece that it is in, by the pieces' lowest faces; `no_index`: in none.
+/// For each face, the number of its piece (ordered by the lowest face of the piece); `no_index`: in no piece.
 struct FacePieces {
     std::vector<Index> of_face;
     Index count = 0;
 };
-/// Pieces of the faces that `counts`, joined over the edges that `joins(halfedge)` lets pass: from its face to the opposite one,
-/// both of which count.
+/// Connected pieces of the faces for which `counts` is true. Two such faces are connected across a halfedge h from the first to
+/// the second if `joins(h)` is true.
 template <class Counts, class Joins>
 FacePieces face_pieces(const Mesh& mesh, Counts&& counts, Joins&& joins) {
     FacePieces pieces{std::vector<Index>(mesh.number_of_faces(), no_index)};
@@ -43,15 +43,15 @@ FacePieces face_pieces(const Mesh& mesh, Counts&& counts, Joins&& joins) {
     return pieces;
 }
 
-/// The faces marked in `keep` (one entry a face), or of them only the piece joined over edges that has the largest area (the one
-/// with the lowest face of equal ones). A vertex at which they form several fans is there once for each. Empty where none is
-/// marked. Throws Error (usage) if the marks are not one a face.
+/// The faces marked in `keep` (one flag per face), or only the edge-connected piece of them with the largest area (among equal
+/// ones, the one with the lowest face). A vertex at which they form several fans is duplicated for each fan. Empty if no face
+/// is marked. Throws Error (usage) unless there is one flag per face.
 SubMesh keep_faces(const Mesh& mesh, const std::vector<bool>& keep, bool largest_only = false);
 
-/// The border halfedge of lowest index of each hole.
+/// The lowest border halfedge of each hole.
 std::vector<Halfedge> holes_of(const Mesh& mesh);
-/// Closes the hole at a border halfedge by triangles between its vertices, of minimum dihedral angle and area (Liepa 2003); gives
-/// their number. 0, and the mesh as it was, where there is no such triangulation.
+/// Closes the hole at a border halfedge by triangles between its vertices with minimum dihedral angle and area (Liepa 2003).
+/// Returns the number of triangles; 0, with the mesh unchanged, if there is no such triangulation.
 std::size_t close_hole(Mesh& mesh, Halfedge border);
 
 }  // namespace ostraka

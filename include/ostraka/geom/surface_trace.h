@@ -1,4 +1,4 @@
-// Straight lines drawn over a mesh from face to face.
+// Straight lines traced over a mesh from face to face.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka {
 
-/// A place on the surface by the smallest element that holds it.
+/// A position on the surface, given by the lowest-dimensional element that contains it.
 struct SurfaceNode {
     enum class Kind { vertex, edge, face };
     Kind kind = Kind::vertex;
@@ -19,44 +19,44 @@ struct SurfaceNode {
     Point point{0, 0, 0};
 };
 
-/// Barycentric coordinates below `snap` are taken for zero, so that a node near an edge or a vertex lies on it.
+/// Barycentric coordinates below `snap` are set to zero, so that a node near an edge or a vertex is placed on it.
 SurfaceNode surface_node(const Mesh& mesh, Index face, const std::array<double, 3>& barycentric, double snap = 1e-6);
 SurfaceNode surface_node(const Mesh& mesh, Vertex vertex);
-/// The faces that hold the node.
+/// The faces that contain the node.
 std::vector<Face> faces_of(const Mesh& mesh, const SurfaceNode& node);
 
-/// The same without coordinates: it stays on its element when vertices move.
+/// A surface position without coordinates: it stays on its element when vertices move.
 struct SurfacePlace {
     SurfaceNode::Kind kind = SurfaceNode::Kind::vertex;
-    std::array<Index, 2> element{no_index, no_index};  ///< the vertex; the ends of the edge, the lower first; the face
-    std::array<double, 2> weights{0, 0};  ///< on an edge: the share of the way from its first end; in a face: of its corners 1, 2
+    std::array<Index, 2> element{no_index, no_index};  ///< the vertex; the ends of the edge, lower index first; the face
+    std::array<double, 2> weights{0, 0};               ///< edge: fraction from its first end; face: weights of its corners 1, 2
     bool operator==(const SurfacePlace&) const = default;
     auto operator<=>(const SurfacePlace&) const = default;
 };
 SurfacePlace place_of(const Mesh& mesh, const SurfaceNode& node);
-/// Throws Error (input) for an element that the mesh does not have, or weights that are not in it.
+/// Throws Error (input) if the mesh does not have the element or if the weights lie outside it.
 SurfaceNode node_at(const Mesh& mesh, const SurfacePlace& place);
 
-/// A curve over the surface: each piece nodes[i] -> nodes[i + 1] lies in one face.
+/// A curve on the surface: each piece nodes[i] -> nodes[i + 1] lies in one face.
 struct SurfaceCurve {
     std::vector<SurfaceNode> nodes;
-    std::vector<Index> faces;  ///< one per piece: the face that holds it (either one for a piece along an edge)
+    std::vector<Index> faces;  ///< one per piece: the face that contains it (either face for a piece along an edge)
     [[nodiscard]] double length() const;
 };
 
-/// A face that holds both nodes, the lowest of several; no_index if there is none.
+/// The lowest face that contains both nodes; no_index if there is none.
 Index common_face(const Mesh& mesh, const SurfaceNode& a, const SurfaceNode& b);
 
-/// The edge that holds both nodes; no_index if none does, or one of them is inside a face.
+/// The edge that contains both nodes; no_index if there is none or if a node lies inside a face.
 Index common_edge(const Mesh& mesh, const SurfaceNode& a, const SurfaceNode& b);
 
-/// The curve through places of which neighbours lie in one face. Throws Error (input) as `node_at`, and for neighbours that share
-/// no face.
+/// The curve through places, each two consecutive ones of which lie in a common face. Throws Error (input) as `node_at` does,
+/// and if consecutive places have no common face.
 SurfaceCurve curve_through(const Mesh& mesh, const std::vector<SurfacePlace>& places);
 
-/// Follows the plane through both nodes and the direction `up` (the mean surface normal, say) over the surface, from
-/// `from` to `to`. Nothing if the walk meets the border, does not arrive, or grows longer than `limit`.
-/// Linear in the number of faces crossed.
+/// Traces the intersection of the surface with the plane through both nodes and the direction `up` (for example the mean
+/// surface normal) from `from` to `to`. nullopt if the trace reaches the border, does not reach `to`, or becomes longer than
+/// `limit`. Linear in the number of faces crossed.
 std::optional<SurfaceCurve> trace_line(const Mesh& mesh, const SurfaceNode& from, const SurfaceNode& to, const Vector& up,
                                        double limit);
 

@@ -1,12 +1,12 @@
-// Building the library's trees of boxes so that it can be cancelled.
+// Cancellable construction of CGAL's AABB trees.
 #pragma once
 
 #include "ostraka/core/progress.h"
 
 namespace ostraka {
 
-/// Builds a CGAL::AABB_tree as tree.build() does, and asks the watch of the thread at every node: throws Error (cancelled). The
-/// tree is of no use then.
+/// Builds a CGAL::AABB_tree as tree.build() does, but checks for cancellation at every node. Throws Error (cancelled); the tree
+/// must not be used after that.
 template <class Tree>
 void build_watched(Tree& tree) {
     const auto boxes = tree.traits().compute_bbox_object();

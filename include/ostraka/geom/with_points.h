@@ -1,4 +1,4 @@
-// The same triangles over other points.
+// A mesh with new vertex positions.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -7,8 +7,8 @@
 
 namespace ostraka {
 
-/// A copy of the mesh, property maps and all, whose vertices stand at `points`. Throws Error (usage) unless there is one for each
-/// vertex.
+/// A copy of the mesh, including its property maps, with the vertex positions `points`. Throws Error (usage) unless there is
+/// one point per vertex.
 Mesh with_points(const Mesh& mesh, const std::vector<Point>& points);
 
 }  // namespace ostraka

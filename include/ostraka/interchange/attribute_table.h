@@ -1,22 +1,22 @@
-// All attributes of a set as one CSV table, and back.
+// Export and import of all attributes of a set as one CSV table.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
 
 namespace ostraka {
 
-/// A row an attribute, a row an annotation without any; UTF-8, comma separated (RFC 4180). Columns: annotation, tag, type,
-/// colour, attribute, name, kind, value, unit, note, tool, points, direction, locations, file, stale, geodesic, repeats,
-/// uncertainty, origin. Lists stand in one cell, separated by blanks, pins picked again by |. Text that a spreadsheet would take
-/// for a formula gets an apostrophe in front, which reading takes off again.
+/// One row per attribute, and one row for each annotation without attributes; UTF-8, comma separated (RFC 4180). Columns:
+/// annotation, tag, type, colour, attribute, name, kind, value, unit, note, tool, points, direction, locations, file, stale,
+/// geodesic, repeats, uncertainty, origin, sha256. Lists occupy one cell, separated by blanks; repeated pickings are separated
+/// by |. Text that a spreadsheet would read as a formula gets an apostrophe in front, which is removed on reading.
 std::string attribute_table(const AnnotationSet& set);
 
-/// True if the first row is that of an attribute table.
+/// True if the first row is the header of an attribute table.
 bool is_attribute_table(const std::string& bytes);
 
-/// Puts a table onto the set it was made of: tag, colour and attributes of each annotation that the table names become the
-/// table's; the others stay as they are. Selections never change. Returns how many annotations changed. Throws Error (input)
-/// naming line and column: an annotation that the set does not have, another type, a cell that does not fit.
+/// Applies a table to the set from which it was exported: the tag, colour and attributes of each annotation in the table are
+/// replaced; other annotations are unchanged. Selections never change. Returns the number of changed annotations. Throws Error
+/// (input) with line and column for an annotation that is not in the set, a different type, or an invalid cell.
 std::size_t apply_attribute_table(const std::string& bytes, AnnotationSet& set, const std::string& where);
 
 }  // namespace ostraka

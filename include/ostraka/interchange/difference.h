@@ -1,4 +1,4 @@
-// What differs between two sets of annotations on one mesh, and the merge of two people's work on a common base.
+// Differences between two sets of annotations on one mesh, and three-way merge.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -6,28 +6,28 @@
 
 namespace ostraka {
 
-/// One difference. `field` is "tag", "colour", "type", "geometry", "note", "attribute N" (N its id) or "order" of an annotation;
-/// "class", "unit", "up" or "order" of the set; empty where a whole annotation was added or removed.
+/// One difference. `field` is "tag", "colour", "type", "geometry", "note", "attribute N" (N its id) or "order" of an
+/// annotation; "class", "unit", "up" or "order" of the set; empty if a whole annotation was added or removed.
 struct Difference {
     enum class Kind { added, removed, changed };
     Kind kind = Kind::changed;
-    std::optional<int> id;  ///< of the annotation; nothing for the set itself
-    std::string tag;        ///< of the annotation in the second set, or in the first where it is gone
+    std::optional<int> id;  ///< of the annotation; nullopt for the set itself
+    std::string tag;        ///< of the annotation in the second set, or in the first set if it was removed
     std::string field;
-    std::string before, after;                    ///< in words; lists are cut short
-    std::size_t only_before = 0, only_after = 0;  ///< geometry: faces, edges or points that one of the sets alone has
+    std::string before, after;                    ///< values as text; lists are truncated
+    std::size_t only_before = 0, only_after = 0;  ///< geometry: number of faces, edges or points in only one of the sets
 };
 
-/// The differences from `a` to `b`, annotations by id in ascending order, those of the set first. Empty if and only if a file of
-/// one would hold the same as one of the other, provenance apart; `differences(b, a)` is the same with sides changed. Linear but
-/// for sorting.
+/// The differences from `a` to `b`: those of the set first, then annotations in ascending order of id. Empty if and only if the
+/// files of both sets are equal except for the provenance. `differences(b, a)` is the same with the sides exchanged. Linear,
+/// except for sorting.
 std::vector<Difference> differences(const AnnotationSet& a, const AnnotationSet& b);
 
-/// Two people changed one thing in two ways.
+/// A field that both sides changed in different ways.
 struct Conflict {
     std::optional<int> id;
     std::string tag, field;
-    std::string base, ours, theirs;  ///< in words
+    std::string base, ours, theirs;  ///< values as text
 };
 
 struct MergeOptions {
@@ -39,17 +39,17 @@ struct MergeOptions {
 };
 
 struct MergedAnnotations {
-    AnnotationSet set;                ///< with ours in place of each conflict, unless theirs is preferred
-    std::vector<Conflict> conflicts;  ///< also where a preference settled them
-    std::vector<std::string> notes;   ///< ids given anew, regions merged face by face
+    AnnotationSet set;                ///< contains our version of each conflict, unless theirs is preferred
+    std::vector<Conflict> conflicts;  ///< includes conflicts resolved by a preference
+    std::vector<std::string> notes;   ///< new ids, regions merged face by face
     [[nodiscard]] bool settled(const MergeOptions& options) const {
         return conflicts.empty() || options.prefer != MergeOptions::Side::none;
     }
 };
 
-/// Three-way merge by id, field by field: what only one side changed is taken, what both changed alike as well; the rest is a
-/// conflict. Attributes are fields of their own, by id. One who removes an annotation that the other changed makes a conflict.
-/// merge(base, a, base) = a and merge(base, base, b) = b, order included.
+/// Three-way merge by id, field by field: a change of only one side is taken, equal changes of both sides as well; different
+/// changes are conflicts. Each attribute is a separate field, identified by id. Removing an annotation that the other side
+/// changed is a conflict. merge(base, a, base) = a and merge(base, base, b) = b, including the order.
 MergedAnnotations merge_annotations(const AnnotationSet& base, const AnnotationSet& ours, const AnnotationSet& theirs,
                                     const MergeOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Annotations in the formats of others. doc/interchange.md says what each keeps and what it loses.
+// Annotations in other formats. doc/interchange.md states what each format keeps and loses.
 #pragma once
 
 #include "ostraka/annotation/annotation_file.h"
@@ -7,12 +7,12 @@
 
 namespace ostraka {
 
-/// Names of formats, as the commands take them: "attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web", "glb",
+/// Names of the formats, as used by the commands: "attributes-csv", "landmarks-csv", "tps", "pp", "mrk", "fcsv", "web", "glb",
 /// "ant", "fct".
 const std::vector<std::string>& interchange_formats();
 
-/// The format of a file by its name, and for .csv by its first line. `bytes` is empty for a file to be written: then .csv is
-/// "attributes-csv". Throws Error (usage) for an unknown ending.
+/// The format of a file by its name, and for .csv by its first line. For a file to be written, `bytes` is empty, and .csv means
+/// "attributes-csv". Throws Error (usage) for an unknown extension.
 std::string guess_interchange_format(const Path& file, const std::string& bytes = {});
 
 struct ExportOptions {
@@ -23,11 +23,11 @@ struct ExportOptions {
 
 struct ExportedAnnotations {
     std::string bytes;               ///< of the file
-    std::vector<std::string> notes;  ///< what the format does not hold, in words
-    std::size_t annotations = 0;     ///< how many of the set are in it
+    std::vector<std::string> notes;  ///< messages about data that the format cannot store
+    std::size_t annotations = 0;     ///< number of annotations in the file
 };
 
-/// The set as a file of the format. The same set, mesh, name and provenance give the same bytes. Throws Error (usage) for an
+/// Exports the set in the format. The same set, mesh, name and provenance give the same bytes. Throws Error (usage) for an
 /// unknown format, Error (input) if the set does not fit the mesh.
 ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format,
                                        const std::string& mesh_file, const Provenance& provenance,
@@ -40,9 +40,9 @@ struct ImportOptions {
     void describe(OptionList& visit);
 };
 
-/// Reads `bytes` of a file of the format onto the mesh. `onto` is the set that a table of attributes belongs to; what other
-/// formats hold is added to it, with new ids where an id is taken (a note says so). Throws Error (input) naming file, place and
-/// remedy, Error (usage) for an unknown format or a table of attributes without a set.
+/// Reads a file of the format, given as `bytes`, onto the mesh. `onto`: the set to which a table of attributes is applied;
+/// annotations of other formats are added to it, with a new id if an id is in use (reported by a note). Throws Error (input)
+/// with file, position and remedy, Error (usage) for an unknown format or a table of attributes without a set.
 PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& format,
                                      const std::string& where, const AnnotationSet* onto = nullptr,
                                      const ImportOptions& options = {});

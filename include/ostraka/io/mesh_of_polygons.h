@@ -1,11 +1,11 @@
-// Polygons as a manifold.
+// Conversion of polygons to a manifold mesh.
 #pragma once
 
 #include "ostraka/io/mesh_file.h"
 
 namespace ostraka {
 
-/// What `read_mesh` makes of a file's polygons: triangulated, checked. `name`: of the file, for errors.
+/// Triangulates and checks polygons as `read_mesh` does. `name`: the file name for errors.
 MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name);
 
 }  // namespace ostraka

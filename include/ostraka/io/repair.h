@@ -1,4 +1,4 @@
-// From any triangle soup to an oriented manifold mesh, step by step, with maps from old elements to new ones.
+// Repair of any triangle soup to an oriented manifold mesh in steps, with maps from old to new elements.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -12,7 +12,7 @@
 
 namespace ostraka {
 
-/// Shares of a diagonal refer to the box of the vertices that have a triangle.
+/// Fractions of a diagonal refer to the bounding box of the vertices with triangles.
 struct RepairOptions {
     double merge_distance = 0;
     double merge_gap = 0.25;
@@ -28,7 +28,7 @@ struct RepairOptions {
     void describe(OptionList& visit);
 };
 
-/// What one step changed, in counts.
+/// Counts of the changes made by one step.
 struct RepairStep {
     std::string name;
     std::vector<std::pair<std::string, std::size_t>> counts;
@@ -36,32 +36,34 @@ struct RepairStep {
 
 struct RepairResult {
     Mesh mesh;          ///< an oriented manifold, open or closed
-    MeshExtras extras;  ///< carried over: values of a made element are those of the nearest kept one
-    /// Old vertex -> new vertex, old triangle -> new triangle; no_index for what is gone. Merged vertices and duplicate
-    /// triangles map to the one kept; vertices that were moved to smooth a fold stay the same ones; of several copies of a split
-    /// vertex, or parts of a split triangle, the first.
+    MeshExtras extras;  ///< transferred attributes; new elements take the values of the nearest old element that was kept
+    /// Old vertex -> new vertex, old triangle -> new triangle; no_index if removed. Merged vertices and duplicate triangles map
+    /// to the one kept; vertices moved to smooth a fold keep their identity; a split vertex maps to its first copy, a split
+    /// triangle to its first part.
     std::vector<Index> vertex_map, face_map;
-    /// New -> old; no_index for what was made.
+    /// New -> old; no_index for new elements.
     std::vector<Index> vertex_source, face_source;
-    bool maps_by_distance = false;  ///< after a wrap: the maps tell the nearest element
+    bool maps_by_distance = false;  ///< after wrapping: the maps give the nearest element
     std::vector<RepairStep> steps;
-    std::vector<std::string> notes;  ///< what was not done, and why; what was lost
-    /// The surface before self-intersections were removed or it was wrapped, without a search for self-intersections; only then.
+    std::vector<std::string> notes;  ///< steps not carried out, with reasons; data lost
+    /// The surface before self-intersections were removed or it was wrapped, without a search for self-intersections; only set
+    /// in these cases.
     std::optional<MeshDiagnosis> before;
     MeshDiagnosis after;  ///< of `mesh`
 };
 
-/// Steps: merge points on open borders (closed components stay as they are), drop triangles that repeat a corner or are
-/// duplicates (of either sense where one closes the surface), insert border vertices into the sides they lie on, orient by
-/// flooding across manifold edges, take non-manifold edges and vertices apart, drop small components, flip triangles without area
-/// away, turn closed components outwards (cavities stay), fill holes, remove self-intersections, wrap. All components stay unless
-/// the options say otherwise. `extras` as of `triangulate`. Throws Error (input) when nothing is left to mend, naming why; Error
-/// (usage) for options out of range.
+/// Steps: merge points on open borders (closed components are not changed), drop triangles with a repeated corner and duplicate
+/// triangles (of either orientation if one of them closes the surface), insert border vertices into the edges they lie on,
+/// orient by flooding across manifold edges, split non-manifold edges and vertices, drop small components, remove degenerate
+/// triangles by edge flips, orient closed components outwards (except cavities), fill holes, remove self-intersections, wrap.
+/// All components are kept unless the options demand otherwise. `extras`: as returned by `triangulate`. Throws Error (input),
+/// with the reason, if nothing is left to repair; Error (usage) for options out of range.
 RepairResult repair(const TriangleSoup& soup, const MeshExtras& extras = {}, const RepairOptions& options = {});
 
-/// Judges the result as a reader of STL sees it (`after`): single precision, vertices at one place joined. Where that would make
-/// copies of vertices one again, so that the mesh is no manifold any more, they are moved apart by a hair first, each towards
-/// its own triangles: 1e-6 of the diagonal, or eight steps of single precision where that is more; a note says so.
+/// Diagnoses the result as an STL reader sees it (`after`): single precision, vertices with equal positions merged. If that
+/// would merge copies of split vertices again, so that the mesh is no longer manifold, they are first moved apart slightly,
+/// each towards its own triangles: by 1e-6 of the diagonal, or eight steps of single precision if that is more; a note reports
+/// it.
 void prepare_for_stl(RepairResult& result);
 
 }  // namespace ostraka

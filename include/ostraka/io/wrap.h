@@ -1,13 +1,13 @@
-// The watertight wrap of triangles of any kind.
+// Watertight wrap of any triangle soup.
 #pragma once
 
 #include "ostraka/core/mesh.h"
 
 namespace ostraka {
 
-/// Closed, an oriented manifold, without self-intersections, strictly around the triangles: `offset` from them, and over openings
-/// narrower than `alpha` (lengths in the soup's unit; Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022, by CGAL).
-/// Throws Error (failure) where nothing comes of it.
+/// Computes a closed, oriented manifold without self-intersections that strictly encloses the triangles: at the distance
+/// `offset` from them, and bridging openings narrower than `alpha` (lengths in the soup's unit; Portaneri, Rouxel-Labbe,
+/// Hemmer, Cohen-Steiner, Alliez 2022, implemented by CGAL). Throws Error (failure) if the result is empty.
 TriangleSoup wrap_soup(const TriangleSoup& soup, double alpha, double offset);
 
 }  // namespace ostraka

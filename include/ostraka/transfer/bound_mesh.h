@@ -1,4 +1,4 @@
-// A mesh together with what is bound to it - annotations, colours, labels - while its resolution changes.
+// A mesh with its annotations, colours and labels, which are preserved when its resolution changes.
 #pragma once
 
 #include "ostraka/annotation/annotation_maps.h"
@@ -11,21 +11,21 @@
 
 namespace ostraka {
 
-/// Everything bound to the mesh follows each call of `simplify` and `refine`, of which there may be several. Texture coordinates
-/// per corner are not carried, which the notes say.
+/// All data of the mesh are updated by each call of `simplify` and `refine`, which may be called repeatedly. Per-corner texture
+/// coordinates are dropped; a note reports it.
 class BoundMesh {
 public:
-    /// `annotated`: annotations of the mesh, if it has any.
+    /// `annotated`: annotations of the mesh, if any.
     explicit BoundMesh(MeshFile file, std::optional<AnnotationSet> annotated = {});
 
-    /// Outlines of regions, poly-lines and points are marked as what means something, and with `options.outlines` protect the
-    /// pins of measures too. Throws as ostraka::simplify.
+    /// Simplifies the mesh. Outlines of regions, poly-lines and points are marked as meaningful parts; with `options.outlines`
+    /// = protect, the pins of measures as well. Throws as ostraka::simplify does.
     SimplifyResult simplify(const SimplifyOptions& options);
-    /// New vertices get the mean of the colours and texture coordinates of the two they lie between, and the label of one. Throws
-    /// as ostraka::refine.
+    /// Refines the mesh. New vertices get the mean of the colours and texture coordinates of the two vertices that they lie
+    /// between, and the label of one of them. Throws as ostraka::refine does.
     RefineResult refine(const RefineOptions& options);
 
-    /// As they are now. Measures and known descriptors of the annotations are computed anew after each step.
+    /// Current state. Measures and known descriptors of the annotations are recomputed after each step.
     Mesh mesh;
     MeshExtras extras;
     std::optional<AnnotationSet> annotations;
@@ -35,33 +35,34 @@ public:
         std::size_t vertices = 0, faces = 0;
         double area = 0;
     };
-    /// When it was made, and now.
+    /// At construction, and now.
     Totals before, after;
 
     struct Size {
-        std::size_t elements = 0;     ///< faces, links or points
+        std::size_t elements = 0;     ///< number of faces, segments or points
         double area = 0, length = 0;  ///< length: perimeter of a region, length of a line
     };
-    /// What became of an annotation since this was made.
+    /// Change of an annotation since construction.
     struct Change {
         int id = 0;
         std::string tag;
-        AnnotationType type = AnnotationType::region;  ///< at first
+        AnnotationType type = AnnotationType::region;  ///< at construction
         Size before, after;
-        bool degenerate = false;  ///< it is of another type now, as a region without faces is
-        std::string note;         ///< "lost", or what had to be done to it
+        bool degenerate = false;  ///< it has another type now, for example because a region lost all its faces
+        std::string note;         ///< "lost", or a description of the change
     };
-    std::vector<Change> changes;  ///< in the order of the annotations at first
+    std::vector<Change> changes;  ///< in the order of the annotations at construction
 
 private:
-    /// Mesh and annotations before a step, where some are free: their curves are laid on what it leaves.
+    /// Mesh and annotations before a step, kept if some annotations are free: their curves are projected onto the resulting
+    /// mesh.
     struct Curved {
         Mesh mesh;
         AnnotationSet annotations;
     };
     void keep_curved();
     AnnotationTable attach();
-    /// Reads back what `attach` bound; `vertex_map` from the mesh as it was then.
+    /// Reads back the annotations attached by `attach`; `vertex_map` maps the vertices of the mesh at that time.
     void detach(const AnnotationTable& table, const std::vector<Index>& vertex_map);
     [[nodiscard]] MarkedParts marked(const AnnotationTable& table, bool pins) const;
     [[nodiscard]] Size size_of(const Annotation& annotation) const;

@@ -19,13 +19,13 @@ struct SurvivalOptions {
 struct Survival {
     int id = 0;
     std::string tag;
-    std::size_t vertices = 0;  ///< the smallest resolution tried down to which the annotation was kept throughout
-    std::string end;           ///< what became of it at the next one; empty if it survived all; says so if none could be tried
+    std::size_t vertices = 0;  ///< the smallest tested resolution such that the annotation was kept down to it
+    std::string end;           ///< its fate at the next resolution; empty if it survived all; a remark if none could be tested
 };
 
 /// Simplifies the mesh step by step and transfers the annotations from the full mesh to each step. An annotation survives while
-/// it keeps its type, no outline or point of it vanishes, and, if it is a region, its area stays within the bound. The answer is
-/// exact to one step of the ratio. Costs about 1 / (1 - ratio) times one simplification and one transfer.
+/// it keeps its type, none of its outlines or points vanishes and, for a region, its area error stays within the bound. The
+/// result is exact to one step of the ratio. Costs about 1 / (1 - ratio) times one simplification and one transfer.
 std::vector<Survival> smallest_resolutions(const Mesh& mesh, const AnnotationSet& annotations,
                                            const SurvivalOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Annotations carried to another resolution of the same object (thesis, section 2.4).
+// Transfer of annotations to another resolution of the same object (thesis, section 2.4).
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -29,23 +29,23 @@ struct TransferOptions {
 enum class TransferOutcome { kept, became_line, became_point, lost };
 std::string to_string(TransferOutcome outcome);
 
-/// How faithful the transfer of one annotation is.
+/// Accuracy of the transfer of one annotation.
 struct TransferScore {
     int id = 0;
     std::string tag;
     AnnotationType source_type = AnnotationType::region, target_type = AnnotationType::region;
     TransferOutcome outcome = TransferOutcome::kept;
-    std::string note;                             ///< what else is to be known, in words
+    std::string note;                             ///< further remarks
     double source_area = 0, target_area = 0;      ///< of regions
     double source_length = 0, target_length = 0;  ///< perimeter of regions, length of lines
-    std::optional<double> hausdorff;   ///< between the outlines (lines, points), two-sided; nothing if one of them has none
+    std::optional<double> hausdorff;   ///< two-sided, between the outlines (lines, points); nullopt if one of them is empty
     std::optional<double> overlap;     ///< intersection over union of the areas
-    std::optional<double> wrong_side;  ///< area put on the wrong side of the outline, both ways added
+    std::optional<double> wrong_side;  ///< area on the wrong side of the outline, summed over both sides
     std::size_t vertices = 0;          ///< outline vertices, line vertices or points of the source
     std::size_t by_ray = 0, by_closest_point = 0, without_place = 0, relocated = 0;
-    std::size_t detours = 0;          ///< pairs of neighbours joined by no short path
-    bool crossings_resolved = false;  ///< outlines crossed; the interior was found by winding numbers
-    bool voted = false;               ///< the interior was found face by face instead of from outlines
+    std::size_t detours = 0;          ///< pairs of consecutive vertices not connected by a short path
+    bool crossings_resolved = false;  ///< outlines intersected; the interior was computed by winding numbers
+    bool voted = false;               ///< the interior was computed face by face instead of from outlines
 };
 
 /// Distortions of a region as in Table 2.1 of the thesis: |target / source - 1| of area A, perimeter P, P / A, A / P and
@@ -66,12 +66,12 @@ struct TransferResult {
     TransferTimes times;
 };
 
-/// Transfers every annotation. Points go to the corresponding vertices; poly-lines and outlines become edge paths between
-/// corresponding vertices; regions are what lies to the left of their outlines; measures move with their pins and are
-/// evaluated anew. A region too small for the target becomes a line or a point and says so. Free annotations, with `outlines`
-/// free all, and with `partitions` those regions which part the whole surface (unless `refine` or `cover` ask for edges), are
-/// laid by their curves (lay_curves.h) and keep their type, however small. Throws Error (input) if the meshes differ in unit,
-/// position or orientation, unless options.force.
+/// Transfers all annotations. Points go to the corresponding vertices; poly-lines and outlines become edge paths between
+/// corresponding vertices; regions are the faces to the left of their outlines; measures move with their pins and are
+/// recomputed. A region too small for the target becomes a line or a point, and its note reports it. Three kinds of annotations
+/// are projected by their curves (lay_curves.h) and keep their type, however small: free annotations; with `outlines` = free,
+/// all annotations; with `outlines` = partitions, regions that partition the whole surface (unless `refine` or `cover` require
+/// edges). Throws Error (input) if the meshes differ in unit, position or orientation, unless options.force.
 TransferResult transfer(const Mesh& source, const AnnotationSet& annotations, const SurfaceSearch& target,
                         const TransferOptions& options = {});
 
