@@ -29,7 +29,7 @@ struct MirrorPlane {
     Vector normal{1, 0, 0};
 };
 
-/// Relative vertex density wanted at a point of the surface; positive, 1 is neutral.
+/// Relative vertex density wanted at a point of the surface; positive.
 using CageDensity = std::function<double(const Point&)>;
 
 struct CageResult {

@@ -1,4 +1,4 @@
-// Checks which relationships of a graph hold on a mesh, and by how much the others deviate.
+// Which relationships of a graph hold on a mesh, and by how much the others fail.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -6,7 +6,7 @@
 
 namespace ostraka {
 
-/// Default tolerances, for relationships that state none.
+/// Tolerances for what is not stated with its own.
 struct RelationOptions {
     double distance = 0.01;
     double angle = 5;
@@ -21,13 +21,12 @@ std::string to_string(Verdict verdict);
 
 struct RelationCheck {
     Verdict verdict = Verdict::unknown;
-    RelationParameters parameters;  ///< measured on this mesh, with the tolerances applied
-    std::string text;               ///< why it fails or cannot be determined; empty if it holds
+    RelationParameters parameters;  ///< as measured on this mesh, with the tolerances that were asked for
+    std::string text;               ///< why it fails or cannot be determined
 };
 
-/// Checks each relationship of `graph`, in its order. The verdict is unknown for constraints (see judge_constraints), for types
-/// that only experts can determine, and for types whose input is missing; `text` gives the reason. Throws Error (input) if the
-/// graph does not match the set.
+/// Checks each relationship of `graph`, in its order. Unknown are constraints (judge_constraints tells of them), types that only
+/// experts can tell, and types whose input is missing; `text` says what. Throws Error (input) if the graph does not fit the set.
 std::vector<RelationCheck> check_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& graph,
                                            const RelationOptions& options = {});
 

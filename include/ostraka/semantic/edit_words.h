@@ -18,9 +18,9 @@ struct EditWords {
 };
 
 /// The annotations that a word refers to, in the order of the set: the one with this id; otherwise those with this tag;
-/// otherwise those whose tag ends in the word, or in the word without a plural "s" ("legs": "front left leg", "leg 2") - of
-/// these regions only, if any, otherwise lines. For words separated by commas, the annotations of all. Throws Error (input),
-/// naming the nearest tag, if there are none.
+/// otherwise those whose tag ends in the word, or in the word without a plural "s" ("legs": "front left leg", "leg 2"): of
+/// these only the regions, if any, otherwise only the lines. For words separated by commas, the annotations of each. Throws
+/// Error (input), naming the nearest tag, if there are none.
 std::vector<const Annotation*> parts_named(const AnnotationSet& set, const std::string& words);
 
 /// An edit (format of doc/schema/edit.schema.json) with one step per text. The parts of a text are together stretched along the
