@@ -37,7 +37,7 @@ std::unique_ptr<Constraint> make_on_surface(Making&&);
 std::unique_ptr<Constraint> make_line(Making&&);
 std::unique_ptr<Constraint> make_plane(Making&&);
 std::unique_ptr<Constraint> make_orientation(Making&&);
-// round.cpp
+// radial_constraints.cpp
 std::unique_ptr<Constraint> make_circle(Making&&);
 std::unique_ptr<Constraint> make_sphere(Making&&);
 // strain.cpp
@@ -59,11 +59,11 @@ std::unique_ptr<Constraint> make_equilateral(Making&&);
 std::unique_ptr<Constraint> make_non_uniform_scaling(Making&&);
 std::unique_ptr<Constraint> make_parallelogram(Making&&);
 std::unique_ptr<Constraint> make_rectangle(Making&&);
-// axes.cpp
+// orientations.cpp
 std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&&);
 std::unique_ptr<Constraint> make_co_axiality(Making&&);
 std::unique_ptr<Constraint> make_axis_direction(Making&&);
-// placement.cpp
+// levels_and_symmetry.cpp
 std::unique_ptr<Constraint> make_axis_on_line(Making&&);
 std::unique_ptr<Constraint> make_means_on_level(Making&&);
 std::unique_ptr<Constraint> make_mean_position(Making&&);
