@@ -123,8 +123,8 @@ private:
         return asked == "free" ? Outline::free : asked == "edges" ? Outline::edges : Outline::drawn;
     }
 
-    /// A region with a free outline, combined with `given` if any. Returns nothing if the outline need not be free, or if no free
-    /// one can be made; the reason is then stored for note_edges, and the region has to run along the edges of the mesh.
+    /// A region with a free outline, combined with `given` if any. Returns nothing if the outline need not be free, or if no
+    /// free one can be made; the reason is then stored for note_edges, and the region has to run along the edges of the mesh.
     std::optional<Annotation> region_where_drawn(const JsonValue& select, PlaceFrame frame, const std::string& here,
                                                  Outline outline, const std::string& action, const Annotation* given) {
         if (outline == Outline::edges) return std::nullopt;
