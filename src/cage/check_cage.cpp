@@ -44,7 +44,7 @@ double largest_coordinate_of(const Mesh& mesh) {
     return largest;
 }
 
-/// All lengths times 2^exponent.
+/// The mesh with all coordinates multiplied by 2^exponent.
 Mesh scaled(const Mesh& mesh, int exponent) {
     Mesh result = mesh;
     for (const Vertex v : result.vertices()) {
@@ -88,7 +88,7 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     const std::size_t count = mesh.number_of_vertices();
     std::vector<SurfaceHit> nearest(count);
     std::vector<CGAL::Bounded_side> sides(count, CGAL::ON_BOUNDED_SIDE);
-    static_cast<void>(side(mesh.point(*mesh.vertices().begin())));  // what it prepares at first use
+    static_cast<void>(side(mesh.point(*mesh.vertices().begin())));  // the first query builds the search structure
     parallel_for(count, [&](std::size_t v) {
         sides[v] = side(mesh.point(Vertex(static_cast<Index>(v))));
         nearest[v] = search.closest(mesh.point(Vertex(static_cast<Index>(v))));
@@ -117,7 +117,7 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     return result;
 }
 
-/// Faces of a level get the numbers that they have in the whole cage.
+/// Replaces face indices of a level by those of the whole cage.
 void number_as_whole(const SubMesh& level, CageCheck& check) {
     for (auto& [f, g] : check.intersections) f = level.faces[f], g = level.faces[g];
     for (OutsideVertex& vertex : check.outside)
@@ -127,8 +127,8 @@ void number_as_whole(const SubMesh& level, CageCheck& check) {
 }  // namespace
 
 CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
-    // In a unit, a power of two, in which no coordinate is beyond 1: nothing is rounded by that, and the rays of length one by
-    // which CGAL decides sides do not vanish against the places that they start from.
+    // Scaled by a power of two, which is exact, so that no coordinate exceeds 1: CGAL decides sides by rays of length one,
+    // which would otherwise be too short relative to the coordinates of their origins.
     const double largest = std::max(largest_coordinate_of(cage), largest_coordinate_of(mesh));
     int exponent = 0;
     if (largest > 0 && std::isfinite(largest)) (void)std::frexp(largest, &exponent);

@@ -1,4 +1,4 @@
-// Mirror-symmetric surfaces: one half, and the whole of it.
+// Mirror-symmetric surfaces: cutting off one half, and joining a half with its image.
 #include "shrink.h"
 
 #include <map>
@@ -48,7 +48,7 @@ Mesh upper_half(const Mesh& surface, const MirrorPlane& plane) {
         for (std::size_t k = 2; above && k < polygon.size(); ++k)
             soup.triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
     }
-    // Points that no triangle above the plane uses.
+    // Drops points that no triangle above the plane uses.
     std::vector<Index> kept(soup.points.size(), no_index);
     TriangleSoup half;
     for (auto& triangle : soup.triangles) {

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-/// Triangles, and with a plane their images.
+/// The triangles of the mesh and, with a mirror plane, their images.
 TriangleSoup obstacle_of(const Mesh& mesh, const std::optional<MirrorPlane>& mirror) {
     TriangleSoup soup = to_soup(mesh);
     if (!mirror) return soup;
@@ -38,7 +38,8 @@ Mesh without_loose_vertices(Mesh mesh) {
     return mesh;
 }
 
-/// What a wrap needs of the triangles: a surface, and coordinates fine enough for what is done within the offset.
+/// Checks what the wrap requires: at least one triangle with positive area, and coordinates fine enough for the clearance
+/// within the offset.
 void check_soup(const TriangleSoup& soup, double offset) {
     const auto at = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
     const bool surface = std::any_of(soup.triangles.begin(), soup.triangles.end(),
@@ -48,7 +49,7 @@ void check_soup(const TriangleSoup& soup, double offset) {
     double largest = 0;
     for (const auto& p : soup.points)
         for (const double x : p) largest = std::max(largest, std::abs(x));
-    // The clearance is a tenth of the offset, and shall span a hundred roundings.
+    // The clearance is a tenth of the offset and must be at least a hundred rounding steps.
     const double rounding = largest * std::numeric_limits<double>::epsilon();
     if (!(offset >= 1000 * rounding))
         fail_input("mesh",
@@ -57,7 +58,7 @@ void check_soup(const TriangleSoup& soup, double offset) {
                    "translate it to the origin, or raise the offset");
 }
 
-/// The plane with a normal of about length one. Throws Error (usage) unless it has a direction.
+/// The plane with its normal scaled to a length near one. Throws Error (usage) if it is not finite or the normal is zero.
 MirrorPlane checked(const MirrorPlane& plane) {
     const auto finite = [](const auto& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); };
     if (!finite(plane.point) || !finite(plane.normal))
@@ -83,7 +84,7 @@ CageResult make_cage(const Mesh& object, const CageOptions& options, const CageD
 
     CageResult best;
     double alpha = options.alpha > 0 ? options.alpha : 1.0 / 40;
-    bool finer = options.alpha == 0;  // until the wrap has vertices enough
+    bool finer = options.alpha == 0;  // until the wrap has enough vertices
     while (alpha <= 4) {
         Mesh surface = build_mesh(wrap_soup(soup, alpha * diagonal, options.offset * diagonal));
         finer = finer && surface.number_of_vertices() < options.vertices && alpha > 1e-3;
@@ -100,7 +101,7 @@ CageResult make_cage(const Mesh& object, const CageOptions& options, const CageD
         const std::size_t reached =
             cage::shrink(surface, obstacle, options.vertices, 0.1 * options.offset * diagonal, density, mirror);
         if (mirror) surface = cage::mirrored_whole(surface, *mirror);
-        // The guards leave nothing to be found here but what rounding does on the mirror plane.
+        // Every collapse was checked; what can remain are rounding errors on the mirror plane.
         if (surface.number_of_faces() == 0 || !check_cage(surface, mesh).valid()) continue;
         if (best.cage.number_of_faces() == 0 || reached < best.cage.number_of_vertices()) {
             best.cage = std::move(surface);

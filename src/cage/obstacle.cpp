@@ -26,7 +26,7 @@ Obstacle::Obstacle(const TriangleSoup& soup) : tree_(new Tree) {
         sets.unite_into(a, b);
         sets.unite_into(a, c);
         used[a] = used[b] = used[c] = true;
-        // One without area is a part of its neighbours' edges, or a piece whose point stands for it.
+        // A triangle without area is part of its neighbours' edges, or a separate piece that is represented by its point.
         if (!CGAL::collinear(at(a), at(b), at(c))) tree_->triangles.emplace_back(at(a), at(b), at(c));
     }
     for (Index v = 0; v < sets.size(); ++v)

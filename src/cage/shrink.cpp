@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Sum of squared distances to planes, weighted: x'Ax - 2 b'x + c.
+/// Weighted sum of squared distances to planes: x'Ax - 2 b'x + c.
 struct Quadric {
     Matrix3d a = Matrix3d::Zero();
     Vector3d b = Vector3d::Zero();
@@ -102,7 +102,8 @@ public:
     }
 
 private:
-    /// 0: places near the surface; 1: places that enclose what was enclosed; 2: the same, shapes of triangles do not matter.
+    /// Stages of candidate positions. 0: near the surface; 1: enclosing what was enclosed before; 2: as 1, without checks of
+    /// triangle shape.
     static constexpr int stages = 3;
 
     struct Entry {
@@ -127,7 +128,8 @@ private:
         if (!list.empty()) queue_.push({list.front().first, e.idx(), stamps_[e], stage});
     }
 
-    /// In a half: an edge between two vertices on the plane that is not on it, now or after the collapse, would be doubled.
+    /// True if a collapse in a half would leave or create an edge between two vertices on the plane that is not on the border;
+    /// mirrored, such an edge would be doubled.
     [[nodiscard]] bool pinches(Halfedge h) const {
         if (!mirror_) return false;
         const Vertex a = mesh_.source(h), b = mesh_.target(h);
@@ -137,7 +139,7 @@ private:
         } else if (!on_a && !on_b) {
             return false;
         }
-        // Neighbours on the plane must be joined to the new vertex along it.
+        // Neighbours on the plane must be connected to the new vertex along the border.
         for (const Vertex v : {a, b})
             for (const Halfedge around : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
                 const Vertex other = mesh_.source(around);
@@ -147,7 +149,7 @@ private:
         return false;
     }
 
-    /// Places for the vertex that the edge becomes, the cheapest first.
+    /// Candidate positions of the vertex that the edge collapses to, cheapest first.
     [[nodiscard]] std::vector<std::pair<double, Point>> candidates(Halfedge h, int stage) const {
         const Vertex a = mesh_.source(h), b = mesh_.target(h);
         const Vector3d pa = local(mesh_.point(a)), pb = local(mesh_.point(b));
@@ -177,7 +179,8 @@ private:
         return result;
     }
 
-    /// Places outside of the planes of all faces around the edge, found by successive projections (Dykstra), and farther ones.
+    /// Candidate positions outside the planes of all faces around the edge, by successive projections (Dykstra), and points
+    /// farther out along the normal.
     [[nodiscard]] std::vector<Vector3d> outer_places(Halfedge h, const Vector3d& middle, const Vector3d& best) const {
         std::vector<std::pair<Vector3d, double>> planes;
         Vector3d out = Vector3d::Zero();
@@ -207,7 +210,7 @@ private:
         return list;
     }
 
-    /// The faces around both ends.
+    /// The faces around both ends of the edge.
     [[nodiscard]] std::vector<Face> around(Halfedge h) const {
         std::vector<Face> faces;
         for (const Vertex v : {mesh_.source(h), mesh_.target(h)})
@@ -231,7 +234,7 @@ private:
             int moved = 0;
             for (std::size_t k = 0; k < 3; ++k)
                 if (corner[k] == a || corner[k] == b) corner[k] = b, place[k] = p, ++moved;
-            if (moved == 2) continue;  // vanishes
+            if (moved == 2) continue;  // removed by the collapse
             if (CGAL::collinear(place[0], place[1], place[2])) return false;
             const Vector3d before = eigen(area_vector(mesh_, f));
             const Vector3d u = eigen(place[1] - place[0]), v = eigen(place[2] - place[0]), w = eigen(place[2] - place[1]);
@@ -249,7 +252,7 @@ private:
         for (const auto& t : at) {
             if (obstacle_.meets(t[0], t[1], t[2])) return false;
             if (stage == 2) continue;
-            // Farther in by the clearance it must be free as well.
+            // The triangle moved inwards by the clearance must not meet the object either.
             Vector n = CGAL::cross_product(t[1] - t[0], t[2] - t[0]);
             n = -clearance_ / std::sqrt(n.squared_length()) * n;
             if (obstacle_.meets(t[0] + n, t[1] + n, t[2] + n)) return false;
@@ -267,13 +270,13 @@ private:
         return true;
     }
 
-    /// The old and the new faces bound a piece of space; none of the pieces that must stay inside may lie in it.
+    /// True if no piece of the object lies in the volume between the old and the new faces.
     [[nodiscard]] bool keeps_pieces(const std::vector<Face>& old, const std::vector<std::array<Point, 3>>& fresh) const {
         CGAL::Bbox_3 box;
         for (const Face f : old) box += box_of(places(f));
         for (const auto& t : fresh) box += box_of(t);
         for (const Point& piece : obstacle_.pieces()) {
-            // Of a half the image sees what the piece would see of the other half.
+            // For a half, also tested with the image of the piece, which stands for the piece relative to the other half.
             double change = 0;
             bool near = false;
             for (int side = 0; side < (mirror_ ? 2 : 1); ++side) {
@@ -306,7 +309,7 @@ private:
         density_[kept] = density;
         for (const Face f : mesh_.faces_around_target(mesh_.halfedge(kept)))
             if (f != Mesh::null_face()) grid_.insert(f, box_of(places(f)));
-        // What was judged with the old faces is judged anew.
+        // Edges that were evaluated with the old faces are evaluated again.
         std::set<Edge> near;
         for (const Vertex v : mesh_.vertices_around_target(mesh_.halfedge(kept)))
             for (const Halfedge g : mesh_.halfedges_around_target(mesh_.halfedge(v))) near.insert(mesh_.edge(g));

@@ -1,4 +1,4 @@
-// Edge collapses of a surface around an object that never lets anything of the object out.
+// Edge collapses of a surface around an object that keep the object enclosed.
 #pragma once
 
 #include "ostraka/cage/cage.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka::cage {
 
-/// What the cage must enclose: triangles, and a point of each connected piece.
+/// The object that the cage must enclose: triangles, and one point per connected piece.
 class Obstacle {
 public:
     explicit Obstacle(const TriangleSoup& soup);
@@ -21,17 +21,17 @@ private:
     std::vector<Point> pieces_;
 };
 
-/// Collapses edges until `wanted` vertices are left or no collapse is admissible. `surface` is closed, or with a mirror plane
-/// one half whose border lies on the plane: then `wanted` counts both halves. Faces keep about `clearance` from
-/// the object as long as that can be. Returns the number reached.
+/// Collapses edges until `wanted` vertices are left or no collapse is admissible. `surface` is closed or, with a mirror plane,
+/// one half whose border lies on the plane; `wanted` then counts both halves. Faces keep about `clearance` from the object
+/// where possible. Returns the number of vertices reached.
 std::size_t shrink(Mesh& surface, const Obstacle& obstacle, std::size_t wanted, double clearance, const CageDensity& density,
                    const std::optional<MirrorPlane>& mirror);
 
-/// Vertices of the whole of which this is one half.
+/// Number of vertices of the whole surface of which this is one half.
 std::size_t whole_size(const Mesh& half);
 /// The part of a closed surface on the side that the normal points to, cut along the plane.
 Mesh upper_half(const Mesh& surface, const MirrorPlane& plane);
-/// The half and its image, joined at the border.
+/// The half and its mirror image, joined at the border.
 Mesh mirrored_whole(const Mesh& half, const MirrorPlane& plane);
 Point image(const Point& p, const MirrorPlane& plane);
 

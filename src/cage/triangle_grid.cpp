@@ -18,7 +18,7 @@ bool fold(const Point& p, const Point& q, const Point& r, const Point& s) {
 }  // namespace
 
 bool overlap(const Triangle& s, const std::array<Point, 3>& at_s, const Triangle& t, const std::array<Point, 3>& at_t) {
-    std::array<int, 3> partner{-1, -1, -1};  // corner of t that is corner i of s
+    std::array<int, 3> partner{-1, -1, -1};  // partner[i]: corner of t that equals corner i of s, or -1
     int shared = 0;
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j)
@@ -30,7 +30,7 @@ bool overlap(const Triangle& s, const std::array<Point, 3>& at_s, const Triangle
         const auto other = static_cast<std::size_t>(3 - partner[(free + 1) % 3] - partner[(free + 2) % 3]);
         return fold(at_s[(free + 1) % 3], at_s[(free + 2) % 3], at_s[free], at_t[other]);
     }
-    // What two triangles with one common corner share besides it reaches the opposite side of one of them.
+    // If two triangles with one common corner intersect elsewhere, the intersection reaches the opposite side of one of them.
     const std::size_t i = partner[0] >= 0 ? 0 : partner[1] >= 0 ? 1 : 2;
     const auto j = static_cast<std::size_t>(partner[i]);
     return CGAL::do_intersect(Segment(at_s[(i + 1) % 3], at_s[(i + 2) % 3]), Triangle3(at_t[0], at_t[1], at_t[2])) ||

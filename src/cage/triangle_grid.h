@@ -1,4 +1,4 @@
-// Triangles that come and go, found by where they are.
+// Spatial hash of triangles with insertion and removal.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -10,10 +10,11 @@ namespace ostraka::cage {
 
 using Triangle = std::array<Vertex, 3>;
 
-/// True if two triangles share more than the vertices and edges they are joined at. Exact.
+/// True if two triangles intersect elsewhere than at the vertices and edges that they share. Exact.
 bool overlap(const Triangle& s, const std::array<Point, 3>& at_s, const Triangle& t, const std::array<Point, 3>& at_t);
 
-/// Hash grids of doubling cell sizes: a triangle lies in the grid whose cells are as large as its box, in at most eight cells.
+/// Hash grids of doubling cell sizes: a triangle lies in the grid whose cells are at least as large as its bounding box, in at
+/// most eight cells.
 class TriangleGrid {
 public:
     explicit TriangleGrid(double cell) : cell_(cell) {}
@@ -34,8 +35,8 @@ public:
             if (list.empty()) here.cells.erase(key);
         });
     }
-    /// Calls `visit(face)` for each triangle whose cells meet the box, some more than once, until it returns true; true if it
-    /// did.
+    /// Calls `visit(face)` for each triangle whose cells meet the box, possibly more than once, until it returns true. Returns
+    /// whether it did.
     template <class Visit>
     bool any(const CGAL::Bbox_3& box, Visit&& visit) const {
         for (const auto& [level, here] : levels_) {

@@ -17,7 +17,7 @@ using Eigen::Vector4d;
 
 namespace {
 
-/// Points nearer than this share of the diagonal lie on the cage: the nearest point is not known better.
+/// Points closer than this share of the diagonal lie on the cage: the closest point is not more exact than that.
 constexpr double min_snap = 1e-13;
 
 struct DualState {
@@ -65,7 +65,7 @@ bool project_row(std::span<double> weights, std::span<const Vector3d> corners, c
             const Vector4d next = mu + length * way;
             DualState there = dual_at(weights, corners, place, next);
             const double rest = there.residual.lpNorm<Eigen::Infinity>();
-            // Near the end the value has no digits left to tell by.
+            // Close to the optimum the differences of the dual value drown in rounding; there the residual decides.
             if (there.value <= state.value + 1e-4 * length * slope || rest < 0.5 * error) {
                 better = rest < error || there.value < state.value;
                 mu = next, state = std::move(there), error = rest;
@@ -81,7 +81,8 @@ bool project_row(std::span<double> weights, std::span<const Vector3d> corners, c
 
 namespace {
 
-/// One row: the estimate without what is small, projected; where that cannot keep the promises, with more of it.
+/// Fills one row: drops weights of the estimate up to the threshold and projects the rest; where the projection fails, retries
+/// with lower thresholds.
 void settle(std::span<const double> estimate, const std::vector<Vector3d>& corners, const Vector3d& place, double drop,
             std::vector<std::pair<int, double>>& row) {
     std::vector<double> weights;

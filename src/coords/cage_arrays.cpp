@@ -42,7 +42,7 @@ CageArrays::CageArrays(const Mesh& cage) {
             face.sign[k] = edges[face.edge[k]].from == face.corner[(k + 1) % 3] ? 1 : -1;
         }
         const auto side = [&](std::size_t k) { return face.sign[k] * edges[face.edge[k]].along; };
-        // The two shortest sides give the normal most exactly.
+        // The cross product of the two shortest sides has the smallest rounding error.
         std::size_t longest = 0;
         for (std::size_t k = 1; k < 3; ++k)
             if (edges[face.edge[k]].length > edges[face.edge[longest]].length) longest = k;

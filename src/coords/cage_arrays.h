@@ -1,4 +1,4 @@
-// A cage as the loops over points read it.
+// The cage as flat arrays, for the loops over points.
 #pragma once
 
 #include "lanes.h"
@@ -38,10 +38,10 @@ struct CageFace {
     double double_area;  ///< its length
 };
 
-/// Lengths are multiplied by a power of two that brings the diagonal near one, which no rounding follows from.
+/// The cage as arrays. Lengths are scaled by a power of two, which is exact, so that the diagonal is close to one.
 struct CageArrays {
-    double scale = 1, diagonal = 1;  ///< the diagonal is the scaled one
-    std::vector<Three> points;       ///< as they are, not scaled
+    double scale = 1, diagonal = 1;  ///< the diagonal is scaled
+    std::vector<Three> points;       ///< not scaled
     std::vector<CageEdge> edges;
     std::vector<CageFace> faces;
 
@@ -52,7 +52,7 @@ struct CageArrays {
 
 inline Three three(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-/// Lays eight points at a time into `work.x`, calls `compute(work)`, then `take(work, l, i)` for the point i in lane l of each.
+/// Loads eight points at a time into `work.x`, calls `compute(work)`, then `take(work, l, i)` for the point i in lane l.
 template <class Work, class Compute, class Take>
 void for_each_point(const CageArrays& cage, const std::vector<Point>& points, const Compute& compute, const Take& take) {
     parallel_blocks(points.size(), 64, [&](std::size_t begin, std::size_t end) {

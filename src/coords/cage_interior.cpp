@@ -25,7 +25,7 @@ namespace {
 
 using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel, Mesh>;
 
-/// The mesher asks it at every step, and it asks the watch.
+/// A domain that checks for cancellation (watch) whenever the mesher queries it, which is at every step.
 class WatchedDomain : public Domain {
 public:
     using Domain::Domain;
@@ -62,7 +62,8 @@ std::array<double, 4> weights_in(CellHandle cell, const Vector3d& p) {
     return {1 - w.sum(), w[0], w[1], w[2]};
 }
 
-/// A tetrahedron of side s has 0.118 s^3; there are about six a node, and those of a bound on the circumradius are smaller.
+/// A regular tetrahedron of edge s has the volume 0.118 s^3. There are about six tetrahedra per node, and those with bounded
+/// circumradius are smaller.
 constexpr double cell_volume = 6 * 0.118;
 constexpr int attempts = 5;
 
@@ -117,7 +118,7 @@ CageInterior::CageInterior(const Mesh& cage, std::size_t nodes, const std::strin
         fail_input("cage", "has no volume to speak of, so that it has no inside for " + kind + " coordinates",
                    "use mean-value coordinates");
     const double size = std::cbrt(volume / (static_cast<double>(nodes) * cell_volume));
-    // Of very regular cages the mesher may meet a case that it takes for impossible: another size avoids it.
+    // On very regular cages the mesher may fail an internal check; another cell size avoids that.
     for (int attempt = 0; !fill(cage, size * (1 - 0.07 * attempt), *mesher_); ++attempt)
         if (attempt == attempts)
             throw Error(ErrorKind::failure, "cage", "could not be filled with tetrahedra for " + kind + " coordinates",
@@ -151,7 +152,7 @@ InteriorPlace CageInterior::locate(const Vector3d& p) const {
     if (!triangulation.is_infinite(best) && complex.is_in_complex(best)) {
         weights = weights_in(best, p);
     } else {
-        // Between the tetrahedra and the cage: the best of those that touch the cell.
+        // The point lies between the tetrahedra and the cage: take the best tetrahedron around the cell found.
         double maximum = -std::numeric_limits<double>::infinity();
         const CellHandle start = best;
         std::vector<CellHandle> around;
@@ -165,7 +166,7 @@ InteriorPlace CageInterior::locate(const Vector3d& p) const {
             const double least = *std::min_element(w.begin(), w.end());
             if (least > maximum || (least == maximum && w < weights)) maximum = least, found = cell, weights = w;
         }
-        if (found == CellHandle()) {  // nothing near: the nearest node
+        if (found == CellHandle()) {  // no tetrahedron near: take the nearest node
             const auto v = triangulation.nearest_power_vertex(Triangulation::Weighted_point(point_of(p)).point());
             const auto known = mesher_->number.find(v);
             const Index node = known == mesher_->number.end() ? 0 : known->second;

@@ -1,4 +1,4 @@
-// The inside of a cage as tetrahedra.
+// Tetrahedralisation of the interior of a cage.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -13,18 +13,18 @@
 
 namespace ostraka::coords {
 
-/// A convex combination of nodes.
+/// A point in the interior as a convex combination of nodes.
 struct InteriorPlace {
     std::array<Index, 4> nodes{};
     std::array<double, 4> weights{};
 };
 
-/// Tetrahedra that fill a cage and have its vertices and edges among theirs (CGAL's mesher, without optimisation). Lengths are
-/// shares of the cage's diagonal, places over its middle.
+/// Tetrahedra that fill a cage and include its vertices and edges (CGAL's mesher, without optimisation). The cage is moved to
+/// the origin by its middle and scaled to diagonal 1.
 class CageInterior {
 public:
-    /// About so many nodes. Throws Error (input), naming the kind of coordinates, for a cage that crosses itself or has no
-    /// volume.
+    /// Meshes the cage with approximately `nodes` nodes. Throws Error (input) that names the kind of coordinates for a cage
+    /// with self-intersections or without volume.
     CageInterior(const Mesh& cage, std::size_t nodes, const std::string& kind);
     ~CageInterior();
     CageInterior(const CageInterior&) = delete;
@@ -32,15 +32,16 @@ public:
 
     [[nodiscard]] const std::vector<Eigen::Vector3d>& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<std::array<Index, 4>>& cells() const { return cells_; }
-    /// Of each node: where it lies on the cage; no face for nodes within.
+    /// For each node its position on the cage; no face for nodes in the interior.
     [[nodiscard]] const std::vector<SurfaceHit>& on_cage() const { return on_cage_; }
     [[nodiscard]] bool is_within(Index node) const { return on_cage_[node].face == no_index; }
-    /// The place of a point inside the cage (in these lengths); beside the tetrahedra that of the nearest place in one of them.
+    /// The tetrahedron and weights of a point inside the cage, in unit coordinates. For a point outside all tetrahedra, those
+    /// of the closest position in one of them.
     [[nodiscard]] InteriorPlace locate(const Eigen::Vector3d& p) const;
 
 private:
     struct Mesher;
-    /// False where the mesher fails.
+    /// Returns false if the mesher fails.
     static bool fill(const Mesh& cage, double size, Mesher& mesher);
     std::unique_ptr<Mesher> mesher_;
     std::vector<Eigen::Vector3d> nodes_;
@@ -48,7 +49,7 @@ private:
     std::vector<SurfaceHit> on_cage_;
 };
 
-/// The cage moved to its middle and scaled to diagonal 1.
+/// The cage, moved so that its middle is the origin, and scaled to diagonal 1.
 struct UnitCage {
     explicit UnitCage(const Mesh& cage);
     [[nodiscard]] Eigen::Vector3d unit(const Point& p) const;

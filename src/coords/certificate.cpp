@@ -15,7 +15,7 @@ namespace ostraka {
 
 namespace {
 
-/// Points on the cage with the weights of linear interpolation.
+/// Sample points on the cage with the weights of their linear interpolation.
 struct OnCage {
     std::vector<Point> points;
     std::vector<std::array<Vertex, 3>> corners;
@@ -29,7 +29,7 @@ struct OnCage {
     }
 };
 
-/// One number for all vertices at one place.
+/// One index per vertex, equal for coincident vertices.
 std::vector<Index> places_of(const Mesh& cage) {
     std::map<std::array<double, 3>, Index> known;
     std::vector<Index> place;
@@ -57,7 +57,7 @@ double deviation(const std::string& kind, const Mesh& cage, const OnCage& on, co
 
 void certify_kind(const Mesh& cage, const CoordinateOptions& options, CoordinateCertificate& result) {
     OnCage vertices, edges, faces;
-    // Isolated vertices have no say.
+    // Isolated vertices have no weight.
     for (const Vertex v : cage.vertices())
         if (!cage.is_isolated(v)) vertices.add(cage, {v, v, v}, {1, 0, 0});
     for (const Edge e : cage.edges())
@@ -74,7 +74,7 @@ void certify_kind(const Mesh& cage, const CoordinateOptions& options, Coordinate
     result.on_faces = deviation(result.kind, cage, faces, options);
 }
 
-/// What one point adds to the certificate.
+/// Contribution of one point to the certificate.
 struct OfPoint {
     double partition = 0, linear = 0, minimum = 0, maximum = 0, negative_sum = 0;
     Index negative = 0;
@@ -99,7 +99,7 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
 
     const std::vector<Point> corner = points_of(cage);
     const std::vector<Vector> normals = coordinates.has_normals() ? stretched_normals(cage, corner) : std::vector<Vector>();
-    // Divided by the largest extent first, so that squares stay within the range of numbers.
+    // Divided by the largest extent first, so that the squares do not overflow.
     double extent = 0;
     for (const Point& p : corner)
         for (int k = 0; k < 3; ++k) extent = std::max(extent, std::fabs(p[k] - corner.front()[k]));

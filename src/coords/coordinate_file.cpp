@@ -14,7 +14,8 @@ namespace ostraka {
 namespace {
 
 constexpr const char* schema = "coordinates";
-constexpr double max_off = 1e-6;  ///< of a sum of weights, and of a point at rest in diagonals of the cage
+/// Largest deviation of a sum of weights from 1, and of a point at rest (relative to the cage's diagonal).
+constexpr double max_off = 1e-6;
 constexpr const char* anew = "compute them anew with 'ostraka cage weights'";
 
 void check_name(const Path& weights) {
@@ -39,7 +40,7 @@ JsonValue write_array(const Path& file, const WeightMatrix& matrix, JsonAllocato
     return array_json(file, rows, columns, checksum, allocator);
 }
 
-/// The three arrays of sparse weights, as members of the header.
+/// Writes the three arrays of sparse weights and adds them to the header.
 void write_sparse(const Path& weights, const SparseWeights& matrix, Json& document, JsonAllocator& allocator) {
     const auto count = static_cast<std::size_t>(matrix.nonZeros()), rows = static_cast<std::size_t>(matrix.rows());
     const std::vector<std::int64_t> columns(matrix.innerIndexPtr(), matrix.innerIndexPtr() + count),
@@ -78,7 +79,7 @@ void check_bound(const Path& header, const std::string& what, const CoordinateHe
                    std::string("give that ") + what + ", or " + anew);
 }
 
-/// The bytes of an array, which must be those that the header was written for.
+/// The bytes of an array, checked against the checksum in the header.
 std::string read_bound(const Path& folder, const CoordinateHeader::Array& array) {
     const Path file = folder / array.file;
     std::string bytes = read_file(file);
@@ -148,7 +149,7 @@ SparseWeights read_sparse(const Path& folder, const CoordinateHeader& header, st
     return matrix;
 }
 
-/// The weights of a point sum to one; a computed row is far closer to it than a part in a million of its weights.
+/// Checks that the weights of each point sum to one; computed rows deviate by far less than the tolerance of 1e-6.
 void check_sums(const Path& file, const WeightMatrix& W) {
     for (Eigen::Index i = 0; i < W.rows(); ++i) {
         double sum = 0, size = 0;
@@ -161,7 +162,7 @@ void check_sums(const Path& file, const WeightMatrix& W) {
     }
 }
 
-/// With normals the weights, too, bring each point where it is at rest: what holds an array of normal weights to account.
+/// Checks that weights and normal weights reproduce each point at rest; this is the only check on the values of normal weights.
 void check_rest(const Path& file, const Coordinates& coordinates, const Mesh& mesh, const Mesh& cage) {
     const std::vector<Point> rest = deformed(coordinates, cage, points_of(cage));
     const double maximum = max_off * box_diagonal(cage);
@@ -172,7 +173,7 @@ void check_rest(const Path& file, const Coordinates& coordinates, const Mesh& me
     }
 }
 
-/// Which kinds have normal weights is no matter of the header.
+/// Checks that the header has normal weights exactly if its kind has a normal term.
 void check_kind(const Path& file, const CoordinateHeader& header) {
     const std::vector<std::string> known = coordinate_kinds();
     if (std::find(known.begin(), known.end(), header.kind) == known.end())
@@ -232,7 +233,7 @@ CoordinateHeader read_coordinate_header(const Path& weights) {
     header.mesh = bound_of(document["mesh"]);
     header.cage = bound_of(document["cage"]);
     check_kind(file, header);
-    // Names lead nowhere else: a header speaks of the files beside it.
+    // Array names must be the standard ones: a header may only refer to the files beside it.
     const auto check = [&](const CoordinateHeader::Array& array, const Path& expected) {
         if (array.file != expected.filename().string())
             fail_input(file.string(), "speaks of the array '" + array.file + "' instead of " + expected.filename().string(),

@@ -75,7 +75,7 @@ Coordinates compute_coordinates(const std::string& name, const Mesh& cage, const
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i]))
             fail_input("point " + std::to_string(i), "is not finite", "give a mesh with finite coordinates");
-    // A number for each point and each vertex of the cage, and for each face of it where the kind follows faces.
+    // One number per point and cage vertex, and per point and cage face for kinds with a normal term.
     const double columns =
         static_cast<double>(cage.number_of_vertices()) + (kind.with_normals ? static_cast<double>(cage.number_of_faces()) : 0.0);
     require_memory(8 * columns * static_cast<double>(points.size()),
@@ -111,7 +111,7 @@ std::vector<Vector> stretched_normals(const Mesh& rest_cage, const std::vector<P
         const auto [a, b, c] = corners(rest_cage, f);
         const Vector u = rest_cage.point(b) - rest_cage.point(a), v = rest_cage.point(c) - rest_cage.point(a);
         const Vector U = cage_points[b] - cage_points[a], V = cage_points[c] - cage_points[a];
-        // The ratio does not depend on the unit, and squares of squares must not leave the range of numbers.
+        // The ratio does not depend on the unit of length; normalised lengths keep the fourth powers in range.
         const double unit = std::sqrt(std::max(u.squared_length(), v.squared_length()));
         const Vector u1 = u / unit, v1 = v / unit, U1 = U / unit, V1 = V / unit, n = CGAL::cross_product(U1, V1);
         const double area = std::sqrt(CGAL::cross_product(u1, v1).squared_length()), normal = std::sqrt(n.squared_length());
@@ -119,7 +119,7 @@ std::vector<Vector> stretched_normals(const Mesh& rest_cage, const std::vector<P
             normals.emplace_back(0, 0, 0);
             continue;
         }
-        // s = sqrt(|u'|^2 |v|^2 - 2 (u' . v')(u . v) + |v'|^2 |u|^2) / (sqrt(8) area), twice the area being |u x v|.
+        // s = sqrt(|u'|^2 |v|^2 - 2 (u' . v')(u . v) + |v'|^2 |u|^2) / (sqrt(8) area), where |u x v| is twice the area.
         const double s = std::sqrt(std::max(0.0, U1 * U1 * (v1 * v1) - 2 * (U1 * V1) * (u1 * v1) + V1 * V1 * (u1 * u1))) /
                          (std::sqrt(2.0) * area);
         normals.push_back(s / normal * n);
@@ -140,7 +140,7 @@ std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cag
         fail_usage("normal weights that do not fit the faces of the cage");
     using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
     Columns V(static_cast<Eigen::Index>(columns), 3), N(0, 3);
-    // Around the first vertex, so that far from the origin nothing is lost.
+    // Relative to the first vertex, so that no digits are lost far from the origin.
     const Point origin = columns > 0 ? cage_points.front() : Point(0, 0, 0);
     for (std::size_t i = 0; i < columns; ++i)
         for (int k = 0; k < 3; ++k) V(static_cast<Eigen::Index>(i), k) = cage_points[i][k] - origin[k];

@@ -19,13 +19,13 @@ namespace ostraka::coords {
 
 namespace {
 
-/// A face whose height is below this share of its longest edge is left out: what it adds is smaller than the rounding of
-/// dividing by that height.
+/// A face whose height is below this share of its longest edge is skipped: its contribution is smaller than the rounding error
+/// of the division by that height.
 constexpr double flat = 1e-10;
 
-/// What a face's loop needs beside CageFace.
+/// Data of a face beside CageFace.
 struct FacePlane {
-    Three unit;                ///< normal
+    Three unit;                ///< unit normal
     std::array<Three, 3> out;  ///< outward normals of the edges in the plane
     Three across;              ///< out_i . out_j of the edges that meet at corner k
     Three over_height;         ///< 1 / height over edge k
@@ -37,7 +37,7 @@ struct Work {
         Lanes p[3], r, phi;
     };
     struct OfEdge {
-        Lanes q[3], square, start, end, log;  ///< foot on the line, |q|^2, places of the ends along the line, L
+        Lanes q[3], square, start, end, log;  ///< foot point on the line, |q|^2, parameters of the ends along the line, L
     };
     struct OfFace {
         Lanes psi;
@@ -49,8 +49,8 @@ struct Work {
     Lanes near;  ///< 1 where the point lies on the cage
 };
 
-/// The part of an edge in the solid angle of a face at the given height: the difference of atan(delta s / (|q|^2 + height r))
-/// over its ends, from `start` to `end` along its line, at the distances r.
+/// Contribution of an edge to the solid angle of a face at the given height: the difference of atan(delta s / (|q|^2 + height
+/// r)) between its ends, which lie at `start` and `end` along its line, at the distances r.
 OSTRAKA_INLINE double solid_angle_of_edge(double delta, double square, double height, double size, double start, double end,
                                           double r_start, double r_end) {
     const double A = square + height * r_start, B = square + height * r_end;
@@ -99,7 +99,7 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
             const double square = qx * qx + qy * qy + qz * qz;
             const double a = first ? s : s - size, b = first ? s + size : s;
             const double ra = from.r[l], rb = to.r[l], inner = a * b + square, product = ra * rb;
-            // (ra + rb)^2 - size^2 = 2 (ra rb + inner); near the edge its digits come from the distance.
+            // (ra + rb)^2 - size^2 = 2 (ra rb + inner); close to the edge the sum cancels and is computed from the distance.
             const double opposite = product - inner, sum = ra + rb + size;
             const double difference = inner < 0 ? size * size * square / (opposite > 0 ? opposite : 1) : product + inner;
             near[l] = square <= snap * snap && a <= 0 && b >= 0 ? 1 : near[l];
@@ -120,18 +120,18 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
         const Work::OfEdge &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
         const double size0 = cage.edges[face.edge[0]].length, size1 = cage.edges[face.edge[1]].length,
                      size2 = cage.edges[face.edge[2]].length;
-        // An edge's ends along the face's own direction, from corner k + 1 to corner k + 2.
+        // The ends of an edge in the face's own direction, from corner k + 1 to corner k + 2.
         const double s0 = face.sign[0], s1 = face.sign[1], s2 = face.sign[2];
         const Lanes &start0 = s0 > 0 ? e0.start : e0.end, &end0 = s0 > 0 ? e0.end : e0.start;
         const Lanes &start1 = s1 > 0 ? e1.start : e1.end, &end1 = s1 > 0 ? e1.end : e1.start;
         const Lanes &start2 = s2 > 0 ? e2.start : e2.end, &end2 = s2 > 0 ? e2.end : e2.start;
         const Three n = plane.unit, out0 = plane.out[0], out1 = plane.out[1], out2 = plane.out[2];
         const double a0 = plane.across[0], a1 = plane.across[1], a2 = plane.across[2];
-        const double close = plane.over_height[0] > 0 ? snap : -1;  // not for a face that is left out
+        const double close = plane.over_height[0] > 0 ? snap : -1;  // disabled for a face that is skipped
         const double f0 = plane.over_height[0], f1 = plane.over_height[1], f2 = plane.over_height[2];
 #pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
-            // The height as the nearest edge sees it.
+            // The height, computed from the foot point on the nearest edge.
             const double q0 = e0.square[l], q1 = e1.square[l], q2 = e2.square[l];
             const double h0 = n[0] * e0.q[0][l] + n[1] * e0.q[1][l] + n[2] * e0.q[2][l];
             const double h1 = n[0] * e1.q[0][l] + n[1] * e1.q[1][l] + n[2] * e1.q[2][l];
@@ -175,7 +175,7 @@ std::vector<FacePlane> planes_of(const CageArrays& cage) {
     return planes;
 }
 
-/// Six times the volume, around the first vertex.
+/// Six times the signed volume, relative to the first vertex.
 double orientation(const CageArrays& cage) {
     double sum = 0;
     for (const CageFace& face : cage.faces) sum += dot(cage.from(cage.points[0], face.corner[0]), face.normal);
@@ -194,7 +194,7 @@ Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const Coor
     const auto rows = static_cast<Eigen::Index>(points.size());
     result.vertex.resize(rows, static_cast<Eigen::Index>(cage.points.size()));
     result.normal.resize(rows, static_cast<Eigen::Index>(cage.faces.size()));
-    std::vector<double> winding_numbers(points.size());  // how often the cage goes around the point; NaN on it
+    std::vector<double> winding_numbers(points.size());  // of the cage around each point; NaN on the cage
     const auto compute = [&](Work& work) { integrate(cage, planes, snap, work); };
     for_each_point<Work>(cage, points, compute, [&](const Work& work, std::size_t l, std::size_t point) {
         const auto row = static_cast<Eigen::Index>(point);

@@ -25,7 +25,7 @@ CellGradients gradients_of(const CageInterior& inside) {
         const double volume = std::fabs(m.determinant()) / 6;
         result.volume.push_back(volume);
         std::array<Vector3d, 4> gradient{};
-        // Slivers without volume carry no energy.
+        // Slivers without volume contribute no energy.
         if (volume > 1e-16) {
             const Eigen::Matrix3d inverse = m.inverse();
             for (int k = 0; k < 3; ++k) gradient[static_cast<std::size_t>(k) + 1] = inverse.row(k).transpose();
@@ -83,7 +83,7 @@ WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage) 
     if (!cholesky.factor(matrix))
         throw Error(ErrorKind::failure, "cage", "the harmonic equation cannot be solved on the tetrahedra inside it",
                     "ask for fewer or more of them, or use mean-value coordinates");
-    // Some columns at a time, so that the right-hand sides stay small.
+    // Blocks of columns, so that the right-hand sides stay small.
     constexpr Eigen::Index block = 32;
     Progress progress("harmonic", static_cast<std::size_t>(columns));
     for (Eigen::Index first = 0; first < columns; first += block) {
@@ -100,7 +100,7 @@ WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage) 
 
 namespace {
 
-/// Adds the weights at a place to a row, linear in its tetrahedron.
+/// Adds the weights at a position, linear in its tetrahedron, to a row.
 void interpolate(const CageInterior& inside, const WeightMatrix& weights, const Vector3d& place, std::span<double> row) {
     const InteriorPlace at = inside.locate(place);
     for (std::size_t k = 0; k < 4; ++k) {

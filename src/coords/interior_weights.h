@@ -1,4 +1,4 @@
-// Weights at the nodes of tetrahedra inside a cage.
+// Weights at the nodes of the tetrahedra inside a cage.
 #pragma once
 
 #include "bounded_rows.h"
@@ -6,22 +6,22 @@
 
 namespace ostraka::coords {
 
-/// Of each tetrahedron its volume and the gradients of the hat functions of its corners.
+/// For each tetrahedron its volume and the gradients of the hat functions of its corners.
 struct CellGradients {
     std::vector<double> volume;
     std::vector<std::array<Eigen::Vector3d, 4>> of_corner;
 };
 CellGradients gradients_of(const CageInterior& inside);
 
-/// A row a node: linear on the cage, zero within it.
+/// Weights at the nodes, one row per node: linear on the cage, zero in the interior.
 WeightMatrix weights_on_cage(const CageInterior& inside, const UnitCage& cage);
 
-/// A row a node: on the cage linear, within it harmonic by linear finite elements. One sparse factorisation, one solve a cage
-/// vertex. Rows sum to one and give their node; some weights may be a little below zero.
+/// Harmonic weights, one row per node: linear on the cage, in the interior harmonic by linear finite elements. One sparse
+/// factorisation, one solve per cage vertex. Rows sum to one and reproduce their node; some weights may be slightly negative.
 WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage);
 
-/// Coordinates that are linear in each tetrahedron inside the cage: `weights_of` gives a row a node. It is asked only where a
-/// point does not lie on the cage.
+/// Coordinates that are linear in each tetrahedron inside the cage; `weights_of` returns one row per node. It is called only if
+/// there is a point that does not lie on the cage.
 Coordinates interior_coordinates(const std::string& kind, const Mesh& mesh, const std::vector<Point>& points,
                                  const CoordinateOptions& options,
                                  const std::function<WeightMatrix(const CageInterior&, const UnitCage&)>& weights_of);

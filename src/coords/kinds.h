@@ -1,4 +1,4 @@
-// The kinds of coordinates that are built in.
+// The built-in kinds of coordinates.
 #pragma once
 
 #include "ostraka/coords/coordinates.h"

@@ -1,7 +1,7 @@
-// Loops over eight points at a time that the compiler turns into vector instructions, for each width the processor may have.
+// Loops over eight points at a time, which the compiler vectorises for each vector width the processor may have.
 //
-// All of it is plain IEEE arithmetic without contraction (see the flags of these files), so that every width, and every machine,
-// gives the same bits.
+// They use plain IEEE arithmetic without contraction (see the flags of these files), so that every vector width and every
+// machine gives the same bits.
 #pragma once
 
 #include <bit>
@@ -22,8 +22,8 @@ using Lanes = double[lanes];
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// atan2(y, x) for y >= 0: in [0, pi]; 0 where both are 0. The quotient is reduced to |z| <= tan(pi / 8); there the polynomial
-/// (Chebyshev interpolation of degree 10 in z^2) is off by less than 6e-18.
+/// atan2(y, x) for y >= 0, in [0, pi]; 0 if both are 0. The quotient is reduced to |z| <= tan(pi / 8), where the polynomial
+/// (Chebyshev interpolation of degree 10 in z^2) has an error below 6e-18.
 OSTRAKA_INLINE double angle(double y, double x) {
     const double a = std::fabs(x);
     const bool low = y <= 0.41421356237309503 * a, high = y >= 2.4142135623730951 * a;
@@ -46,10 +46,10 @@ OSTRAKA_INLINE double angle(double y, double x) {
     return x < 0 ? (pi - value) + 1.2246467991473532e-16 : value;
 }
 
-/// Natural logarithm of x, 1 <= x < 2^1000 (for others the result has no meaning).
+/// Natural logarithm of x for 1 <= x < 2^1000; undefined for other x.
 OSTRAKA_INLINE double logarithm(double x) {
     const auto bits = std::bit_cast<std::uint64_t>(x) + (0x3FF0000000000000U - 0x3FE6A09E667F3BCDU);
-    // The exponent as a double without a conversion: in the lowest bits of a number near 2^52.
+    // The exponent as a double without a conversion: placed in the lowest bits of a number near 2^52.
     const double exponent = std::bit_cast<double>((bits >> 52) | 0x4330000000000000U) - (4503599627370496.0 + 1023);
     const double m = std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFU) + 0x3FE6A09E667F3BCDU);
     const double s = (m - 1) / (m + 1), w = s * s;

@@ -1,5 +1,5 @@
-// Local barycentric coordinates (Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu 2014): of all weights that are not negative,
-// sum to one, give their point and are linear on the cage, those of minimum total variation.
+// Local barycentric coordinates (Zhang, Deng, Liu, Patanè, Bouaziz, Hormann and Liu 2014): the weights of minimum total
+// variation among all weights that are non-negative, sum to one, reproduce their point and are linear on the cage.
 #include "interior_weights.h"
 #include "kinds.h"
 
@@ -21,25 +21,25 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Corners that may have a weight at a node: those of largest harmonic weight.
+/// Largest number of cage vertices that may have a weight at a node: those of largest harmonic weight.
 constexpr std::size_t max_candidates = 32;
 
-/// One cage vertex: where its weights may be other than zero, and what the iteration knows of them.
+/// State of the iteration for one cage vertex: the nodes where its weight may be non-zero, and their values.
 struct Column {
-    std::vector<Index> nodes;               ///< within the cage, ascending
-    std::vector<double> w, z, y, last;      ///< the weight, its copy that keeps the promises, their scaled dual
-    std::vector<Index> cells;               ///< that touch one of the nodes
-    std::vector<std::array<int, 4>> place;  ///< of their corners in `nodes`; -1: fixed
+    std::vector<Index> nodes;           ///< nodes in the interior, ascending
+    std::vector<double> w, z, y, last;  ///< the weight, its copy that satisfies the constraints, the scaled dual; the last copy
+    std::vector<Index> cells;           ///< tetrahedra that touch one of the nodes
+    std::vector<std::array<int, 4>> place;  ///< index of their corners in `nodes`; -1: fixed
     std::vector<Vector3d> fixed;            ///< gradient of the fixed corners
-    std::vector<Vector3d> x, u;             ///< the gradient's copy, and its dual
-    std::vector<double> variation;          ///< factor of the gradient's length
+    std::vector<Vector3d> x, u;             ///< copy of the gradient, and its scaled dual
+    std::vector<double> variation;          ///< factor of the gradient's length in the total variation
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor;
-    std::vector<double> coupling;  ///< of the nodes with fixed values
-    double change = 0, gap = 0;    ///< sums of squares: of the copies' last step, and of what they are off
-    double total = 0;              ///< weighted variation
+    std::vector<double> coupling;  ///< coupling of the nodes with fixed values
+    double change = 0, gap = 0;    ///< sums of squares: last change of the copies, and difference between weights and copies
+    double total = 0;              ///< weighted total variation
 };
 
-/// Lengths of shortest ways along the edges of the tetrahedra from a node; over the largest.
+/// Lengths of the shortest paths from a node along the edges of the tetrahedra, divided by the largest.
 std::vector<double> distances_from(const std::vector<std::vector<std::pair<Index, double>>>& edges, Index start) {
     std::vector<double> distance(edges.size(), std::numeric_limits<double>::infinity());
     std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
@@ -73,7 +73,7 @@ std::vector<std::vector<std::pair<Index, double>>> edges_of(const CageInterior& 
     return edges;
 }
 
-/// Rows of an interior node: which columns it has a weight in, and where.
+/// The candidates of an interior node: the columns in which it has a weight, and its index in them.
 struct NodeRow {
     std::vector<Index> column;
     std::vector<std::size_t> at;
@@ -87,7 +87,8 @@ public:
         set_up();
     }
 
-    /// Alternating directions (Boyd et al. 2011), until the total variation falls by less than a share of itself in ten steps.
+    /// Alternating direction method of multipliers (Boyd et al. 2011); stops when the total variation changes by at most the
+    /// share `tolerance` in ten steps.
     void iterate(int most, double tolerance) {
         constexpr int round = 10;
         Progress progress("local coordinates", static_cast<std::size_t>(most));
@@ -103,12 +104,12 @@ public:
             for (const Column& column : columns_) gap += column.gap, change += column.change, variation += column.total;
             if (std::abs(before - variation) <= tolerance * variation) break;
             before = variation;
-            // Both fall at one rate where the penalty is right (Boyd et al., 3.4.1).
+            // With a suitable penalty both residuals fall at the same rate (Boyd et al., 3.4.1).
             if (step > most / 2) continue;
             if (gap > 100 * change) scale_penalty(2);
             else if (change > 100 * gap) scale_penalty(0.5);
         }
-        // The weights vary smoothly, their copies keep the promises.
+        // The result: the smooth weights, projected to the constraints.
         parallel_for(
             inner_.size(), [&](std::size_t k) { settle_node(k); }, 64);
         for (std::size_t c = 0; c < columns_.size(); ++c)
@@ -120,7 +121,7 @@ public:
 private:
     static double square(double x) { return x * x; }
 
-    /// Of each node the corners of largest harmonic weight, from which its place can be had.
+    /// Selects for each node the cage vertices of largest harmonic weight that can reproduce its position.
     void choose_candidates() {
         columns_ = std::vector<Column>(cage_.corners.size());
         for (Index v = 0; v < inside_.nodes().size(); ++v)
@@ -173,7 +174,7 @@ private:
             for (const auto& [other, length] : list) edge += length, ++edge_count;
         edge /= static_cast<double>(std::max<std::size_t>(edge_count, 1));
         stiffness_ = 1 / square(3 * edge);
-        // A weight falls from one to zero over about an edge of the cage.
+        // A weight falls from one to zero over about the length of a cage edge.
         double reach = 0;
         for (const Edge e : cage_.mesh.edges())
             reach += (cage_.corners[cage_.mesh.vertex(e, 0)] - cage_.corners[cage_.mesh.vertex(e, 1)]).norm();
@@ -183,7 +184,7 @@ private:
             columns_.size(), [&](std::size_t i) { set_up_column(i, cells_of, edges); }, 1);
     }
 
-    /// The node of the tetrahedra that lies at a corner of the cage.
+    /// The node at a corner of the cage.
     [[nodiscard]] Index node_at(std::size_t corner) const {
         Index best = 0;
         double minimum = std::numeric_limits<double>::infinity();
@@ -305,7 +306,7 @@ private:
         for (std::size_t j = 0; j < kept.size(); ++j) columns_[row.column[j]].z[row.at[j]] = kept[j];
     }
 
-    /// The nearest weights of a node that keep the promises; those it has where none are found.
+    /// The weights of a node projected to the constraints; its current copies if the projection fails.
     [[nodiscard]] std::vector<double> nearest_kept(std::size_t k, std::vector<double> weights) const {
         const NodeRow& row = rows_[k];
         std::vector<Vector3d> corners(row.column.size());
@@ -315,7 +316,7 @@ private:
         return weights;
     }
 
-    /// The penalty times a factor: duals are scaled by it, and so is what a step shrinks gradients by.
+    /// Multiplies the penalty by a factor, with the scaled duals and the shrinkage of the gradients.
     void scale_penalty(double factor) {
         step_ /= factor;
         for (Column& column : columns_) {
@@ -332,8 +333,8 @@ private:
     std::vector<Index> inner_;
     std::vector<NodeRow> rows_;
     std::vector<double> mass_;
-    double stiffness_ = 1;  ///< of the copies against that of the gradients: one over a squared length
-    double step_ = 1;       ///< one over the penalty
+    double stiffness_ = 1;  ///< penalty of the copies relative to that of the gradients: an inverse squared length
+    double step_ = 1;       ///< inverse of the penalty
 };
 
 }  // namespace

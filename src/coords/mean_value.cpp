@@ -1,9 +1,10 @@
 // Mean value coordinates of a triangle mesh (Ju, Schaefer, Warren 2005), in vector form.
 //
-// Seen from x, a face is a spherical triangle. Its mean vector m, the integral of the direction over it, is half the sum of
-// angle times unit normal over the planes through x and its edges; written as W_1 p_1 + W_2 p_2 + W_3 p_3 with the vectors p from
-// x to the corners it gives the weights W. The mean vectors of a closed mesh add up to nothing, hence linear precision. An edge's
-// part of m serves both its faces. W_i = (m . c_i) / det with c_i = p_(i+1) x p_(i+2) and det = p_1 . (p_2 x p_3).
+// Seen from x, a face is a spherical triangle. Its mean vector m is the integral of the direction over the triangle, and equals
+// half the sum of angle times unit normal over the planes through x and its edges. Written as W_1 p_1 + W_2 p_2 + W_3 p_3 with
+// the vectors p from x to the corners, it gives the weights W. The mean vectors of a closed mesh sum to zero, hence linear
+// precision. The contribution of an edge to m is used for both of its faces. W_i = (m . c_i) / det with c_i = p_(i+1) x p_(i+2)
+// and det = p_1 . (p_2 x p_3).
 #include "cage_arrays.h"
 #include "kinds.h"
 #include "lanes.h"
@@ -14,11 +15,11 @@ namespace ostraka::coords {
 
 namespace {
 
-/// Where the mean vector of a face is shorter than this share of half its perimeter (seen from x: the face is a sliver), the
-/// weights come from `sliver_weights`.
+/// A face is a sliver as seen from x, and gets its weights from `sliver_weights`, if its mean vector is shorter than this share
+/// of half its perimeter.
 constexpr double sliver = 1.0 / 1024;
 
-/// What the loops write for eight points; one for each thread's block.
+/// Intermediate values for eight points; one object per block of points.
 struct Work {
     explicit Work(const CageArrays& cage)
         : vertex(cage.points.size()), edge(cage.edges.size()), sliver_lanes(cage.faces.size()) {}
@@ -26,11 +27,11 @@ struct Work {
         Lanes p[3], weight;
     };
     struct OfEdge {
-        Lanes c[3], theta, over_sine;  ///< p_from x p_to, the angle between them, the angle over the length of c
+        Lanes c[3], theta, over_sine;  ///< p_from x p_to, the angle between the two, the angle divided by the length of c
     };
     std::vector<OfVertex> vertex;
     std::vector<OfEdge> edge;
-    std::vector<std::uint8_t> sliver_lanes;  ///< per face: bit l is set where lane l sees a sliver
+    std::vector<std::uint8_t> sliver_lanes;  ///< per face: bit l is set if the face is a sliver in lane l
     Lanes x[3];
     Lanes near;  ///< 1 where the point may lie on the cage
 };
@@ -64,7 +65,8 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
         for (int l = 0; l < lanes; ++l) {
             const double px = from.p[0][l], py = from.p[1][l], pz = from.p[2][l];
             const double qx = to.p[0][l], qy = to.p[1][l], qz = to.p[2][l];
-            // The nearer end and the edge itself: p_from x p_to without the error of the longer way.
+            // Computed from the nearer end and the edge vector, which avoids the rounding error of p_from x p_to for a distant
+            // end.
             const bool first = px * px + py * py + pz * pz <= qx * qx + qy * qy + qz * qz;
             const double nx = first ? px : qx, ny = first ? py : qy, nz = first ? pz : qz;
             const double cx = ny * az - nz * ay, cy = nz * ax - nx * az, cz = nx * ay - ny * ax;
@@ -110,10 +112,10 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
     for (int l = 0; l < lanes; ++l) work.near[l] = near[l];
 }
 
-/// The weights of a face whose plane passes close by x, outside the face: m is nearly nothing there and its digits are lost.
+/// The weights of a face whose plane passes close to x while x is off the face: m is almost zero there and loses its digits.
 /// W_i = |c_i| N_i / (2 det), N_i = theta_i - theta_(i+1) cos A_(i-1) - theta_(i-1) cos A_(i+1) with the angles A of the
-/// spherical triangle; the small difference of its sides comes from sin((b + c - a) / 2) sin((a + b + c) / 2) =
-/// sin b sin c cos^2(A / 2), and 1 - |cos A| from sin A = |p| det / (|c| |c|). N vanishes as det^2, so that W does as det.
+/// spherical triangle. The small difference of its sides comes from sin((b + c - a) / 2) sin((a + b + c) / 2) = sin b sin c
+/// cos^2(A / 2), and 1 - |cos A| from sin A = |p| det / (|c| |c|). N vanishes as det^2, and therefore W as det.
 Three sliver_weights(const Three (&p)[3], const Three (&c)[3], const Three& theta, double det) {
     Three cl, pl;
     for (std::size_t k = 0; k < 3; ++k) cl[k] = length(c[k]), pl[k] = length(p[k]);
@@ -161,7 +163,7 @@ void add_slivers(const CageArrays& cage, Work& work) {
     }
 }
 
-/// The weights of a point that lies on the cage: linear on the vertex, edge or face nearest to it, in this order.
+/// Fills the weights of a point that lies on the cage: linear on the nearest vertex, else edge, else face.
 bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double* row) {
     const auto clear = [&] { std::fill(row, row + cage.points.size(), 0.0); };
     double minimum = snap;

@@ -14,8 +14,8 @@ namespace ostraka {
 
 namespace {
 
-/// Which places are strictly inside a closed mesh. In a unit, a power of two, in which no coordinate is beyond 1, so that the
-/// rays by which CGAL decides do not vanish against the places that they start from.
+/// Tests which points are strictly inside a closed mesh. Everything is scaled by a power of two so that no coordinate exceeds
+/// 1: otherwise CGAL's test rays could be too short relative to the coordinates of their origins.
 std::vector<bool> strictly_inside(const Mesh& closed, const std::vector<Point>& places) {
     double largest = 0;
     const auto widen = [&](const Point& p) { largest = std::max({largest, std::abs(p.x()), std::abs(p.y()), std::abs(p.z())}); };
@@ -31,7 +31,7 @@ std::vector<bool> strictly_inside(const Mesh& closed, const std::vector<Point>& 
     const CGAL::Side_of_triangle_mesh<Mesh, Kernel> side(scaled);
     std::vector<char> inside(places.size(), 0);
     if (places.empty()) return {};
-    static_cast<void>(side(in_unit(places.front())));  // what it prepares at first use
+    static_cast<void>(side(in_unit(places.front())));  // the first query builds the search structure
     parallel_for(places.size(), [&](std::size_t i) { inside[i] = side(in_unit(places[i])) == CGAL::ON_BOUNDED_SIDE; });
     return {inside.begin(), inside.end()};
 }
@@ -44,7 +44,7 @@ double signed_volume(const Mesh& mesh) {
     return volume / 3;
 }
 
-/// The faces of these components, and vertices that no face has where `loose` says so.
+/// The faces of the chosen components, and the isolated vertices if `loose`.
 SubMesh part_of(const Mesh& cage, const FacePieces& pieces, const std::vector<bool>& chosen, bool loose) {
     SubMesh part;
     std::vector<Index> place(cage.number_of_vertices(), no_index);
@@ -66,17 +66,17 @@ SubMesh part_of(const Mesh& cage, const FacePieces& pieces, const std::vector<bo
     return part;
 }
 
-/// 0 at 0, 1 from 1 on, with continuous curvature.
+/// Quintic smooth step: 0 up to 0, 1 from 1 on, with continuous second derivative.
 double smooth_step(double t) {
     t = std::clamp(t, 0.0, 1.0);
     return t * t * t * (t * (6 * t - 15) + 10);
 }
 
-/// How far a level holds the vertices of a mesh, 0 to 1.
+/// The influence of a level on each vertex of a mesh, 0 to 1.
 std::vector<double> holds_of(const Mesh& cage, const Mesh& mesh, double fade) {
     const std::vector<Point> points = points_of(mesh);
     const std::vector<bool> inside = strictly_inside(cage, points);
-    // The largest piece within: another part of the object that reaches into the cage is not meant.
+    // Only the largest piece inside counts: other parts of the object that reach into the cage are ignored.
     std::vector<bool> seen(points.size(), false);
     std::vector<Index> piece;
     for (const Vertex first : mesh.vertices()) {
@@ -133,7 +133,7 @@ std::vector<CageLevel> cage_levels(const Mesh& cage) {
         levels.push_back(whole());
         return levels;
     }
-    // Of each component the smallest one around it.
+    // The parent of each component is the smallest component around it.
     std::vector<SubMesh> component;
     std::vector<double> volume;
     for (Index k = 0; k < pieces.count; ++k) {

@@ -1,4 +1,5 @@
-// Positive mean value coordinates (Lipman, Kopf, Cohen-Or and Levin 2007): what a point does not see has no weight.
+// Positive mean value coordinates (Lipman, Kopf, Cohen-Or and Levin 2007): only the part of the cage visible from a point has a
+// weight.
 #include "interior_weights.h"
 #include "kinds.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 constexpr int rays = 1024;
 
-/// Evenly spread over the sphere: a spiral of the golden angle.
+/// Evenly distributed directions on the sphere: a golden-angle spiral.
 std::vector<Vector3d> spread_directions() {
     std::vector<Vector3d> list;
     const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
@@ -29,20 +30,20 @@ std::vector<Vector3d> spread_directions() {
     return list;
 }
 
-/// A face of the cage as rays see it.
+/// A face of the cage, prepared for ray intersection.
 struct SeenFace {
     Vector3d a, u, v;
     std::array<Index, 3> corner{};
 };
 
-/// Weights of one node from what each ray meets first.
+/// The weights of one node from the first hit of each ray.
 void look_around(const std::vector<SeenFace>& faces, const std::vector<Vector3d>& directions, const Vector3d& place, double* row,
                  std::size_t size) {
     for (const Vector3d& d : directions) {
         double nearest = std::numeric_limits<double>::infinity(), s = 0, t = 0;
         const SeenFace* hit = nullptr;
         for (const SeenFace& one : faces) {
-            // Moeller and Trumbore 1997.
+            // Ray-triangle intersection by Moeller and Trumbore, 1997.
             const Vector3d p = d.cross(one.v);
             const double det = one.u.dot(p);
             if (det == 0) continue;

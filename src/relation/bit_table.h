@@ -1,4 +1,4 @@
-// Which of many belong together, a bit for each pair. Private to the module.
+// A relation between two index sets as a table of bits. Private to the module.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace ostraka::detail {
 
-/// A square table of bits.
+/// A table of bits; rows are padded to 64-bit words.
 class BitTable {
 public:
     BitTable(std::size_t rows, std::size_t columns) : words_((columns + 63) / 64), bits_(rows * words_, 0) {}

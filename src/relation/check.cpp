@@ -30,8 +30,8 @@ std::size_t missing(const Sorted& inner, const Sorted& outer) {
     return left.size();
 }
 
-/// Per cent of the area of `inner` that is not in `outer`, on a mesh cut along free outlines; what rounding leaves there is
-/// nothing.
+/// Percentage of the area of `inner` outside `outer`, on a mesh cut along free outlines; shares at rounding level count as
+/// zero.
 double area_outside(const Mesh& mesh, const Annotation& inner, const Annotation& outer) {
     std::vector<Index> left;
     std::set_difference(inner.faces.begin(), inner.faces.end(), outer.faces.begin(), outer.faces.end(), std::back_inserter(left));
@@ -39,7 +39,7 @@ double area_outside(const Mesh& mesh, const Annotation& inner, const Annotation&
     return share < 1e-4 ? 0 : share;
 }
 
-/// Per cent of the elements of `inner` (faces, edges or vertices, by the rule that applies) that are not in `outer`; 100 where no
+/// Percentage of the elements of `inner` (faces, edges or vertices, by the applicable rule) that are not in `outer`; 100 if no
 /// rule allows containment.
 double outside(const Mesh& mesh, bool cut, const Annotation& inner, const Annotation& outer) {
     const auto share = [](std::size_t part, std::size_t whole) {
@@ -77,7 +77,7 @@ void check_equal_selections(const Mesh& mesh, bool cut, const std::vector<const 
     if (share > 0) check.text = "the selections differ";
 }
 
-using SharedLengths = std::map<std::pair<int, int>, double>;  ///< of adjacent annotations
+using SharedLengths = std::map<std::pair<int, int>, double>;  ///< by pair of adjacent annotations
 
 void check_adjacency(const SharedLengths& adjacent, const std::string& unit, const std::vector<const Annotation*>& members,
                      RelationCheck& check) {
@@ -99,7 +99,7 @@ std::vector<RelationCheck> check_relations(const Mesh& given_mesh, const Annotat
     const Mesh& mesh = along_edges.mesh();
     const AnnotationSet& set = along_edges.annotations();
     const bool cut = along_edges.cut().has_value();
-    SharedLengths stated, adjacent;  // of all the pairs only those that are asked for
+    SharedLengths stated, adjacent;  // only the pairs that occur in the graph
     for (const auto& relationship : graph.relationships)
         if (relationship.annotations.size() == 2)
             stated[std::minmax(relationship.annotations[0], relationship.annotations[1])] = 0;

@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// Inside quotes DOT knows \" and its own escapes after a backslash, and decodes the entities of HTML.
+/// Quotes text for DOT, which interprets \" and its own escapes after a backslash, and decodes HTML entities.
 std::string quoted(const std::string& text) {
     std::string out = "\"";
     for (const char c : without_controls(text, " ")) {

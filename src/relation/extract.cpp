@@ -1,5 +1,5 @@
-// Candidates for the geometric relationships, each measured before it is reported. What takes the square of the number of regions
-// only compares numbers; what costs more, and what is reported, is bounded.
+// Candidates for geometric relationships, each measured before it is reported. Steps that are quadratic in the number of
+// regions only compare numbers; the number of expensive measurements and of reported relationships is bounded.
 #include "bit_table.h"
 #include "meter.h"
 
@@ -21,16 +21,20 @@ using namespace detail;
 
 namespace {
 
-/// More of one type are not reported, and of pairs that take long to measure the most alike are.
+/// Maximum number of relationships reported per type; and of pairs that are expensive to measure, of which the most similar are
+/// kept.
 constexpr std::size_t most_of_type = 10'000, most_mirrors = 5'000, most_similarities = 200'000;
 
-/// Groups of values of which all lie within `width` of each other: neighbours are joined, narrowest result first.
+/// Clusters values so that all values in a group lie within `width` of each other: merges neighbouring runs, narrowest result
+/// first.
 std::vector<std::vector<int>> clusters(std::vector<std::pair<double, int>> values, double width) {
     std::sort(values.begin(), values.end());
     const std::size_t count = values.size();
-    std::vector<std::size_t> last(count), before(count);  // of the run that begins at a place; where the run before one begins
+    std::vector<std::size_t> last(count), before(count);  // end of the run that begins at an index; begin of the run before the
+                                                          // one that begins at an index
     for (std::size_t i = 0; i < count; ++i) last[i] = i, before[i] = i == 0 ? 0 : i - 1;
-    using Join = std::tuple<double, std::size_t, std::size_t, std::size_t>;  // span, first run, its end, end of the second
+    using Join = std::tuple<double, std::size_t, std::size_t, std::size_t>;  // span, begin and end of the first run, end of the
+                                                                             // second
     std::priority_queue<Join, std::vector<Join>, std::greater<>> joins;
     const auto propose = [&](std::size_t run) {
         if (last[run] + 1 >= count) return;
@@ -42,7 +46,7 @@ std::vector<std::vector<int>> clusters(std::vector<std::pair<double, int>> value
     while (!joins.empty()) {
         const auto [span, run, middle, end] = joins.top();
         joins.pop();
-        if (!begins[run] || last[run] != middle || last[middle + 1] != end) continue;  // one of the two has grown since
+        if (!begins[run] || last[run] != middle || last[middle + 1] != end) continue;  // outdated: one of the runs has grown
         begins[middle + 1] = false;
         last[run] = end;
         if (end + 1 < count) before[end + 1] = run;
@@ -59,7 +63,7 @@ std::vector<std::vector<int>> clusters(std::vector<std::pair<double, int>> value
     return groups;
 }
 
-/// Pairs of regions, by their places in the list, that have a face in common.
+/// Pairs of regions (indices in the list) with a common face.
 BitTable overlapping_regions(const Mesh& mesh, const AnnotationSet& set, const std::vector<int>& regions) {
     std::vector<std::vector<std::uint32_t>> at(mesh.number_of_faces());
     std::unordered_map<int, const Annotation*> known;
@@ -85,7 +89,7 @@ bool is_wanted(GeometricRelation kind, const std::vector<std::string>& types) {
 
 }  // namespace
 
-/// The candidates of each kind, one after the other; those that hold are kept.
+/// Generates the candidates of each type in turn and keeps those that hold.
 class RelationCandidates {
 public:
     RelationCandidates(RelationMeter& meter, const std::vector<std::string>& types, int first_id)
@@ -140,7 +144,7 @@ private:
         return true;
     }
 
-    /// Places of regions in the list. A part that holds another one shares its geometry: nothing is said of such pairs.
+    /// i, j: indices of regions in the list. Overlapping regions share geometry, so that such pairs are skipped.
     [[nodiscard]] bool apart(std::size_t i, std::size_t j) const { return !overlapping_.test(i, j); }
     template <class Visit>
     void for_pairs_apart(const Visit& visit) const {
@@ -152,11 +156,12 @@ private:
             }
     }
 
-    /// Pairs of nearly the same area, in the order of the regions; of more than `most` those of the most equal areas.
+    /// Pairs of similar area, in the order of the regions; if there are more than `most`, those with the smallest area
+    /// difference.
     void alike_pairs(GeometricRelation kind, std::size_t most, std::vector<std::string>& notes) {
         std::vector<double> areas;
         for (const int id : regions_) areas.push_back(state_.part(id).area());
-        using Pair = std::tuple<double, std::size_t, std::size_t>;  // relative difference of the areas, places
+        using Pair = std::tuple<double, std::size_t, std::size_t>;  // relative difference of the areas, indices
         std::priority_queue<Pair> alike;
         std::size_t all = 0;
         for_pairs_apart([&](std::size_t i, std::size_t j) {
@@ -176,7 +181,7 @@ private:
                             " most alike were measured (fewer annotations at once tell all)");
     }
 
-    /// Whether the angle between two axes is near 0 or 90 degrees, so that a measurement is worth its time.
+    /// Quick test whether the angle between two axes is near 0 or 90 degrees, so that the exact measurement is worthwhile.
     [[nodiscard]] bool worth_measuring(const Vector3d& a, const Vector3d& b) const {
         const double size = a.norm() * b.norm(), limit = std::sin(std::min(90.0, state_.options.angle) * degree);
         const double cosine = std::abs(a.dot(b)) / size, sine = a.cross(b).norm() / size;
@@ -212,8 +217,8 @@ private:
                     consider(GeometricRelation::co_linearity, {points[i], points[j], points[k]});
     }
 
-    /// Of parts that are flat themselves: thinner than a tenth of their width. Their moments tell which pairs cannot be in a
-    /// plane.
+    /// Pairs of flat parts (thinner than a tenth of their width) in a common plane. Moments exclude pairs that cannot be
+    /// coplanar.
     void planes() {
         struct Flat {
             std::size_t place;
@@ -247,7 +252,7 @@ private:
                 const double weight = a.weight + b.weight;
                 const Matrix3d both = (a.covariance + b.covariance) / weight +
                                       a.weight * b.weight / (weight * weight) * between * between.transpose();
-                // The least eigenvalue is at least the determinant over the square of half the rest of the trace.
+                // The smallest eigenvalue is at least the determinant divided by the square of half the sum of the other two.
                 const double half = both.trace() / 2;
                 if (both.determinant() > tolerance * tolerance * half * half ||
                     SymmetricEigen3(both).eigenvalues()[0] > tolerance * tolerance)

@@ -1,4 +1,4 @@
-// Types of relationships and what a graph must satisfy.
+// Types of relationships, and validation of graphs.
 #include "ostraka/relation/graph.h"
 
 #include "ostraka/core/error.h"
@@ -33,7 +33,7 @@ const std::vector<RelationType>& relation_types() {
             {"part similarity", 2, 0, part_similarity, false, {"area", "shape"}},
             {"equal attributes", 2, 0, equal_attributes, false, {"difference"}},
         };
-        // Low-level constraints of the thesis's solver (section 4.2) and the high-level ones of chapter 5.
+        // Low-level constraints of the thesis's solver (section 4.2) and the high-level constraints of chapter 5.
         for (const char* name : {"closeness",
                                  "edge strain",
                                  "triangle strain",
@@ -112,7 +112,7 @@ void check_members(const Relationship& relationship, const AnnotationSet& set, c
                    type->directed ? "set isDirected to true; the first annotation is the subject" : "set isDirected to false");
 }
 
-/// What a relationship says, whoever says it and with whatever tolerance.
+/// The content of a relationship, without origin and tolerances.
 using Statement = std::tuple<std::string, std::vector<int>, bool, std::string, std::string>;
 
 /// Whether the order of the members says something: a relation has a direction or none; of a constraint the first member is what

@@ -1,4 +1,4 @@
-// *.graph.json
+// Reading and writing *.graph.json.
 #include "ostraka/core/json_build.h"
 #include "ostraka/relation/graph.h"
 

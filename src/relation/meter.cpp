@@ -1,4 +1,4 @@
-// Measures of the geometric relationships.
+// Measurement of the geometric relationships.
 #include "meter.h"
 
 #include "ostraka/core/angles.h"
@@ -34,7 +34,7 @@ Vector3d up_of(const AnnotationSet& set, const Relationship& relationship) {
     return unit;
 }
 
-/// Throws Unknown for a part without anything.
+/// The parts of these annotations. Throws Unknown for an empty part.
 std::vector<Part*> parts_of(const std::vector<int>& ids, const std::function<Part&(int)>& part) {
     std::vector<Part*> parts;
     for (const int id : ids) parts.push_back(&part(id));
@@ -67,7 +67,7 @@ void measure_axes(const std::vector<Part*>& parts, GeometricRelation kind, Findi
     findings.parameters.axis = PointAndDirection{array_of(first.point), array_of(first.direction)};
 }
 
-/// Of a plane, or of points on a line.
+/// Flatness of parts in a common plane, or of points on a line.
 void measure_flatness(const std::vector<Part*>& parts, bool on_line, Findings& findings) {
     Cloud all;
     for (Part* part : parts) {
@@ -176,7 +176,7 @@ Part& RelationMeter::State::part(int id) {
 }
 
 void RelationMeter::State::used(const std::vector<int>& ids) {
-    constexpr std::size_t most_faces = 300'000;  // some hundred bytes each
+    constexpr std::size_t most_faces = 300'000;  // some hundred bytes per face
     for (const int id : ids) {
         if (const auto at = recent_place.find(id); at != recent_place.end()) recent.erase(at->second);
         else recent_faces += part(id).annotation().faces.size();
@@ -193,7 +193,7 @@ void RelationMeter::State::used(const std::vector<int>& ids) {
 
 namespace {
 
-/// The pairs of the longest borders, as many as leave the contacts' edges bounded; all of them where they are few.
+/// The pairs with the longest shared borders, limited in number of pairs and of edges; all pairs if they are within the limits.
 std::vector<AdjacentPair> longest_borders(std::vector<AdjacentPair> pairs) {
     constexpr std::size_t most_pairs = 20'000, most_edges = 4'000'000;
     std::size_t edges = 0;
@@ -209,7 +209,8 @@ std::vector<AdjacentPair> longest_borders(std::vector<AdjacentPair> pairs) {
     return pairs;
 }
 
-/// Middles of the edges between two regions. Only those on one side of an edge count: a region on both overlaps the others there.
+/// Collects the midpoints of the edges between two regions. A region on both sides of an edge overlaps the others there and
+/// does not count.
 void add_contacts(const Mesh& mesh, const AnnotationSet& set, Contacts& found) {
     std::vector<std::vector<int>> regions(mesh.number_of_faces());
     for (const auto& annotation : set.annotations)
@@ -228,7 +229,7 @@ void add_contacts(const Mesh& mesh, const AnnotationSet& set, Contacts& found) {
             cloud.points.emplace_back((p + q) / 2);
             cloud.weights.push_back((q - p).norm());
         };
-        if (of_f.size() * of_g.size() > found.size()) {  // fewer pairs are asked for than meet here
+        if (of_f.size() * of_g.size() > found.size()) {  // fewer pairs are wanted than meet at this edge
             const auto holds = [](const std::vector<int>& list, int id) {
                 return std::binary_search(list.begin(), list.end(), id);
             };
@@ -261,7 +262,7 @@ const Cloud* RelationMeter::State::contact(int a, int b) {
     const auto entry = all_contacts().find(std::minmax(a, b));
     if (entry != contacts->end()) return &entry->second;
     if (!contacts_left_out) return nullptr;
-    Contacts one;  // that was left out, perhaps
+    Contacts one;  // possibly a pair that was left out
     one[std::minmax(a, b)];
     add_contacts(mesh, set, one);
     const auto& cloud = one.begin()->second;
@@ -276,7 +277,7 @@ std::optional<double> RelationMeter::State::attribute(const Annotation& annotati
                 return evaluate(mesh, annotation, attribute.measure);
             } catch (const Error& error) {
                 if (error.kind() == ErrorKind::cancelled) throw;
-                return {};  // pins without a way between them, say
+                return {};  // for example pins without a path between them
             }
         }
         if (attribute.type == AttributeType::descriptor) {

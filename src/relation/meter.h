@@ -1,4 +1,4 @@
-// The parts of a set and the contacts between them, made when first asked for.
+// The parts of a set and the contacts between them, computed on demand.
 #pragma once
 
 #include "parts.h"
@@ -10,22 +10,22 @@
 
 namespace ostraka {
 
-/// Edges between two regions without a common face: their middles, weighted by length.
+/// For each pair of regions without a common face, the edges between them: midpoints, weighted by length.
 using Contacts = std::map<std::pair<int, int>, detail::Cloud>;
 
 namespace detail {
 
-/// Why a relationship cannot be determined; not an error: other relationships can.
+/// Thrown if a relationship cannot be determined; not an error, since others can.
 struct Unknown {
     std::string text;
 };
 
-/// The measured quantities of one relationship with the tolerances that apply.
+/// The measured quantities of one relationship with the applicable tolerances.
 class Findings {
 public:
     Findings(const Relationship& stated, const RelationOptions& options, double diagonal, const std::string& unit,
              RelationParameters& parameters);
-    /// Within a share of the diagonal.
+    /// Adds a length with a tolerance relative to the diagonal.
     void add_length(const std::string& quantity, double value) { add(quantity, value, options_.distance * diagonal_, unit_); }
     void add_height_below_0(double value) { add("height", value, 0, unit_); }
     void add_angle(double degrees) { add("angle", degrees, options_.angle, "degree"); }
@@ -54,23 +54,23 @@ struct RelationMeter::State {
     double diagonal = 0;
     std::map<int, detail::Part> parts;
     std::optional<Contacts> contacts;
-    bool contacts_left_out = false;  ///< of the many there are, those of the shortest borders
-    std::list<int> recent;           ///< parts in use, the last used at the end
+    bool contacts_left_out = false;  ///< true if the pairs with the shortest borders were omitted
+    std::list<int> recent;           ///< parts in use, most recently used last
     std::unordered_map<int, std::list<int>::iterator> recent_place;
     std::size_t recent_faces = 0;
 
     detail::Part& part(int id);
-    const detail::Cloud* contact(int a, int b);  ///< nullptr: not adjacent
-    /// Of the pairs with the longest shared borders, where there are very many.
+    const detail::Cloud* contact(int a, int b);  ///< nullptr if not adjacent
+    /// The contacts of all pairs or, beyond the limits, of those with the longest shared borders.
     const Contacts& all_contacts();
-    /// To be called before parts are measured: frees what others used longest ago hold, so that many regions that overlap take no
-    /// more memory than a few.
+    /// Must be called before parts are measured: frees the memory of the least recently used parts, so that memory stays
+    /// bounded for many overlapping regions.
     void used(const std::vector<int>& ids);
-    /// The value of an attribute by its name, its unit after it; nothing if there is no single number.
+    /// The value of an attribute by name, followed by its unit; nothing if it is not a single number.
     [[nodiscard]] std::optional<double> attribute(const Annotation& annotation, const std::string& name) const;
-    /// Of the stated attribute. Throws Unknown.
+    /// The values of the stated attribute. Throws Unknown.
     [[nodiscard]] std::vector<double> values(const Relationship& stated) const;
-    /// Throws Unknown.
+    /// Measures a relationship of this type. Throws Unknown.
     void measure(GeometricRelation kind, detail::Findings& findings);
 };
 

@@ -21,7 +21,7 @@ std::vector<PartInVocabulary> parts_in_vocabulary(const ContainmentOrder& order,
                     std::any_of(level.begin(), level.end(), [&](std::size_t whole) { return search.is_a(*concepts[k], whole); }))
                     found.wholes.push_back(k);
             if (found.wholes.empty()) continue;
-            // The nearest container that is one of them: containers of containers come after.
+            // Select the smallest whole among the containers.
             const auto& containers = order.containers[i];
             for (const std::size_t whole : found.wholes) {
                 if (std::find(containers.begin(), containers.end(), whole) == containers.end()) continue;

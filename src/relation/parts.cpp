@@ -94,7 +94,7 @@ const PartAxis& Part::axis() {
     }
     if (const AreaMoments m = area_moments(mesh_, annotation_.faces);
         !axis.found && axis.quality > 0.4 && m.variances[1] > 0.8 * m.variances[0] && m.variances[2] < 0.6 * m.variances[1]) {
-        // A turned disc or dome under noise: its shortest principal axis stands it better than normals do.
+        // A revolved disc or dome with noise: its shortest principal axis is more stable than an axis fitted to normals.
         axis.found = true;
         axis.point = m.centroid;
         axis.direction = m.directions[2];
@@ -120,7 +120,8 @@ Vector3d Part::closest(const Vector3d& query) {
         std::map<Index, Index> number;
         TriangleSoup soup;
         own_ = std::make_unique<Mesh>();
-        // A patch that touches itself at a vertex is no manifold: its faces may as well stand alone.
+        // A patch that touches itself at a vertex is not manifold; the search does not need connectivity, so that faces are
+        // added separately.
         for (const Index f : annotation_.faces) {
             std::array<Index, 3> triangle{};
             std::size_t k = 0;
@@ -150,7 +151,7 @@ struct Pairs {
     std::vector<Vector3d> p, q;
 };
 
-/// Reflected samples of `a` and where they meet `b`; each pair in the order (of a, of b).
+/// Pairs of each reflected sample of `a` with the closest point of `b`; each pair in the order (of a, of b).
 void pair_up(Part& a, Part& b, const Mirror& mirror, bool swapped, Pairs& pairs) {
     for (const Vector3d& p : a.samples()) {
         const Vector3d reflected = p - 2 * mirror.normal.dot(p - mirror.point) * mirror.normal;
@@ -160,8 +161,8 @@ void pair_up(Part& a, Part& b, const Mirror& mirror, bool swapped, Pairs& pairs)
     }
 }
 
-/// The plane that reflects the p onto the q best: with S the covariance of the pairs and d the difference of their means the
-/// normal has the least eigenvalue of 2 (S + S^T) - d d^T.
+/// The reflection that best maps the p onto the q (least squares): with S the covariance of the pairs and d the difference of
+/// their means, the normal is the eigenvector of 2 (S + S^T) - d d^T for the smallest eigenvalue.
 Mirror fit(const Pairs& pairs) {
     const double count = double(pairs.p.size());
     Vector3d mean_p = Vector3d::Zero(), mean_q = Vector3d::Zero();

@@ -1,4 +1,4 @@
-// What relationships ask of an annotated part.
+// Geometric properties of an annotated part that relationships use.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -15,13 +15,13 @@ using Eigen::Vector3d;
 
 inline std::array<double, 3> array_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Points with weights: centroids of faces by area, middles of edges by length, or vertices.
+/// Weighted points: centroids of faces by area, midpoints of edges by length, or vertices.
 struct Cloud {
     std::vector<Vector3d> points;
     std::vector<double> weights;
     [[nodiscard]] Vector3d mean() const;
-    /// Plane of least squares: its unit normal and the rms distance from it; `spread` is the middle standard deviation: 0 where
-    /// the points lie on a line.
+    /// Least-squares plane: unit normal and rms distance. `spread` is the middle standard deviation, 0 if the points lie on a
+    /// line.
     struct Plane {
         Vector3d point, normal;
         double rms = 0, spread = 0;
@@ -29,7 +29,7 @@ struct Cloud {
     [[nodiscard]] Plane plane() const;
 };
 
-/// A straight axis, or why there is none.
+/// A straight axis, or the reason why there is none.
 struct PartAxis {
     bool found = false;
     std::string reason;
@@ -42,17 +42,17 @@ public:
 
     [[nodiscard]] const Annotation& annotation() const { return annotation_; }
     [[nodiscard]] bool empty() const;
-    const Cloud& cloud();                    ///< all of it
-    const std::vector<Vector3d>& samples();  ///< of a region: 500 at most, spread by area
+    const Cloud& cloud();                    ///< all points of the part
+    const std::vector<Vector3d>& samples();  ///< for regions: at most 500, distributed by area
     const Vector3d& centroid();
     double area();
-    /// Of slices where the part is longer than wide, else of rotation; bent axes do not count.
+    /// The axis of slices if the part is longer than wide, otherwise of rotation; bent axes are rejected.
     const PartAxis& axis();
-    /// Distances between all pairs of samples, at 64 quantiles (Osada et al. 2002, D2).
+    /// Distances between all pairs of samples, at 64 quantiles (D2 distribution, Osada et al. 2002).
     const std::vector<double>& shape();
-    /// The region's nearest point.
+    /// The closest point of the region.
     Vector3d closest(const Vector3d& query);
-    /// Frees what takes as much memory as the region; it is made again when asked for.
+    /// Frees data whose memory is proportional to the region; it is computed again on demand.
     void forget();
 
 private:
@@ -68,10 +68,10 @@ private:
     std::unique_ptr<SurfaceSearch> search_;
 };
 
-/// A reflection that carries part `a` to part `b` (which may be the same), refined from the planes that suggest themselves.
+/// A reflection that maps part `a` to part `b` (which may be the same), refined from several initial planes.
 struct Mirror {
     Vector3d point, normal;
-    double rms = 0;  ///< of the distances of reflected samples of each to the other
+    double rms = 0;  ///< rms distance from the reflected samples of each part to the other
 };
 Mirror find_mirror(Part& a, Part& b);
 

@@ -21,7 +21,7 @@ namespace {
 
 using QueryKind = AnnotationQuery::Node::Kind;
 
-/// A number; with a unit it is of a power of a length (0: an angle or a ratio), in metres or radians.
+/// A number; with a unit it is a power of a length (0: an angle or a ratio), in metres or radians.
 struct QueryAmount {
     double value = 0;
     bool bare = true;  ///< without a unit
@@ -33,7 +33,7 @@ QueryAmount query_amount(double value, const std::string& unit) {
     return known ? QueryAmount{value * known->factor, false, known->power} : QueryAmount{value};
 }
 
-/// What an attribute says, as text that is the same for the same value.
+/// The value of an attribute as text that is equal for equal values.
 std::string value_text(const Attribute& attribute, const AllowedAttribute* allowed) {
     if (attribute.type == AttributeType::semantic) {
         const Term* term = allowed != nullptr ? term_of(*allowed, attribute.note) : nullptr;
@@ -48,7 +48,7 @@ std::string value_text(const Attribute& attribute, const AllowedAttribute* allow
     return text;
 }
 
-/// Attributes by their names in any language.
+/// Resolves attribute names in any language.
 class AttributeNames {
 public:
     explicit AttributeNames(const Vocabulary* vocabulary) {
@@ -73,7 +73,7 @@ private:
     std::optional<VocabularySearch> search_;
 };
 
-/// Gathers what a query speaks of.
+/// Collects the words, variables, names and references of a query.
 void gather(const AnnotationQuery::Node& node, std::vector<std::string>& words, std::vector<std::string>& variables,
             std::vector<std::string>& names, std::vector<QueryReference>& references) {
     const auto add = [](auto& list, const auto& one) {
@@ -201,7 +201,7 @@ private:
         return answer;
     }
 
-    /// Whether they can be compared or added; a problem is noted if not.
+    /// True if the amounts can be compared or added; otherwise notes a problem.
     bool alike(const QueryAmount& a, const QueryAmount& b, std::size_t at) {
         if (a.bare == b.bare ? a.bare || a.power == b.power : (a.bare ? b : a).power == 0) return true;
         if ((a.bare && a.value == 0) || (b.bare && b.value == 0)) return true;

@@ -1,4 +1,4 @@
-// What a query is made of.
+// Syntax tree of a query.
 #pragma once
 
 #include "ostraka/relation/query.h"
@@ -7,21 +7,21 @@ namespace ostraka {
 
 struct AnnotationQuery::Node {
     enum class Kind {
-        either,     ///< of two: or
+        either,     ///< or
         both,       ///< and
         none,       ///< not
-        compare,    ///< of two by `text`: < <= > >= = !=
+        compare,    ///< compares two amounts; `text`: < <= > >= = !=
         count,      ///< at least `value` annotations mean words[0]
-        number_of,  ///< how many do
-        related,    ///< by a relationship of the type `text`: words[0], and words[1] if there is one
-        same,       ///< attribute `text` as the object words[0]
+        number_of,  ///< number of annotations that mean words[0]
+        related,    ///< words[0] has a relationship of type `text`, to words[1] if given
+        same,       ///< attribute `text` equals that of object words[0]
         add,
         subtract,
         multiply,
         divide,
         number,    ///< `value` in `unit`
         quantity,  ///< `text` of words[0]
-        word       ///< `text`: a value to compare with or, where a truth is wanted, a part that there is
+        word       ///< `text`: a value in a comparison; in a condition, true if such a part exists
     };
     Kind kind;
     std::size_t at = 0;  ///< column, from 1

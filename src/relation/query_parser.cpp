@@ -108,7 +108,7 @@ private:
     static bool is_truth(const QueryNode& node) {
         return node.kind <= NodeKind::count || node.kind == NodeKind::related || node.kind == NodeKind::same;
     }
-    /// A condition; a word by itself asks whether there is such a part.
+    /// Converts an expression to a condition; a single word becomes "such a part exists".
     static NodePointer truth(NodePointer given) {
         if (is_truth(*given)) return given;
         if (given->kind != NodeKind::word)
@@ -213,7 +213,7 @@ private:
         return token.kind == QueryToken::Kind::name && (token.text == "and" || token.text == "or" || token.text == "not");
     }
 
-    /// A number with its unit, or so many parts: "2 arm".
+    /// A number with an optional unit, or a count of parts: "2 arm".
     NodePointer number() {
         const QueryToken token = tokens_[at_++];
         NodePointer made = node(NodeKind::number, token.at);

@@ -1,15 +1,15 @@
-// The text of a query read.
+// Parser of queries.
 #pragma once
 
 #include "query_node.h"
 
 namespace ostraka::detail {
 
-/// Throws Error (usage) with the column, what is wrong and the remedy. Nested at most 100 deep, at most 10000 bytes long.
+/// Throws Error (usage) with the column, the error and the remedy. Nesting is limited to 100 levels, the text to 10000 bytes.
 std::unique_ptr<AnnotationQuery::Node> parse_query(const std::string& text);
 
-/// The dimension of a unit, as a power of a length, and how many of its base (metres, radians) it is; nothing where it is
-/// unknown.
+/// The dimension of a unit as a power of a length, and its factor to the base unit (metres, radians); nothing for an unknown
+/// unit.
 struct QueryUnit {
     int power = 0;
     double factor = 1;

@@ -22,14 +22,14 @@ using Bits = std::vector<std::uint64_t>;
 
 void mark(Bits& bits, std::size_t i) { bits[i / 64] |= std::uint64_t{1} << (i % 64); }
 
-/// Faces grouped by the set of regions that hold them. Class 0 is the empty set; each other class is its parent's set and one
-/// region more.
+/// Faces grouped by the set of regions that contain them. Group 0 is the empty set; each other group has its parent's set and
+/// one more region.
 struct FaceClasses {
     std::vector<std::uint32_t> of_face;
     std::vector<std::uint32_t> parent{0}, region{0};
 
     FaceClasses(const Mesh& mesh, const AnnotationSet& set) : of_face(mesh.number_of_faces(), 0) {
-        std::vector<std::uint32_t> split_by{0}, split_to{0};  // region place + 1, new class
+        std::vector<std::uint32_t> split_by{0}, split_to{0};  // index of the last region that split a group + 1; the new group
         for (std::uint32_t r = 0; r < set.annotations.size(); ++r)
             for (const Index face : set.annotations[r].faces) {
                 std::uint32_t& of = of_face[face];
@@ -44,8 +44,8 @@ struct FaceClasses {
                 of = split_to[of];
             }
     }
-    /// What free outlines that are one up to rounding leave between them: less than a millionth of each region there. Its faces
-    /// go to the regions' neighbours over their longest edge, which say nothing else.
+    /// Removes slivers between free outlines that coincide up to rounding: groups with less than a millionth of the area of
+    /// each region in them. The faces are assigned to the group of their neighbour across the longest edge.
     void drop_slivers(const Mesh& mesh, const AnnotationSet& set) {
         std::vector<double> area(parent.size(), 0), of_region(set.annotations.size(), 0);
         for (const Face f : mesh.faces()) {
@@ -60,7 +60,7 @@ struct FaceClasses {
             for (const std::uint32_t r : regions(c)) least = std::min(least, of_region[r]);
             sliver[c] = area[c] < 1e-6 * least;
         }
-        for (int round = 0; round < 3; ++round)  // slivers lie in rows
+        for (int round = 0; round < 3; ++round)  // slivers can lie in rows
             for (const Face f : mesh.faces()) {
                 if (!sliver[of_face[f]]) continue;
                 double longest = -1;
@@ -72,7 +72,7 @@ struct FaceClasses {
                 }
             }
     }
-    /// Ascending.
+    /// The regions of a group, ascending.
     [[nodiscard]] std::vector<std::uint32_t> regions(std::uint32_t c) const {
         std::vector<std::uint32_t> list;
         for (; c != 0; c = parent[c]) list.push_back(region[c]);
@@ -83,11 +83,11 @@ struct FaceClasses {
 
 using VertexPair = std::pair<Index, Index>;
 
-/// Which points and lines hold a vertex, and which lines hold an edge.
+/// The points and lines that contain a vertex, and the lines that contain an edge.
 struct CurveIndex {
     std::unordered_map<Index, std::vector<std::size_t>> at_vertex;
     std::map<VertexPair, std::vector<std::size_t>> at_edge;
-    std::vector<std::vector<VertexPair>> edges;  ///< of each annotation, sorted, once each
+    std::vector<std::vector<VertexPair>> edges;  ///< for each annotation, sorted, without duplicates
 
     explicit CurveIndex(const AnnotationSet& set) : edges(set.annotations.size()) {
         const auto hold = [](std::vector<std::size_t>& list, std::size_t a) {
@@ -108,7 +108,8 @@ struct CurveIndex {
     }
 };
 
-/// contains.row(a): all whose selection holds that of a, itself included; overlaps: regions with a common face.
+/// contains.row(a): all annotations whose selection contains that of a, including a; overlaps: pairs of regions with a common
+/// face.
 struct Containments {
     BitTable contains, overlaps;
     std::vector<bool> empty;
@@ -121,7 +122,7 @@ Containments contain(const Mesh& mesh, const AnnotationSet& set, const FaceClass
     const std::size_t words = contains.words();
     for (std::size_t a = 0; a < n; ++a) contains.fill(a);
 
-    // Regions in regions: the intersection of the sets of all their faces. A thread has columns of its own.
+    // Regions in regions: the intersection of the region sets of all their faces. Each thread has its own columns.
     std::vector<bool> used(classes.parent.size(), false);
     for (const std::uint32_t c : classes.of_face) used[c] = true;
     constexpr std::size_t words_of_thread = 16;
@@ -143,7 +144,7 @@ Containments contain(const Mesh& mesh, const AnnotationSet& set, const FaceClass
                  },
                  1);
 
-    // Points and lines in anything: the intersection over their vertices, and over their edges for lines in lines.
+    // Points and lines in others: the intersection over their vertices; for lines in lines over their edges.
     const CurveIndex curves(set);
     Bits not_lines(words, 0);
     for (std::size_t a = 0; a < n; ++a)
@@ -188,7 +189,7 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
     ContainmentOrder order;
     order.containers.resize(n), order.direct.resize(n), order.parent.resize(n);
 
-    // Equal selections contain each other: a chain by rank makes the order strict.
+    // Equal selections contain each other; ordering them by rank makes the order strict.
     const auto outranks = [&](std::size_t a, std::size_t b) {
         const Annotation &x = set.annotations[a], &y = set.annotations[b];
         return x.all != y.all ? x.all : x.id != y.id ? x.id < y.id : a < b;
@@ -230,7 +231,7 @@ ContainmentOrder order_of(const Mesh& mesh, const AnnotationSet& set, Containmen
     return order;
 }
 
-/// Length and number of edges between two faces' sets of regions, or between two regions.
+/// Total length and number of edges between two face groups, or between two regions.
 struct Shared {
     std::uint32_t a, b;
     double length;
@@ -238,7 +239,7 @@ struct Shared {
     [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> key() const { return {a, b}; }
 };
 
-/// One entry a pair, in order; lengths are added up in the order of the list.
+/// Merges entries of the same pair and sorts them; lengths are added in the order of the list.
 void add_up(std::vector<Shared>& list) {
     std::stable_sort(list.begin(), list.end(), [](const Shared& x, const Shared& y) { return x.key() < y.key(); });
     std::size_t next = 0;
@@ -274,7 +275,7 @@ std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& cl
     std::size_t settled = 0;
     for (const Shared& between : shared_by_classes(mesh, classes)) {
         const auto first = classes.regions(between.a), second = classes.regions(between.b);
-        // A region on both sides overlaps all of either: only those of one side are neighbours.
+        // Regions on both sides overlap; only regions on exactly one side are neighbours.
         std::vector<std::uint32_t> of_first, of_second;
         std::set_difference(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(of_first));
         std::set_difference(second.begin(), second.end(), first.begin(), first.end(), std::back_inserter(of_second));
@@ -295,7 +296,7 @@ std::vector<AdjacentPair> adjacent_pairs(const Mesh& mesh, const FaceClasses& cl
     return list;
 }
 
-/// Tables of the pairs take the square of the number.
+/// The tables of pairs are quadratic in the number of annotations.
 void require_few(const AnnotationSet& set) {
     constexpr std::size_t most = 30000;
     if (set.annotations.size() > most)

@@ -12,7 +12,7 @@ namespace ostraka {
 
 namespace {
 
-/// A pinhole or parallel rays from the eye to the target.
+/// A perspective or parallel camera at the eye, directed at the target.
 PictureCamera looking(const JsonValue& value, const Mesh& mesh, const Vector& up, bool perspective, const PixelBox& pane,
                       const std::function<Point(const JsonValue&)>& place, const std::string& where) {
     const JsonValue* target = find_member(value, "target");

@@ -18,7 +18,8 @@ namespace ostraka {
 
 namespace {
 
-/// Beside a strong crease the surroundings are what is curved: a response below this share of one of the other sign is its echo.
+/// Beside a strong crease the surroundings respond with the opposite sign: a response below this share of the crease's is an
+/// echo.
 constexpr double echo = 0.3;
 
 struct Response {
@@ -43,7 +44,7 @@ void check(const Mesh& mesh, const CreaseOptions& options) {
                        " (strong) only",
                    "let --weak be at most --strong");
     const double edge = mean_edge_length(mesh), radius = options.scale * box_diagonal(mesh);
-    // Within a ball smaller than an edge there is nothing to average over.
+    // A ball smaller than an edge contains nothing to average over.
     if (radius >= edge) return;
     const double minimum = std::ceil(1000 * edge / box_diagonal(mesh)) / 1000;
     fail_usage("a scale of " + text(options.scale) + " of the diagonal is a radius of " + text(radius) +
@@ -68,10 +69,10 @@ Response respond(const Mesh& mesh, const CreaseOptions& options) {
     return response;
 }
 
-/// A connected set of vertices of one sign, and ways along its crest.
+/// A connected set of vertices of one sign, with path searches along its crest.
 class Patch {
 public:
-    /// `place` has an entry a vertex of the mesh.
+    /// `place` has one entry per vertex of the mesh.
     Patch(const Mesh& mesh, const std::vector<double>& strength, std::vector<Index> vertices, std::vector<Index>& place)
         : mesh_(mesh), strength_(strength), place_(place), vertices_(std::move(vertices)) {
         for (std::size_t i = 0; i < vertices_.size(); ++i) place_[vertices_[i]] = static_cast<Index>(i);
@@ -84,14 +85,14 @@ public:
 
     [[nodiscard]] const std::vector<Index>& faces() const { return faces_; }
 
-    /// The line along the crest; a loop where the patch is a ring.
+    /// The line along the crest; a loop if the patch is a ring.
     [[nodiscard]] std::vector<Index> line() const {
         std::vector<Index> open = open_line();
         std::vector<Outline> outlines = faces_.empty() ? std::vector<Outline>() : extract_outlines(mesh_, faces_);
         if (outlines.size() < 2) return open;
         std::stable_sort(outlines.begin(), outlines.end(),
                          [&](const Outline& a, const Outline& b) { return length_of(a) > length_of(b); });
-        // A ring has two rims of about its own length; a hole in a patch is smaller.
+        // A ring has two borders of similar length; a hole in a patch is shorter.
         if (length_of(outlines[1]) < 0.3 * length_of(outlines[0])) return open;
         std::vector<Index> ring = loop(outlines[0], outlines[1]);
         return ring.empty() ? open : ring;
@@ -105,7 +106,7 @@ public:
 
 private:
     static constexpr double infinite = std::numeric_limits<double>::infinity();
-    using State = std::size_t;  ///< two a vertex of the patch: the sheets of the cover
+    using State = std::size_t;  ///< two per vertex of the patch: the sheets of the double cover
     static constexpr State none = std::numeric_limits<State>::max();
 
     [[nodiscard]] State state(Index v, int sheet = 0) const { return 2 * State{place_[v]} + static_cast<State>(sheet); }
@@ -119,17 +120,18 @@ private:
     [[nodiscard]] double distance(Index a, Index b) const {
         return std::sqrt(CGAL::squared_distance(mesh_.point(Vertex(a)), mesh_.point(Vertex(b))));
     }
-    /// Lengths count less on the crest.
+    /// Edge length, weighted less where the response is strong.
     [[nodiscard]] double cost(Index a, Index b) const {
         const double s = (strength_[a] + strength_[b]) / 2;
         return distance(a, b) / (s * s);
     }
 
     struct Tree {
-        std::vector<double> costs, lengths;  ///< a state each; infinite where no way leads
+        std::vector<double> costs, lengths;  ///< one per state; infinite if unreachable
         std::vector<State> previous;
     };
-    /// Ways of least cost from some vertices, on the first sheet. `step` gives the sheet that an edge leads to, or -1.
+    /// Cheapest paths from some vertices on the first sheet. `step` returns the sheet that an edge leads to, or -1 for a
+    /// forbidden edge.
     template <class Step>
     [[nodiscard]] Tree search(const std::vector<Index>& sources, const Step& step) const {
         const std::size_t states = 2 * vertices_.size();
@@ -172,7 +174,7 @@ private:
         return path;
     }
 
-    /// From the end of the patch that is farthest from its top, along the crest, to the other end.
+    /// The path along the crest from the end of the patch farthest from its strongest vertex to the opposite end.
     [[nodiscard]] std::vector<Index> open_line() const {
         const auto farthest = [&](Index from) {
             const Tree tree = search({from});
@@ -186,12 +188,12 @@ private:
         return farthest(farthest(top).back());
     }
 
-    /// The neighbours of a vertex of the cut that lie to its left.
+    /// Adds the edges from a vertex of the cut to its neighbours on the left of the cut.
     void left_of(const std::vector<Index>& cut, std::size_t i, std::set<std::pair<Index, Index>>& left) const {
         const bool forward = i + 1 < cut.size();
         const Halfedge start = find_halfedge(mesh_, Vertex(cut[i]), Vertex(forward ? cut[i + 1] : cut[i - 1]));
         const Index stop = forward && i > 0 ? cut[i - 1] : no_index;
-        // Counter-clockwise from the way ahead, or clockwise from the way back.
+        // Counter-clockwise from the next vertex of the cut, or clockwise from the previous one.
         Halfedge h = start;
         while (true) {
             const Halfedge side = forward ? h : mesh_.opposite(h);
@@ -202,7 +204,7 @@ private:
         }
     }
 
-    /// The loop of least cost that runs once around the ring between two rims.
+    /// The cheapest loop that runs once around the ring between its two borders.
     [[nodiscard]] std::vector<Index> loop(const Outline& one, const Outline& other) const {
         const Tree across = search(one);
         State end = state(other.front());
@@ -232,11 +234,11 @@ private:
 
     const Mesh& mesh_;
     const std::vector<double>& strength_;
-    std::vector<Index>& place_;  ///< in vertices_, of the patch's own
+    std::vector<Index>& place_;  ///< index in vertices_, for vertices of the patch
     std::vector<Index> vertices_, faces_;
 };
 
-/// The largest response of the other sign among the vertices connected with `top` within a distance.
+/// The largest response of the other sign among the vertices connected with `top` within the search radius.
 double rival(const Mesh& mesh, const std::vector<double>& strength, Index top, double search_radius) {
     std::set<Index> met{top};
     std::vector<Index> queue{top};
@@ -303,7 +305,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
 }
 
 namespace {
-/// Ridges are warm and hollows cold; those next in number are distinguished by tone, six of each.
+/// Colours: warm for ridges, cold for hollows, six tones of each in turn.
 std::array<int, 3> shade(bool ridge, int number) {
     static constexpr std::array<std::array<int, 3>, 6> warm{
         {{213, 94, 0}, {230, 159, 0}, {153, 27, 30}, {240, 120, 110}, {120, 70, 20}, {250, 200, 90}}};

@@ -23,7 +23,7 @@ bool is_reckoned(const std::string& kind) {
     return kind == "brush" || kind == "threshold" || kind == "segments" || kind == "grow" || kind == "shrink";
 }
 
-/// What is hidden counts only where it is asked for.
+/// Hidden parts are excluded unless "visible" is false.
 bool visible_only(const JsonValue& value) {
     const JsonValue* visible = find_member(value, "visible");
     return visible == nullptr || visible->GetBool();
@@ -80,7 +80,7 @@ Point ExpressionEvaluator::point(const JsonValue& list, PlaceFrame frame, const 
 }
 
 Index ExpressionEvaluator::vertex(const JsonValue& pick, PlaceFrame frame, const std::string& at) const {
-    if (whole_ != nullptr) return whole_->vertex(pick, frame, at);  // old vertices keep their index
+    if (whole_ != nullptr) return whole_->vertex(pick, frame, at);  // vertices of the uncut mesh keep their index
     if (pick.IsArray()) return nearest_vertex(mesh_, point(pick, frame, at));
     if (pick.IsObject()) {
         const SurfaceHit hit = seen(pick, frame, at);
@@ -163,7 +163,7 @@ std::vector<bool> ExpressionEvaluator::faces(const JsonValue& expression, PlaceF
             return faces_between(mesh_, {cut_->vertex_values(whole_->mesh_, level->values), false},
                                  level->above ? ScalarRange{level->level, infinite} : ScalarRange{-infinite, level->level});
         }
-    // What runs along the edges of the mesh is asked there.
+    // Selections along the edges of the mesh are evaluated on the uncut mesh.
     if (whole_ != nullptr && (kind == "segments" || kind == "grow" || kind == "shrink" || kind == "faces" ||
                               (kind == "lasso" && whole_->keeps_to_edges(*value))))
         return faces_of_origin(whole_->faces(expression, around, at));
@@ -259,7 +259,7 @@ std::vector<Index> ExpressionEvaluator::vertices(const JsonValue& expression, Pl
         fail(at + '/' + kind, "does not select points",
              "use vertices, nearest, a volume, rectangle, brush or threshold, or a set operation of these");
     }
-    std::set<Index> seen;  // order kept, repeats dropped
+    std::set<Index> seen;  // keeps the order, drops repeats
     std::erase_if(result, [&](Index v) { return !seen.insert(v).second; });
     return result;
 }

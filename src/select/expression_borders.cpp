@@ -1,4 +1,4 @@
-// Where the borders of a selection run through the faces, for free outlines.
+// Borders of selections through the faces, for free outlines.
 #include "expression.h"
 
 #include "ostraka/core/flood.h"
@@ -14,15 +14,16 @@ namespace ostraka {
 
 namespace {
 
-constexpr double at_vertex = 1e-9;  ///< share of an edge: nearer than that to a vertex a border runs through it
+constexpr double at_vertex = 1e-9;  ///< a border closer to a vertex than this share of the edge runs through the vertex
 
-/// The pieces of a border in the faces that have corners on both of its sides. `inside` is a flag a vertex; `root(a, b)` the
-/// share of the way from vertex a (outside) to b (inside) at which the border lies.
+/// Adds the border pieces in the faces that have corners on both sides. `inside`: one flag per vertex; `root(a, b)`: share of
+/// the way from vertex a (outside) to vertex b (inside) at which the border crosses.
 template <class Root>
 void add_level(const Mesh& mesh, const std::vector<bool>& inside, const Root& root, std::vector<SurfaceCurve>& curves) {
     const auto node_on = [&](Halfedge h) {
         const Vertex v = mesh.source(h), w = mesh.target(h);
-        const Vertex a = inside[v] ? w : v, b = inside[v] ? v : w;  // from outside to inside, as from the other face
+        const Vertex a = inside[v] ? w : v, b = inside[v] ? v : w;  // from outside to inside, the same order as seen from the
+                                                                    // other face
         const double t = std::clamp(root(a, b), 0.0, 1.0);
         if (t < at_vertex || t > 1 - at_vertex) return surface_node(mesh, t < 0.5 ? a : b);
         SurfacePlace place;
@@ -41,7 +42,7 @@ void add_level(const Mesh& mesh, const std::vector<bool>& inside, const Root& ro
     }
 }
 
-/// Where a test on places changes along a segment.
+/// The share of a segment at which a test on points changes, by bisection.
 double root_of(const std::function<bool(const Point&)>& inside, const Point& out, const Point& in) {
     double low = 0, high = 1;
     for (int i = 0; i < 60; ++i) {
@@ -64,7 +65,7 @@ void add_level(const Mesh& mesh, const std::vector<double>& values, double level
         curves);
 }
 
-/// The sides of a polygon on a picture, where they run over the faces.
+/// Projects the sides of a polygon in a picture onto the faces.
 class DrawnSides {
 public:
     DrawnSides(const Mesh& mesh, const PictureCamera& camera, const std::vector<Pixel>& corners)
@@ -74,7 +75,7 @@ public:
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Pixel &p = corners[i], &q = corners[(i + 1) % corners.size()];
             const auto a = camera.ray(p[0], p[1]), b = camera.ray(q[0], q[1]);
-            // The plane through the eye and the side.
+            // The plane through the eye and the side of the polygon.
             const Vector along = camera.eye() ? b.direction : b.origin - a.origin;
             planes_.push_back({a.origin, CGAL::cross_product(a.direction, along)});
         }
@@ -113,7 +114,7 @@ private:
                 continue;
             std::array<double, 3> side{};
             for (std::size_t k = 0; k < 3; ++k) side[k] = (mesh_.point(corner[k]) - planes_[i].origin) * planes_[i].normal;
-            // The chord of the plane, its ends on edges.
+            // Intersection of the plane with the face: a chord with its ends on edges.
             std::vector<std::pair<double, SurfaceNode>> ends;
             for (const Halfedge h : mesh_.halfedges_around_face(mesh_.halfedge(f))) {
                 const Vertex v = std::min(mesh_.source(h), mesh_.target(h)), w = std::max(mesh_.source(h), mesh_.target(h));
@@ -149,7 +150,7 @@ private:
         }
     }
 
-    /// A corner of the polygon as a place in a face that it is seen in.
+    /// Moves a node to the point of the face that is seen at a corner of the polygon.
     bool move_to_corner(Face f, const Vector& area, std::size_t i, SurfaceNode& node) const {
         const auto ray = camera_.ray(corners_[i][0], corners_[i][1]);
         const double slope = ray.direction * area;
@@ -187,7 +188,7 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
             mesh_, flags, [&](Vertex a, Vertex b) { return root_of(inside, mesh_.point(a), mesh_.point(b)); }, borders.curves);
     } else if (kind == "rectangle" || kind == "polygon") {
         const ScreenCamera from = camera(*value, frame, here);
-        screen_area(kind, *value, from, here);  // it is one
+        screen_area(kind, *value, from, here);  // validates the area
         std::vector<Pixel> points;
         const auto pixel = [](const JsonValue& list) { return Pixel{list[0].GetDouble(), list[1].GetDouble()}; };
         if (kind == "rectangle") {
@@ -210,7 +211,7 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
         const double radius = length((*value)["radius"].GetDouble(), frame);
         add_level(mesh_, distances_within(mesh_, brush_centres(*value, frame, here), radius), radius, false, borders.curves);
     } else if (kind == "lasso" && !keeps_to_edges(*value)) {
-        static_cast<void>(faces(expression, around, at));  // refuses one that crosses itself, or has its seed on the outline
+        static_cast<void>(faces(expression, around, at));  // throws if the lasso crosses itself or has its seed on the outline
         const std::vector<Index> points = picks((*value)["points"], frame, here + "/points");
         auto& legs = borders.lassos[here];
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -231,7 +232,7 @@ void ExpressionEvaluator::add_borders(const JsonValue& expression, PlaceFrame ar
         for (rapidjson::SizeType i = 0; i < value->Size(); ++i)
             add_borders((*value)[i], frame, here + '/' + std::to_string(i), borders);
     }
-    // Others run along the edges of the mesh.
+    // Selections of the other kinds run along the edges of the mesh.
 }
 
 bool ExpressionEvaluator::ends_at_levels(const JsonValue& expression, PlaceFrame around, const std::string& at) const {
@@ -276,7 +277,7 @@ CutSelection ExpressionEvaluator::cut_selection(const JsonValue& expression, Pla
 }
 
 bool ExpressionEvaluator::on_faces(const JsonValue& threshold, PlaceFrame frame, const std::string& at) const {
-    // Other maps are on vertices, and dear.
+    // Other maps are on vertices, and expensive to compute.
     if (find_member(threshold, "thickness") == nullptr && find_member(threshold, "map") == nullptr) return false;
     return scalar(threshold, frame, at).on_faces;
 }
@@ -300,7 +301,7 @@ const SelectionLevel* ExpressionEvaluator::level_of(const JsonValue& expression,
         std::vector<Index> border;
         for (std::size_t v = 0; v < in.size(); ++v)
             if (in[v] && out[v]) border.push_back(static_cast<Index>(v));
-        if (border.empty()) return nullptr;  // nothing or all: it has no border to grow from
+        if (border.empty()) return nullptr;  // all or nothing selected: there is no border to grow from
         known.emplace();
         known->values = distances_within(inner.cut.mesh, border, distance);
         known->values.resize(inner.cut.old_vertices);

@@ -1,4 +1,4 @@
-// Expressions that reckon with distances and other numbers on the surface.
+// Expressions computed from distances and other scalars on the surface.
 #include "expression.h"
 
 #include "ostraka/core/error.h"

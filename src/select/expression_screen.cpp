@@ -1,4 +1,4 @@
-// Expressions and picks that look through a camera.
+// Expressions and picks through a camera.
 #include "expression.h"
 
 #include "ostraka/core/text.h"

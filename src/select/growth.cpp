@@ -20,7 +20,7 @@ std::vector<bool> flags_of(const Mesh& mesh, const std::vector<Index>& vertices)
     return flags;
 }
 
-/// Vertices that have a face, ascending.
+/// The flagged vertices that have a face, ascending.
 std::vector<Index> listed(const Mesh& mesh, const std::vector<bool>& flags) {
     std::vector<Index> list;
     for (const Vertex v : mesh.vertices())
@@ -43,7 +43,7 @@ std::vector<bool> grown(const Mesh& mesh, std::vector<bool> vertices, int rings)
     return vertices;
 }
 
-/// Adds the faces whose corners are within `limit` on average.
+/// Adds the faces whose corners have an average distance of at most `limit`.
 void add_near(const Mesh& mesh, const std::vector<double>& distance, double limit, std::vector<bool>& faces) {
     for (const Face face : mesh.faces()) {
         const auto [a, b, c] = corners(mesh, face);

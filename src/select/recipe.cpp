@@ -23,14 +23,14 @@ AnnotationType type_of(const std::string& name) {
     return name == "point" ? AnnotationType::point : name == "line" ? AnnotationType::line : AnnotationType::region;
 }
 
-/// How the outline of a region runs.
+/// Type of a region's outline.
 enum class Outline {
-    drawn,  ///< free, where a part of its border is the level of a field; sets of faces end along the edges of the mesh
+    drawn,  ///< free if part of the border is a level of a field; sets of faces end along the edges of the mesh
     edges,
-    free,  ///< everywhere: sets of faces end at isolines
+    free,  ///< always free: sets of faces end at isolines
 };
 
-/// Members of a recipe must all be understood: a misspelt one would silently change the outcome.
+/// Executes a recipe. Unknown members are rejected: a misspelt one would silently change the result.
 class RecipeRunner {
 public:
     RecipeRunner(const Mesh& mesh, RecipeStart start, std::string where)
@@ -63,7 +63,7 @@ private:
         fail_input(where_, "at " + at + ": " + what, remedy);
     }
 
-    /// Of what steps made or changed; others keep what they say.
+    /// Measures the annotations that steps made or changed; the others keep their values.
     void measure() {
         std::map<int, std::vector<Attribute>> others;
         for (Annotation& one : set_.annotations)
@@ -83,8 +83,8 @@ private:
         else edit(action, step, frame, at);
     }
 
-    /// What a selection is on the mesh cut along its borders, joined there with a region that is given: its faces with those
-    /// added, without those taken away, or those alone.
+    /// A region from a selection on the mesh cut along the selection's borders. With `given` the selection is added to that
+    /// region, taken away from it, or replaces it, according to the action.
     Annotation selected_free(const JsonValue& select, PlaceFrame frame, const std::string& here, const std::string& action,
                              const Annotation* given) {
         const auto [cut, named] = evaluator_.cut_selection(select, frame, here);
@@ -107,7 +107,7 @@ private:
         return annotation;
     }
 
-    /// The same of points and lines, at the places that are picked and along geodesics.
+    /// As selected_free for lines, along geodesics; points cannot be free.
     Annotation drawn_free(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here) {
         if (type == AnnotationType::point)
             fail(here, "selects vertices: there are no free points of a selection", "leave out \"outline\"");
@@ -118,14 +118,14 @@ private:
         return annotation;
     }
 
-    /// The outline that a step asks for; of one that does not say, `drawn`.
+    /// The outline that a step specifies; default `drawn`.
     static Outline outline_of(const JsonValue& step) {
         const std::string asked = text_in(step, "outline");
         return asked == "free" ? Outline::free : asked == "edges" ? Outline::edges : Outline::drawn;
     }
 
-    /// A region of a step that asks for this outline, joined with one that is given. Where a free one cannot be made it runs
-    /// along the edges of the mesh, which is noted; nothing, where the outline is not to be free or `given` has no edges.
+    /// A region with a free outline, combined with `given` if any. Returns nothing if the outline need not be free, or if no
+    /// free one can be made; the reason is then stored for note_edges, and the region has to run along the edges of the mesh.
     std::optional<Annotation> region_where_drawn(const JsonValue& select, PlaceFrame frame, const std::string& here,
                                                  Outline outline, const std::string& action, const Annotation* given) {
         if (outline == Outline::edges) return std::nullopt;
@@ -140,7 +140,7 @@ private:
         }
     }
 
-    /// Says of an annotation that its outline was to be free and is not.
+    /// Adds a note that the annotation was to have a free outline but has none.
     void note_edges(const Annotation& annotation) {
         if (not_free_.empty()) return;
         set_.notes.push_back(name_of(annotation) +
@@ -149,7 +149,7 @@ private:
         not_free_.clear();
     }
 
-    /// Faces, poly-lines or points of a step, in an annotation of this type.
+    /// The faces, polylines or points that a step selects, as an annotation of this type.
     Annotation selected(AnnotationType type, const JsonValue& select, PlaceFrame frame, const std::string& here,
                         Outline outline) {
         if (type == AnnotationType::region) {
@@ -248,8 +248,8 @@ private:
         *set_.find(id) = std::move(annotation);
     }
 
-    /// What an edit selects, added, taken away or put in the place of what there was. An edited outline stays what it is, free or
-    /// along the edges; one that is replaced is as a new one.
+    /// Adds what an edit selects, takes it away, or replaces the annotation by it. An edited outline keeps its type, free or
+    /// along the edges; a replaced outline has the type of a new one.
     void change_elements(Annotation& annotation, const std::string& action, const JsonValue& select, PlaceFrame frame,
                          const std::string& here, Outline outline) {
         const Annotation before = annotation;
@@ -271,7 +271,7 @@ private:
         }
         const bool free = outline == Outline::free || (was_free && outline == Outline::drawn);
         const Annotation part = selected(annotation.type, select, frame, here, free ? Outline::free : Outline::edges);
-        // Lines of which one is free are free: along the edges if need be.
+        // If one of the lines is free the result is free; other lines become curves along the edges.
         if (free || was_free) change_curves(annotation, action, part, here);
         else change(annotation, action, part);
     }
@@ -330,7 +330,7 @@ private:
         }
     }
 
-    /// What is left of poly-lines when the edges of others are taken out.
+    /// The parts of polylines that remain without the edges of others.
     static std::vector<std::vector<Index>> without_edges(const std::vector<std::vector<Index>>& lines,
                                                          const std::vector<std::vector<Index>>& others) {
         std::set<std::pair<Index, Index>> gone;
@@ -350,7 +350,7 @@ private:
                 piece.push_back(line[i + 1]);
             }
             if (piece.size() > 1) left.push_back(piece);
-            // A closed line that was cut elsewhere goes on over its first vertex.
+            // A closed line that was cut elsewhere continues across its first vertex.
             if (left.size() > before + 1 && line.front() == line.back() && left[before].front() == line.front() &&
                 left.back().back() == line.back()) {
                 left.back().insert(left.back().end(), left[before].begin() + 1, left[before].end());
@@ -360,8 +360,8 @@ private:
         return left;
     }
 
-    /// Attributes stand as in annotation files, except that pins may be given by coordinates, and those of a bounding measure may
-    /// be left out.
+    /// Attributes are written as in annotation files, except that pins may be given by coordinates, and that a bounding measure
+    /// may omit its pins.
     void add_attributes(Annotation& annotation, const JsonValue& source, PlaceFrame frame, const std::string& at) {
         Json list;
         list.CopyFrom(source, list.GetAllocator());
@@ -396,7 +396,7 @@ private:
                      "the descriptor '" + attribute.name + "' of a " + to_string(annotation.type) +
                          " has no value and cannot be computed",
                      "known ones are area, perimeter, circularity, length, volume; give others a value");
-            descriptor.values.push_back(0);  // computed with the measures
+            descriptor.values.push_back(0);  // placeholder; computed with the measures
             if (descriptor.unit.empty()) descriptor.unit = descriptor_unit(attribute.name, set_.unit);
         }
     }
@@ -406,8 +406,8 @@ private:
     std::vector<std::int32_t> face_labels_;
     AnnotationSet set_;
     Path folder_;
-    std::set<int> before_, touched_;  ///< ids of annotations that were there, and of those that steps name
-    std::string not_free_;            ///< why the outline made last could not be free
+    std::set<int> before_, touched_;  ///< ids of annotations that existed before, and of those that steps edit
+    std::string not_free_;            ///< why the last outline could not be free
     Surroundings surroundings_;
     ExpressionEvaluator evaluator_;
 };

@@ -16,7 +16,7 @@ double orientation(const Pixel& a, const Pixel& b, const Pixel& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// True if c, which lies on the line through a and b, lies between them.
+/// True if c, which lies on the line through a and b, is between them.
 bool between(const Pixel& a, const Pixel& b, const Pixel& c) {
     return std::min(a[0], b[0]) <= c[0] && c[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= c[1] &&
            c[1] <= std::max(a[1], b[1]);
@@ -45,7 +45,7 @@ bool inside(const std::vector<Pixel>& points, const Pixel& p) {
     return odd;
 }
 
-/// Which of `count` places are seen; `place(i)` gives a place, `ignored(i)` the faces that do not hide it.
+/// Tests which of `count` points are seen; `place(i)` returns a point, `ignored(i)` the faces that cannot hide it.
 template <class Place, class Ignored>
 std::vector<char> seen(std::size_t count, const PictureCamera& camera, const ScreenArea& area, const SurfaceSearch* search,
                        const Place& place, const Ignored& ignored) {
@@ -85,7 +85,7 @@ ScreenArea screen_polygon(const std::vector<Pixel>& drawn, const std::string& wh
         for (std::size_t j = i + 1; j < n; ++j) {
             const bool neighbours = j == i + 1 || (i == 0 && j == n - 1);
             const Pixel &a = points[i], &b = next(i), &c = points[j], &d = next(j);
-            // Neighbours share a point; they overlap if one runs back over the other.
+            // Neighbouring sides share a corner; they overlap if one runs back along the other.
             const Pixel &shared = j == i + 1 ? b : a, &before = j == i + 1 ? a : b, &after = j == i + 1 ? d : c;
             const bool crossing =
                 !neighbours
@@ -134,7 +134,7 @@ std::optional<SurfaceHit> seen_at(const SurfaceSearch& search, const PictureCame
     const Mesh& mesh = search.mesh();
     const Point& somewhere = mesh.point(mesh.target(mesh.halfedge(*mesh.faces().begin())));
     const double max_distance = std::sqrt(CGAL::squared_distance(ray.origin, somewhere)) + search.diagonal();
-    // Parallel rays start in the plane through the centre: what lies before it counts as well.
+    // Parallel rays start in the plane through the centre; the part of the surface in front of that plane counts as well.
     const Point start = camera.distance == 0 ? ray.origin - max_distance * ray.direction : ray.origin;
     for (const SurfaceHit& hit : search.line_hits(start, ray.direction, 2 * max_distance))
         if (hit.distance >= 0) return hit;
@@ -148,7 +148,7 @@ bool is_inside(const Mesh& mesh, const Point& point) {
         for (int k = 0; k < 3; ++k, h = mesh.next(h))
             if (mesh.is_border(mesh.opposite(h))) return false;
         const auto [a, b, c] = corners(mesh, face);
-        // Van Oosterom and Strackee 1983: the solid angle of a triangle.
+        // Solid angle of a triangle, Van Oosterom and Strackee 1983.
         const Vector x = mesh.point(a) - point, y = mesh.point(b) - point, z = mesh.point(c) - point;
         const double lx = std::sqrt(x.squared_length()), ly = std::sqrt(y.squared_length()), lz = std::sqrt(z.squared_length());
         sum += 2 * std::atan2(x * CGAL::cross_product(y, z), lx * ly * lz + (x * y) * lz + (y * z) * lx + (z * x) * ly);

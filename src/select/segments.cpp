@@ -13,13 +13,13 @@ namespace ostraka {
 
 namespace {
 
-/// What the library cuts into segments.
+/// Input and output of the library's segmentation.
 struct Cut {
     Mesh mesh;
-    std::vector<double> values;  ///< of the faces; -1 without one
+    std::vector<double> values;  ///< one per face; -1 if there is none
     std::size_t clusters = 0, number = 1;
     double smoothing = 0;
-    std::vector<std::size_t> segments;  ///< of the faces
+    std::vector<std::size_t> segments;  ///< one per face
 
     void make() {
         auto value = mesh.add_property_map<Face, double>("f:segment-thickness", 0).first;
@@ -50,11 +50,11 @@ std::vector<Index> segment(const Mesh& mesh, const std::vector<double>& thicknes
     double low = std::numeric_limits<double>::infinity(), high = 0;
     for (const Face face : mesh.faces()) {
         const double x = thickness[face];
-        cut.values[face] = std::isfinite(x) && x > 0 ? x : -1;  // without a value: that of the neighbours is taken
+        cut.values[face] = std::isfinite(x) && x > 0 ? x : -1;  // faces without a value take that of their neighbours
         if (cut.values[face] > 0) low = std::min(low, x), high = std::max(high, x);
     }
     if (!(high > 0)) fail_input("mesh", "has no thickness anywhere", "is it closed, and does it face outwards?");
-    // Its graph cut asks no watch.
+    // The library's graph cut does not check for cancellation.
     if (high > low) cut = run_apart_on(std::move(cut), [](Cut& own) { own.make(); });
     const std::size_t number = cut.number;
     const std::vector<std::size_t>& segments = cut.segments;

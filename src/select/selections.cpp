@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr double outline_tolerance = 1e-9;  ///< share of the diagonal: a seed closer to an outline lies on it
+constexpr double outline_tolerance = 1e-9;  ///< share of the diagonal: a seed closer to an outline than this lies on it
 
 /// Flags the faces reached from `seed` without crossing a wall; counts them and the wall edges met.
 struct Flood {
@@ -40,7 +40,7 @@ std::string name_of(std::size_t pick, const std::vector<Index>& picks) {
     return "point " + std::to_string(pick) + " (vertex " + std::to_string(picks[pick]) + ")";
 }
 
-/// Successive equal picks, and a last one equal to the first of a closed path, count once.
+/// Drops successive equal picks, and the last of a closed path if it equals the first.
 std::vector<Index> distinct(const std::vector<Index>& picks, bool closed) {
     std::vector<Index> result;
     for (const Index pick : picks)
@@ -52,7 +52,7 @@ std::vector<Index> distinct(const std::vector<Index>& picks, bool closed) {
 using Leg = std::vector<Index>;
 using Legs = std::vector<Leg>;
 
-/// Paths from pick to pick; with `avoid` a leg keeps off the vertices of earlier legs if it can.
+/// Paths from pick to pick; with `avoid` a leg avoids the vertices of earlier legs where possible.
 Legs trace(const Mesh& mesh, const std::vector<Index>& picks, bool closed, PathMetric metric, bool avoid,
            const std::string& where) {
     PathSearch search(mesh);
@@ -87,7 +87,7 @@ std::vector<Index> joined(const Legs& legs) {
     return path;
 }
 
-/// True if, going round vertex `at` from `to` in the mesh's sense of rotation, `x` comes before `from`.
+/// True if, rotating around vertex `at` from `to` in the mesh's orientation, `x` comes before `from`.
 bool on_one_side(const Mesh& mesh, Index at, Index from, Index to, Index x) {
     const Halfedge start = find_halfedge(mesh, Vertex(to), Vertex(at));
     Halfedge h = start;
@@ -100,7 +100,7 @@ bool on_one_side(const Mesh& mesh, Index at, Index from, Index to, Index x) {
     return false;
 }
 
-/// Where `b` changes the side of `a` for an odd number of times in all: the first such place.
+/// The first place where `b` changes to the other side of `a`, if it does so an odd number of times in total.
 std::optional<Index> crossing_of(const Mesh& mesh, const Leg& a, const Leg& b) {
     std::unordered_map<Index, std::size_t> place;
     for (std::size_t i = 0; i < a.size(); ++i) place.emplace(a[i], i);
@@ -109,7 +109,7 @@ std::optional<Index> crossing_of(const Mesh& mesh, const Leg& a, const Leg& b) {
     for (std::size_t k = 0; k < b.size(); ++k) {
         const auto met = place.find(b[k]);
         if (met == place.end()) continue;
-        // The stretch that both legs share, along a in the direction of b.
+        // The stretch that both legs share, as indices along a in the direction of b.
         const std::size_t begin = k, from = met->second;
         std::size_t to = from;
         int direction = 0;
@@ -136,13 +136,13 @@ std::optional<Index> crossing_of(const Mesh& mesh, const Leg& a, const Leg& b) {
 }
 
 struct Crossing {
-    std::size_t one = 0, other = 0;  ///< legs
-    Index vertex = no_index;         ///< where they meet
+    std::size_t one = 0, other = 0;  ///< indices of the legs
+    Index vertex = no_index;         ///< common vertex
 };
 
-/// The first pair of legs of which one ends up on the other side of the other: legs that only touch, or that run together for a
-/// while and part to the side they came from, do not cross, nor do legs that meet at the end of one of them. Each leg is a path
-/// of vertices that visits none twice. Linear in the length of all legs, but for pairs that share vertices.
+/// The first pair of legs that cross, that is, of which one ends on the other side of the other. Legs that only touch, that run
+/// together and part to the side they came from, or that meet at the end of one of them do not cross. Each leg is a path of
+/// vertices that visits none twice. Linear in the total length of the legs, except for pairs that share vertices.
 std::optional<Crossing> find_crossing(const Mesh& mesh, const Legs& legs) {
     std::unordered_map<Index, std::vector<std::size_t>> legs_at;
     std::set<std::pair<std::size_t, std::size_t>> meeting;
@@ -158,7 +158,7 @@ std::optional<Crossing> find_crossing(const Mesh& mesh, const Legs& legs) {
     return std::nullopt;
 }
 
-/// True if two legs share a vertex that is not where one ends and the next begins.
+/// True if two legs share a vertex other than the end of one leg and the start of the next.
 bool touch(const Legs& legs) {
     std::set<Index> seen;
     for (const Leg& leg : legs)
@@ -167,7 +167,7 @@ bool touch(const Legs& legs) {
     return false;
 }
 
-/// The closed path of a lasso. Legs that meet are searched again so that they avoid one another.
+/// The closed path of a lasso. Legs that meet are searched again with avoidance.
 std::vector<Index> lasso_path(const Mesh& mesh, const std::vector<Index>& points, PathMetric metric, const std::string& where) {
     const Legs shortest = trace(mesh, points, true, metric, false, where);
     if (const auto crossing = find_crossing(mesh, shortest)) {

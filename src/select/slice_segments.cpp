@@ -30,7 +30,7 @@ std::vector<LabelRun> runs_of(const std::vector<int>& labels) {
     return runs;
 }
 
-/// Each slice without a cluster takes that of the nearest one that has one, the lower of two.
+/// Gives each slice without a cluster that of the nearest slice that has one (of two, the lower).
 void fill_gaps(std::vector<int>& labels) {
     const std::vector<int> known = labels;
     const auto n = static_cast<std::ptrdiff_t>(labels.size());
@@ -56,7 +56,7 @@ void join_short_runs(std::vector<int>& labels, std::size_t minimum) {
     }
 }
 
-/// A row a slice that has a closed outline; `slices` are their numbers.
+/// Descriptors, one row per slice with a closed outline; `slices` receives the indices of these slices.
 Eigen::MatrixXd sample_table(const std::vector<SliceDescriptors>& described, double height, bool size,
                              std::vector<std::size_t>& slices) {
     const Eigen::Index columns = size ? 8 : 7;

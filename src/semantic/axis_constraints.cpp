@@ -1,4 +1,4 @@
-// Parts whose axes depend on those of others. The last member is the reference, whose axis is taken as it stands.
+// Constraints between the axes of parts. The last member is the reference, whose axis is not changed.
 #include "continuity.h"
 #include "reader.h"
 
@@ -10,10 +10,10 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// How the axis of a part is found on a shape.
+/// Determines the axis of a part on a shape.
 using AxisFinder = Axis (*)(const Mesh& mesh, const Annotation& part);
 
-/// That of rotation is the same to a hair when the part's ends change a little; what is not round has that of its slices.
+/// The axis of rotation, which hardly depends on where the part ends; for parts that are not round the axis of the slices.
 Axis steadiest(const Mesh& mesh, const Annotation& part) {
     Axis found = find_axis(mesh, part.faces);
     return found.found ? found : axis_of_part(mesh, part);
@@ -27,7 +27,7 @@ Axis axis_of(const Reader& read, std::size_t i, AxisFinder find) {
     return found;
 }
 
-/// Of all members, two or more.
+/// The axes of all members, at least two.
 std::vector<Axis> axes_of_parts(const Reader& read) {
     read.need(2, 0);
     std::vector<Axis> axes;
@@ -35,7 +35,7 @@ std::vector<Axis> axes_of_parts(const Reader& read) {
     return axes;
 }
 
-/// The reference's axis on the shape as it is, or at rest where a deformed reference has none any more.
+/// The axis of the reference on the current shape, or at rest if the deformed reference has none.
 Axis reference_now(const Reader& read, const Axis& rest, const State& now, AxisFinder find) {
     Axis found = find(now.mesh, read.member(read.members() - 1));
     return found.found ? found : rest;
@@ -179,8 +179,8 @@ Statement axis_angle(const ReaderPtr& read, const RelationOptions& tolerances) {
 
 namespace {
 
-/// Means of the lines in which planes across a direction cut a part, from the first to the second share of the way of some of its
-/// vertices.
+/// Means of the curves in which planes across a direction intersect a part, from the share `first` to the share `last` of the
+/// extent of some of its vertices.
 std::vector<Vector3d> section_means(const State& shape, const Annotation& part, const std::vector<int>& vertices,
                                     const Vector3d& direction, double first, double last) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -212,8 +212,8 @@ std::vector<Vector3d> section_means(const State& shape, const Annotation& part, 
     return means;
 }
 
-/// On a coarse mesh the means of few vertices may lie on an axis that the surface does not have: where sections of the part, or
-/// of its half next to the reference, say otherwise, what holds at its stations is not known to hold.
+/// On a coarse mesh the means of few vertices may lie on an axis that the surface does not have. If sections of the part, or of
+/// its half next to the reference, contradict the stations, the verdict becomes unknown.
 void doubt_stations(const Reader& read, const State& deformed, const AxisSegment& segment, const Axis& reference,
                     Measured& measured) {
     if (measured.verdict != Verdict::holds) return;
@@ -250,7 +250,8 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         read->shape().mesh, read->member(0), read->member(1), rest.direction, read->number("angle", 10, 0.1, 90)));
     const Deviation angle{"angle", 0.0, tolerances.angle, "degree"};
     Statement statement;
-    // Of a shape alone, a part that goes another way from the beginning on, and as a whole, does not continue the reference.
+    // If the shape is judged alone, a part that deviates from the axis at once, and as a whole, does not continue the
+    // reference.
     if (const Axis own = axis_of_part(read->shape().mesh, read->member(0)); read->shape().alone && segment->turned && own.found) {
         const Vector3d along = eigen(own.direction), direction = eigen(rest.direction);
         Deviation turned = angle;
@@ -271,15 +272,16 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         parameters.coefficients = segment->shares;
         return only(read->make("AxisOnLine", segment->vertices, parameters));
     };
-    // The axis is constrained, and the surface follows: it may turn, which displacements from neighbours could not.
+    // The axis is constrained and the surface follows. The part may rotate, which displacements from neighbours would prevent.
     statement.rotating = read->vertices(0);
-    // The reference stands, else both lean over together, pass by pass. What the part has of it is the part's.
+    // The reference is fixed, otherwise both would tilt further in each pass. Vertices of the reference that also belong to the
+    // part may move.
     const std::set<Index> own(statement.rotating.begin(), statement.rotating.end());
     for (const Index v : read->vertices(1))
         if (own.count(v) == 0) statement.referred.push_back(v);
     statement.support = [read, rotating = statement.rotating](const State& edited, const State&) {
         const Mesh& mesh = read->shape().mesh;
-        // As it is at rest, but where the edit makes all of the object larger or smaller.
+        // The shape at rest, scaled if the edit changes the volume of the whole object.
         const double ratio = volume(mesh, edited.points) / volume(mesh, read->shape().rest);
         const double grown = ratio > 0.01 && ratio < 100 ? std::cbrt(ratio) : 1;
         return stars_kept(*read, rotating, read->shape().rest, grown);
@@ -294,7 +296,7 @@ Statement structural_continuity(const ReaderPtr& read, const RelationOptions& to
         const Vector3d was = then.back() - then.front(), is = there.back() - there.front();
         if (!(was.norm() > 0 && is.norm() > 0)) return;
         const Eigen::Quaterniond rotation = rotation_between(was, is);
-        // Beyond the segment the part goes along with its end.
+        // Beyond the segment the part moves with its end.
         std::vector<int> station(static_cast<std::size_t>(shape.cols()), segment->count - 1);
         std::vector<double> share(station.size(), 0);
         for (std::size_t i = 0; i < segment->vertices.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 using semantic::Deformer;
 
-/// The object stretched by a tenth along one axis.
+/// An edit that stretches the object by a tenth along one axis.
 Json stretched_along(int axis) {
     Json edit(rapidjson::kObjectType);
     JsonAllocator& a = edit.GetAllocator();
@@ -26,7 +26,7 @@ Json stretched_along(int axis) {
     return edit;
 }
 
-/// The constraint alone, hard where it can be said.
+/// A graph of this constraint only, hard if it can be.
 RelationGraph alone(const Relationship& relationship) {
     RelationGraph graph;
     graph.relationships.push_back(relationship);
@@ -39,7 +39,7 @@ RelationGraph alone(const Relationship& relationship) {
     return graph;
 }
 
-/// Adds M^T M for the rows M = B W of a constraint, observed ones left out.
+/// Adds M^T M for the rows M = B W of a constraint, without observed rows.
 void add_products(const Constraint& constraint, const WeightMatrix& weights, Eigen::MatrixXd& sum) {
     const Constraint::Map& map = constraint.map();
     const Eigen::Index count = map.rows - map.observed;
@@ -57,9 +57,9 @@ void add_products(const Constraint& constraint, const WeightMatrix& weights, Eig
     sum.noalias() += rows.transpose() * rows;
 }
 
-/// Of singular values whose squares are the eigenvalues.
+/// The rank; the squares of the singular values are the eigenvalues of `products`.
 std::size_t rank_of(const Eigen::MatrixXd& products) {
-    constexpr double negligible = 1e-6;  // the square of a thousandth
+    constexpr double negligible = 1e-6;  // square of a thousandth
     const SymmetricEigenX eigen(products);
     const double largest = eigen.eigenvalues().maxCoeff();
     return static_cast<std::size_t>((eigen.eigenvalues().array() > negligible * largest).count());
@@ -70,7 +70,7 @@ double rms_distance(const Constraint& constraint, const Points& points) {
     return std::sqrt(constraint.squared_distance(points) / rows);
 }
 
-/// Of the constraint's points; of one point alone, that of the object.
+/// Diagonal of the constraint's points; for a single point that of the object.
 double diagonal_of(const Constraint& constraint, const Points& points) {
     if (constraint.ids().size() == 1) return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
     Eigen::Vector3d low = points.col(constraint.ids().front()), high = low;
@@ -78,7 +78,7 @@ double diagonal_of(const Constraint& constraint, const Points& points) {
     return (high - low).norm();
 }
 
-/// The member that all points of the constraint belong to.
+/// The member that contains all points of the constraint, if any.
 std::optional<int> owner_of(const Constraint& constraint, const HandleSpace& space, const Relationship& relationship) {
     for (const int id : relationship.annotations) {
         const std::vector<Index> vertices = vertices_of(space.mesh, *space.set.find(id));
@@ -89,7 +89,7 @@ std::optional<int> owner_of(const Constraint& constraint, const HandleSpace& spa
     return {};
 }
 
-/// After one edit. None where nothing is solved for through the cage.
+/// Result after one edit; nothing if there is nothing to solve through the cage.
 std::optional<ConstraintReach> reach_after(const HandleSpace& space, const Relationship& relationship, const JsonValue& edit,
                                            const std::string& edit_name, const RelationOptions& tolerances,
                                            const std::string& graph_name) {
@@ -132,7 +132,7 @@ std::optional<ConstraintReach> reach_after(const HandleSpace& space, const Relat
     return reach;
 }
 
-/// Whether the first is farther from being reached.
+/// True if the first is farther from its tolerance.
 bool is_worse(const ConstraintReach& one, const ConstraintReach& other) {
     if ((one.verdict == Verdict::holds) != (other.verdict == Verdict::holds)) return one.verdict != Verdict::holds;
     return one.left * other.tolerance > other.left * one.tolerance;
@@ -168,7 +168,7 @@ CageForConstraints make_cage_for(const Mesh& mesh, const AnnotationSet& set, con
                                  const CageOptions& options, const std::optional<MirrorPlane>& mirror,
                                  const RelationOptions& tolerances, const std::string& graph_name) {
     struct Try {
-        double density, vertices, offset;  ///< factors
+        double density, vertices, offset;  ///< factors of the options
     };
     constexpr std::array<Try, 5> tries{{{1, 1, 1}, {4, 1, 1}, {8, 1, 0.5}, {16, 1.5, 0.5}, {30, 2, 0.25}}};
     std::set<int> parts;

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Points at equal steps along a poly-line.
+/// Points at equal intervals along a polyline.
 std::vector<Vector3d> resampled(const std::vector<Point>& line, int steps) {
     std::vector<double> at{0};
     for (std::size_t i = 1; i < line.size(); ++i) at.push_back(at.back() + (eigen(line[i]) - eigen(line[i - 1])).norm());
@@ -28,8 +28,8 @@ std::vector<Vector3d> resampled(const std::vector<Point>& line, int steps) {
     return points;
 }
 
-/// So many that each is three edges long: the mean of a few vertices of a ring, as they happen to lie, is not on the axis, and a
-/// constraint on it would draw the part together.
+/// Number of slices of about three edge lengths each. With fewer vertices per slice the mean of a ring would be off the axis,
+/// and a constraint on it would shrink the part.
 int slices_of(const Mesh& mesh, const Annotation& part, const std::vector<Point>& skeleton) {
     double length = 0, sum = 0;
     for (std::size_t i = 1; i < skeleton.size(); ++i) length += (eigen(skeleton[i]) - eigen(skeleton[i - 1])).norm();
@@ -46,7 +46,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
                                double angle) {
     AxisSegment result;
     Axis skeleton = skeleton_axis(mesh, part.faces);
-    // A part of few faces may shrink to a point; its slices still tell the way.
+    // A part of few faces may shrink to a point; its slices still give an axis.
     if (!skeleton.found || skeleton.lines.empty() || skeleton.lines[0].size() < 2)
         if (Axis slices = slice_axis(mesh, part.faces); slices.found) skeleton = std::move(slices);
     if (!skeleton.found || skeleton.lines.empty() || skeleton.lines[0].size() < 2) {
@@ -75,7 +75,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
                         std::to_string(angle) + " degrees at once";
         return result;
     }
-    // A vertex lies between the two ends of the step of the skeleton that it is nearest to.
+    // Each vertex is assigned to the two ends of the nearest skeleton step.
     for (const Index v : vertices_of(mesh, part)) {
         const Vector3d p = eigen(mesh.point(Vertex(v)));
         double best = std::numeric_limits<double>::infinity(), along = 0;
@@ -91,7 +91,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
         result.stations.push_back(at);
         result.shares.push_back(along);
     }
-    // Stations without gaps: one that no vertex is near to is left out.
+    // Stations without vertices are removed, so that they are numbered consecutively.
     std::vector<double> weight(static_cast<std::size_t>(last) + 1, 0);
     for (std::size_t i = 0; i < result.stations.size(); ++i) {
         const auto s = static_cast<std::size_t>(result.stations[i]);
@@ -103,7 +103,7 @@ AxisSegment continuing_segment(const Mesh& mesh, const Annotation& part, const A
         if (weight[s] > 0.1) number[s] = result.count++;
     for (std::size_t i = 0; i < result.stations.size(); ++i) {
         const auto s = static_cast<std::size_t>(result.stations[i]);
-        // Beside a station that is left out a vertex counts for the other one alone.
+        // Next to a removed station a vertex counts for the remaining one only.
         if (number[s] < 0) result.stations[i] = number[s + 1], result.shares[i] = 0;
         else result.stations[i] = number[s], result.shares[i] = number[s + 1] < 0 ? 0 : result.shares[i];
     }

@@ -14,13 +14,13 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// Distances of points from where the best motion of what they were puts them.
+/// Distances between points and their former positions after the best rigid motion.
 Eigen::VectorXd off_rigid(const Points& were, const Points& are) {
     const Eigen::Matrix4d motion = Eigen::umeyama(were, are, false);
     return (are - ((motion.topLeftCorner<3, 3>() * were).colwise() + motion.topRightCorner<3, 1>())).colwise().norm();
 }
 
-/// Whether a face is less than half as thick as it is at rest and as the edit leaves it. Empty where nothing has moved.
+/// Flags faces less than half as thick as at rest and after the edit.
 std::vector<bool> thin_faces(const Mesh& rest, const Mesh& edited, const Mesh& now) {
     const ThicknessOptions few{.rays = 5, .cone = 30};
     const std::vector<double> before = thickness(rest, few), asked = thickness(edited, few), after = thickness(now, few);
@@ -29,7 +29,7 @@ std::vector<bool> thin_faces(const Mesh& rest, const Mesh& edited, const Mesh& n
     return flags;
 }
 
-/// Vertices no farther along the edges than `radius` from one of those flagged.
+/// Flags the vertices within an edge-path distance of `radius` from a flagged vertex.
 std::vector<bool> around(const Mesh& mesh, const std::vector<bool>& flagged, double radius) {
     std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
     std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue;
@@ -54,7 +54,7 @@ std::vector<bool> around(const Mesh& mesh, const std::vector<bool>& flagged, dou
 std::vector<DistortedPart> distorted_parts(const Mesh& rest, const AnnotationSet& set, const Expected& expected,
                                            const Mesh& edited, const Mesh& now, const DeformOptions& options) {
     const Points from = columns_of(edited), to = columns_of(now);
-    constexpr double most_thin = 0.05;  // at the outline of a part rays may end in another one
+    constexpr double most_thin = 0.05;  // at the outline of a part rays may end in another part
     const double diagonal = box_diagonal(rest), limit = options.distortion * diagonal;
     const std::vector<bool> giving = around(rest, expected.change, options.spread * diagonal);
     const auto moved = [&](const std::vector<Index>& vertices) {

@@ -1,4 +1,4 @@
-// Parts that were to stay as they are, and that solving distorts.
+// Detects parts that should have kept their shape and were distorted by solving.
 #pragma once
 
 #include "ostraka/semantic/deform.h"
@@ -6,16 +6,17 @@
 
 namespace ostraka::semantic {
 
-/// Vertices, a flag each.
+/// Expected changes, one flag per vertex.
 struct Expected {
-    std::vector<bool> change;  ///< the edit asks them to move, or a constraint that did not hold is about them
-    std::vector<bool> size;    ///< such a constraint is about how large they are
+    std::vector<bool> change;  ///< moved by the edit, or in a constraint that did not hold
+    std::vector<bool> size;    ///< in such a constraint about size
 };
 
-/// Regions of which most was not expected to change, and that are another shape than the edit leaves them in: by more than
-/// `options.distortion` in the root mean square, beside motions of the whole part and what is nearer to vertices that were to
-/// change than `options.spread`, where the surface has to give; and regions not expected to change in size that have become thin.
-/// `now` is what solving made of `edited`. The worst first.
+/// Finds distorted regions. Regions of which most vertices were not expected to change are compared with their shape after the
+/// edit: they are distorted if the root mean square deviation exceeds `options.distortion`, up to a rigid motion of the part
+/// and without vertices within `options.spread` of those expected to change, where the surface has to give way. Regions not
+/// expected to change in size are distorted if they have become thin. `now`: result of solving from `edited`. Sorted from worst
+/// to best.
 std::vector<DistortedPart> distorted_parts(const Mesh& rest, const AnnotationSet& set, const Expected& expected,
                                            const Mesh& edited, const Mesh& now, const DeformOptions& options);
 

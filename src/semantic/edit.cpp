@@ -49,7 +49,7 @@ private:
         fail_input(where_ + ", " + at_, what, remedy);
     }
 
-    /// Cages within others go along with these, but for the vertices that the step moved itself.
+    /// Moves nested cages with the cages around them, except the vertices that the step moved itself.
     void carry(const std::vector<Point>& before) {
         if (levels_.size() < 2) return;
         std::vector<bool> own(state_.handles.size(), false);
@@ -67,7 +67,7 @@ private:
         }
     }
 
-    /// The level that a step says, or of those that hold most of these vertices the innermost.
+    /// The level specified by a step, otherwise the innermost level that contains most of these vertices.
     [[nodiscard]] std::size_t level_for(const JsonValue& select, const std::vector<Index>& vertices) const {
         if (const JsonValue* level = find_member(select, "level")) {
             if (level->GetUint64() >= levels_.size())
@@ -79,7 +79,7 @@ private:
         return level_that_holds(space_.coordinates->vertex, vertices, levels_, carrying_);
     }
 
-    /// What the vertices of a level have to say on those of the mesh, all if none are given: a row for each.
+    /// Weights of a level's vertices on these mesh vertices (all if none are given), one row each.
     [[nodiscard]] Coordinates weights_in(std::size_t level, const std::vector<Index>& vertices) const {
         const WeightMatrix& all = space_.coordinates->vertex;
         if (vertices.empty()) return {"", weights_of_level(all, levels_, carrying_, level), {}};
@@ -127,7 +127,7 @@ private:
                 return;
             }
             const bool here = scope != nullptr && std::string(scope->GetString()) == "selection";
-            // As in the thesis, figure 5.11, or less where the cage is so dense that a vertex of the part would have no handle.
+            // As in the thesis, figure 5.11, or lower if on a dense cage a vertex of the part would have no handle.
             if (threshold == nullptr) state_.threshold = std::min(0.4, influence_threshold(weights.vertex, "auto-mesh"));
             else if (threshold->IsNumber()) state_.threshold = threshold->GetDouble();
             else
@@ -187,7 +187,7 @@ private:
         return {chosen.begin(), chosen.end()};
     }
 
-    /// All handles, or those of the level that is said.
+    /// All handles, or those of the specified level.
     [[nodiscard]] std::vector<Index> handles_in(const JsonValue& select) const {
         if (find_member(select, "level") != nullptr) return levels_[level_for(select, {})].cage.vertices;
         std::vector<Index> all(state_.handles.size());
@@ -275,8 +275,8 @@ private:
     const std::string& where_;
     std::string at_;
     EditState state_;
-    std::vector<CageLevel> levels_;       ///< of the cage
-    std::vector<WeightMatrix> carrying_;  ///< of each level in its parent
+    std::vector<CageLevel> levels_;       ///< levels of the cage
+    std::vector<WeightMatrix> carrying_;  ///< weights of each level in its parent
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double weight = 1000;
 
-/// "front left leg" and "leg 2" end in "leg".
+/// True if the last word of the tag, ignoring a number, is the word: "front left leg" and "leg 2" end in "leg".
 bool ends_in_word(std::string tag, const std::string& word) {
     if (const std::size_t space = tag.rfind(' '); space != std::string::npos && number_of(tag.substr(space + 1)))
         tag.resize(space);
@@ -35,7 +35,7 @@ std::vector<const Annotation*> parts_of_word(const AnnotationSet& set, const std
     take([&](const Annotation& one) { return std::to_string(one.id) == word; });
     take([&](const Annotation& one) { return one.tag == word; });
     const std::string single = word.ends_with("s") ? word.substr(0, word.size() - 1) : word;
-    // Regions before lines and points: "arms" are not "ends of the arms".
+    // Regions take precedence over lines and points: "arms" does not mean "ends of the arms".
     for (const AnnotationType type : {AnnotationType::region, AnnotationType::line, AnnotationType::point})
         take([&](const Annotation& one) {
             return one.type == type && !single.empty() && (ends_in_word(one.tag, word) || ends_in_word(one.tag, single));
@@ -49,7 +49,7 @@ struct Amount {
     std::array<double, 3> axis{0, 0, 1};
 };
 
-/// PARTS=NUMBER or PARTS=NUMBER,AXIS.
+/// Parses PARTS=NUMBER or PARTS=NUMBER,AXIS.
 Amount amount_of(const std::string& text, const char* option, const AnnotationSet& set) {
     const auto fail = [&](const std::string& what, const std::string& remedy) {
         fail_usage(std::string(option) + " " + printable(text, 60) + ": " + what, remedy);
@@ -143,14 +143,15 @@ Json edit_of(const EditWords& words, const AnnotationSet& set) {
 
 namespace {
 
-/// The parts and the measure (empty: the shape) of a text of "keep".
+/// The parts and the measure (empty: the shape) named by a text of "keep".
 struct Kept {
     std::vector<const Annotation*> parts;
     std::string measure;
 };
 Kept kept_by(const std::string& text, const AnnotationSet& set) {
-    // The parts' words come first. A whole tag, the longest, goes before a word ("part 0 thickness" is not "0 thickness" of
-    // "part"); else the longest name of a measure counts.
+    // The text starts with the parts. The longest prefix that is a tag takes precedence ("part 0 thickness" is not "0
+    // thickness" of "part"); otherwise the shortest prefix that means a part, so that the measure's name is the longest
+    // possible.
     if (!parts_of_word(set, text).empty()) return {parts_named(set, text), ""};
     for (std::size_t end = text.rfind(' '); end != std::string::npos && end > 0; end = text.rfind(' ', end - 1))
         if (std::any_of(set.annotations.begin(), set.annotations.end(),

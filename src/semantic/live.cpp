@@ -22,12 +22,12 @@ struct LiveDeformation::State {
     RelationOptions tolerances;
     Deformer deformer;
     std::vector<Index> handles;
-    std::vector<int> held;  ///< vertices of the cage that steps moved, in the order of the constraint that holds them
+    std::vector<int> held;  ///< cage vertices moved by steps, in the order of the constraint that fixes them
     std::vector<Point> cage;
-    Points points;                    ///< the same
-    Points asked;                     ///< of the mesh (any) and the cage, as the handles alone leave it
-    Points displacement;              ///< of one vertex
-    std::vector<std::size_t> beside;  ///< Laplacian displacements that the handles are part of
+    Points points;                    ///< same positions as `cage`
+    Points asked;                     ///< of the mesh (arbitrary) and the cage, after moving only the handles
+    Points displacement;              ///< target for one vertex
+    std::vector<std::size_t> beside;  ///< indices of Laplacian displacement constraints that involve the handles
     CageSystem system;
 };
 

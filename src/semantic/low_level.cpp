@@ -1,4 +1,4 @@
-// Constraints of the solver stated by their own names (thesis, section 4.2), on the vertices of annotations.
+// Constraints of the solver, stated by their own names (thesis, section 4.2), on the vertices of annotations.
 #include "ostraka/core/angles.h"
 #include "reader.h"
 
@@ -8,10 +8,10 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// How a kind takes the vertices of its annotations.
+/// How the vertices of the annotations are grouped into constraints.
 enum class Groups { together, pairs, members, edges, faces, hinges, stars };
 
-/// Whether what a kind admits depends on the shape at rest.
+/// Whether the admissible set depends on the shape at rest.
 enum class Keeps { nothing, rest, rest_without_absolute };
 
 struct Form {
@@ -20,7 +20,7 @@ struct Form {
     Keeps keeps = Keeps::nothing;
 };
 
-/// The kinds whose parameters annotations can give. The others need what the types of their own lower to.
+/// The kinds whose parameters can be given by annotations. The others are created from their own types of relationship.
 const std::vector<Form>& forms() {
     static const std::vector<Form> list{
         {"Closeness", Groups::together, Keeps::rest},
@@ -69,7 +69,7 @@ const Form* form_of(const std::string& type) {
     return nullptr;
 }
 
-/// Vertices of an annotation in the order it has them: points as given, along poly-lines, else ascending.
+/// Vertices of an annotation in its order: points as given, along polylines, otherwise ascending.
 std::vector<int> in_order(const Mesh& mesh, const Annotation& annotation) {
     std::vector<int> ids;
     if (annotation.type == AnnotationType::point) return {annotation.points.begin(), annotation.points.end()};
@@ -140,7 +140,7 @@ std::vector<std::vector<int>> groups_of(const Reader& read, const Form& form) {
                 add_hinges(mesh, annotation, groups);
                 break;
             case Groups::stars:
-                // Cotangents need all of the faces around.
+                // Cotangent weights need the complete one-ring.
                 for (const Index v : vertices_of(mesh, annotation))
                     if (std::string_view(form.kind).find("Cotangent") == std::string_view::npos || !mesh.is_border(Vertex(v)))
                         groups.push_back(star_of(mesh, Vertex(v)));
@@ -181,7 +181,7 @@ Statement low_level(const ReaderPtr& read, const RelationOptions& tolerances) {
         statement.keeps = "what its vertices are to each other";
     statement.lower = [lower](const State&, const State&) { return lower(); };
     const auto list = std::make_shared<const Statement::Constraints>(lower());
-    // Against the size of the group at rest: the finer the mesh, the smaller its edges and faces.
+    // Residuals are relative to the size of the group at rest, since edges and faces are smaller on finer meshes.
     std::vector<double> sizes;
     for (const auto& constraint : *list) sizes.push_back(read->size_at_rest(*constraint));
     const Deviation residual{"residual of a vertex", 0.0, 100 * tolerances.distance, "%"};

@@ -17,7 +17,7 @@ namespace {
 using semantic::Shape;
 using semantic::State;
 
-/// What holds on a state of a shape. Throws as `understand` does.
+/// Measures a constraint on a state of a shape. Throws as `understand` does.
 ConstraintReport measured(const Shape& shape, const State& state, const Relationship& relationship,
                           const RelationOptions& tolerances, const std::string& graph_name) {
     const semantic::Statement statement = semantic::understand(shape, relationship, tolerances, graph_name);
@@ -34,7 +34,7 @@ ConstraintReport measured(const Shape& shape, const State& state, const Relation
     return report;
 }
 
-/// The corners of all faces, in any order of the faces.
+/// The corners of all faces, independent of the order of the faces.
 std::vector<std::array<Index, 3>> sorted_faces(const Mesh& mesh) {
     std::vector<std::array<Index, 3>> faces;
     for (const Face f : mesh.faces()) {
@@ -78,7 +78,7 @@ std::vector<ConstraintReport> judge_constraints(const Mesh& mesh, const Annotati
                                                 const std::string& graph_name) {
     check_options(tolerances, "constraints");
     if (rest != nullptr) check_rest(mesh, *rest);
-    // Of the shape at rest the points: faces are the mesh's.
+    // Only the points of the shape at rest are used; the faces are those of the mesh.
     const Mesh then = rest == nullptr ? mesh : with_points(mesh, points_of(*rest));
     const State state(mesh);
     const Points points = columns_of(then);
@@ -100,7 +100,7 @@ std::vector<RelationCheck> judge_relationships(const Mesh& mesh, const Annotatio
                                                const Mesh* rest, const RelationOptions& tolerances,
                                                const std::string& graph_name) {
     const std::vector<ConstraintReport> constraints = judge_constraints(mesh, set, graph, rest, tolerances, graph_name);
-    // What is left out as a constraint may be a relation that can be measured all the same.
+    // A constraint that was ignored may still be measured as a relation.
     RelationGraph relations;
     relations.relationships = graph.relationships;
     std::size_t place = 0;

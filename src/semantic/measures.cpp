@@ -1,4 +1,4 @@
-// Constraints on measures: of one part, of a part against another, of parts among each other.
+// Constraints on measures: of one part, of a part relative to another, of parts among each other.
 #include "reader.h"
 
 #include "ostraka/geom/shortest_path.h"
@@ -10,13 +10,13 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// minValue to maxValue.
+/// Deviation of a value from a range in percent.
 double percent_out(double value, const Range& range) {
     if (value < range.min) return 100 * (range.min - value) / range.min;
     return value > range.max ? 100 * (value - range.max) / range.max : 0;
 }
 
-/// A measure of a part: as `measure take` has it on the shape as it is.
+/// A measure of a part, evaluated on a shape as `measure take` does.
 class Gauge {
 public:
     Gauge(const Reader& read, const char* name, std::size_t member)
@@ -38,7 +38,7 @@ public:
     }
 
     [[nodiscard]] double at_rest() const { return at_rest_; }
-    /// A ruler over several pins is a line of its own, as a tape is.
+    /// A ruler over several pins is measured along a line, as a tape is.
     [[nodiscard]] bool is_extent_of_part() const { return extent_; }
     [[nodiscard]] bool is_tape() const { return measure_.tool == "tape" || (!direction_ && measure_.points.size() > 2); }
     [[nodiscard]] const std::optional<Vector3d>& direction() const { return direction_; }
@@ -47,7 +47,7 @@ public:
         if (extent_) now.points = extent_pins(state), now.locations.clear();
         return evaluate(state.mesh, *annotation_, now);
     }
-    /// The vertices that it depends on: of a bounding measure the outermost two, of a tape its way.
+    /// The vertices that the measure depends on: the two outermost of a bounding measure, the path of a tape.
     [[nodiscard]] std::vector<int> way(const State& state) const {
         if (direction_) {
             const auto pins = extent_ ? extent_pins(state) : measure_.points;
@@ -74,12 +74,12 @@ private:
 
     const Annotation* annotation_;
     Measure measure_;
-    std::optional<Vector3d> direction_;  ///< of a bounding measure
-    bool extent_ = false;                ///< of the whole part: its pins are found anew on every shape
+    std::optional<Vector3d> direction_;  ///< direction of a bounding measure
+    bool extent_ = false;                ///< extent of the whole part: its pins are determined again on every shape
     double at_rest_ = 0;
 };
 
-/// Vertices of a region that other faces use as well: where it joins the rest.
+/// Vertices of a region that other faces use as well: where the region is joined to the rest.
 std::vector<Index> joint(const Mesh& mesh, const Annotation& annotation) {
     const std::vector<bool> inside = face_flags(mesh, annotation.faces);
     std::set<Index> list;
@@ -91,7 +91,7 @@ std::vector<Index> joint(const Mesh& mesh, const Annotation& annotation) {
     return {list.begin(), list.end()};
 }
 
-/// A part with its measure: how it is made longer or shorter, stretched along the measure or scaled as a whole.
+/// A part with its measure, which changes by stretching the part along the measure or scaling it.
 class Stretch {
 public:
     Stretch(const ReaderPtr& read, std::size_t member, Gauge gauge)
@@ -100,7 +100,7 @@ public:
         const std::vector<Index> joined = joint(read->shape().mesh, read->member(member)), own = read->vertices(member);
         if (!gauge_.is_tape())
             for (const Index v : own) place(static_cast<int>(v), ids_, places_);
-        // The joint stays in its place, if it is at one end of the part. A part between others moves them on all sides.
+        // The joint is fixed if it is at one end of the part. A part between others moves them on all sides.
         const std::vector<int> way = gauge_.way(State(read->shape().mesh));
         const Vector3d edge = rest.col(way.back()) - rest.col(way.front());
         const Vector3d axis = gauge_.direction() ? *gauge_.direction() : Vector3d(edge.normalized());
@@ -117,7 +117,7 @@ public:
     [[nodiscard]] const std::vector<Index>& anchors() const { return anchors_; }
     [[nodiscard]] const Gauge& gauge() const { return gauge_; }
 
-    /// Not of a tape: no stretch of the part is known to change its line in proportion.
+    /// Not for a tape: no stretch of the part changes the tape's length in proportion.
     [[nodiscard]] Sized sized() const {
         Sized part;
         part.vertices = {ids_.begin(), ids_.end()};
@@ -128,7 +128,7 @@ public:
         return part;
     }
 
-    /// Between which vertices the measure is, and how far they are from being `factor` times as far apart.
+    /// Text with the end vertices of the measure and their distance from `factor` times the measure.
     [[nodiscard]] std::string where(const State& now, double factor) const {
         const std::vector<int> way = gauge_.way(now);
         const double length = gauge_.value(now), off = length * (factor - 1);
@@ -137,7 +137,7 @@ public:
                " apart, " + digits(std::abs(off), 3) + (unit.empty() ? "" : " ") + unit + (off > 0 ? " too near" : " too far");
     }
 
-    /// The measure within a range, in the mesh's unit. A tape's line changes and the surface follows.
+    /// Constrains the measure to a range, in the mesh's unit. For a tape its path is constrained and the surface follows.
     [[nodiscard]] std::unique_ptr<Constraint> to(const Range& range, const State& edited, const State& now) const {
         if (!gauge_.is_tape()) {
             auto [ids, parameters] = placed(edited, now);
@@ -146,7 +146,7 @@ public:
             parameters.absolute = true;
             return read_->make("Proportion", ids, parameters);
         }
-        // What a measure is shorter than the edges along its way, as an exact tape is.
+        // Ratio of the measure to the length of the edges along its path, which an exact tape shortens.
         const std::vector<int> way = gauge_.way(now);
         double length = 0;
         for (std::size_t i = 1; i < way.size(); ++i) length += (now.points.col(way[i]) - now.points.col(way[i - 1])).norm();
@@ -158,7 +158,7 @@ public:
         return read_->make("PolylineLength", way, parameters);
     }
 
-    /// The measure against another one, which is free to change as well. Neither is a tape.
+    /// Constrains the ratio to another measure, which may change as well. Neither is a tape.
     [[nodiscard]] std::unique_ptr<Constraint> against(const Gauge& other, const Range& ratio, const State& edited,
                                                       const State& now) const {
         auto [ids, parameters] = placed(edited, now);
@@ -178,7 +178,7 @@ private:
         if (fresh) ids.push_back(v);
         return entry->second;
     }
-    /// The part and its pins as they are `now`, and its shape.
+    /// Ids and parameters for the part and its current pins; the target is the shape of the part.
     [[nodiscard]] std::pair<std::vector<int>, ConstraintParameters> placed(const State& edited, const State& now) const {
         std::vector<int> ids = ids_;
         std::unordered_map<int, int> places = places_;
@@ -188,7 +188,7 @@ private:
         parameters.split = static_cast<int>(ids.size());
         parameters.direction = gauge_.direction();
         parameters.uniform = uniform_;
-        // A part that only gave way to its neighbours is as it was.
+        // A part that was only moved by its neighbours keeps its shape at rest.
         std::size_t asked = 0;
         for (const int v : ids_) asked += edited.asked.empty() || edited.asked[static_cast<std::size_t>(v)] ? 1 : 0;
         const Points& shape = 2 * asked >= ids_.size() ? edited.points : read_->shape().rest;
@@ -200,7 +200,7 @@ private:
     ReaderPtr read_;
     Gauge gauge_;
     bool uniform_;
-    Vector3d axis_;  ///< of the measure at rest
+    Vector3d axis_;  ///< direction of the measure at rest
     std::vector<Index> anchors_;
     std::vector<int> ids_;
     std::unordered_map<int, int> places_;
@@ -247,7 +247,7 @@ Statement proportion(const ReaderPtr& read, const RelationOptions&) {
     statement.measure = within(range, ratio, part);
     if (tapes) return statement;
     if (read->follows()) {
-        // Each of them by its own measure: that of the leader stays, the other one's is a multiple of it.
+        // Each part is constrained by its own measure: the leader keeps its own, and that of the other is a multiple of it.
         const auto reference = std::make_shared<const Stretch>(read, 1, other);
         for (const std::size_t i : {0U, 1U}) {
             const Stretch& one = i == 0 ? *part : *reference;

@@ -1,4 +1,4 @@
-// Relations of parts to each other that a deformation keeps, and where and which way a single part is.
+// Relations between parts that a deformation preserves, and position and direction of single parts.
 #include "reader.h"
 
 #include "ostraka/annotation/curves.h"
@@ -10,7 +10,7 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// What the selections themselves say: they do not change with the shape.
+/// For relations that follow from the selections and do not change with the shape.
 Statement nothing_to_solve(const ReaderPtr& read, const RelationOptions& tolerances) {
     Statement statement;
     statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
@@ -27,7 +27,7 @@ Statement nothing_to_solve(const ReaderPtr& read, const RelationOptions& toleran
     return statement;
 }
 
-/// Vertices that two parts have in common.
+/// Vertices shared by two parts.
 std::vector<Index> common_outline(const Reader& read) {
     const auto first = read.vertices(0), second = read.vertices(1);
     std::vector<Index> shared;
@@ -36,8 +36,8 @@ std::vector<Index> common_outline(const Reader& read) {
     return shared;
 }
 
-/// The outline of two parts turns as a whole until its normal and up are at an angle in the range: the normal that relations
-/// measure.
+/// Rotates the common outline of two parts rigidly until the angle between its normal and up is in the range; it is the normal
+/// that relations measure.
 Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& tolerances, double min, double max) {
     read->need(2, 2);
     const std::vector<Index> shared = common_outline(*read);
@@ -63,10 +63,10 @@ Statement outline_at_angle(const ReaderPtr& read, const RelationOptions& toleran
     return statement;
 }
 
-/// A share of the tolerance, so that what is kept is not on its brink.
+/// Share of the tolerance used, so that the result is well within it.
 constexpr double well_within = 0.5;
 
-/// The vertices along the only poly-line of a member.
+/// The vertices along the only polyline of a member.
 std::vector<int> only_polyline(const Reader& read, std::size_t i) {
     const Annotation& line = read.member(i);
     if (line.polylines.size() != 1)
@@ -109,8 +109,8 @@ Statement part_similarity(const ReaderPtr& read, const RelationOptions& toleranc
     Statement statement;
     statement.resizes = true;
     statement.follows = true;
-    // Each keeps its shape at rest, and all are as many times as large: as the one that leads, else the mean of what they are
-    // now.
+    // All parts keep their shape at rest up to a common scale factor: that of the leader, otherwise the mean of their current
+    // factors.
     statement.lower = [=](const State& edited, const State& now) {
         const auto leader = read->leader(edited);
         const auto growth = [&](const State& state, std::size_t i) {
@@ -217,7 +217,7 @@ Statement keep_direction(const ReaderPtr& read, const RelationOptions& tolerance
             worst.value = std::max(*worst.value, std::abs(angle_to(axis) - parts[i].angle) / degree);
         }
         Measured measured = verdict_of({worst});
-        if (given >= 0) doubt_axes(*read, deformed, tolerances.angle, measured);  // else what is off at rest is off then, too
+        if (given >= 0) doubt_axes(*read, deformed, tolerances.angle, measured);  // otherwise axis errors cancel
         return measured;
     };
     return statement;
@@ -234,7 +234,7 @@ Statement keep_position(const ReaderPtr& read, const RelationOptions& tolerances
         parameters.point = place;
         return only(read->make("MeanPosition", ids_of(vertices), parameters, static_cast<double>(vertices.size())));
     };
-    // The part as the edit leaves it moves as a whole, as far as other constraints let it.
+    // The part, in its shape after the edit, is translated as a whole, as far as other constraints allow.
     statement.support = [=](const State& edited, const State&) {
         ConstraintParameters parameters;
         const Vector3d way = place - mean_of(vertices, edited.points);

@@ -1,4 +1,4 @@
-// Constraints on where points and parts are: on a plane, on a line, mirrored, next to each other.
+// Constraints on positions of points and parts: on a plane, on a line, mirrored, adjacent.
 #include "reader.h"
 
 #include "ostraka/geom/point_tree.h"
@@ -9,12 +9,13 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// How far apart what belongs together may be at rest, in the mesh's unit: however tight a constraint is.
+/// Largest distance at rest of points that are paired, in the mesh's unit; has a lower limit for constraints with small
+/// tolerances.
 double near(const Reader& read, const RelationOptions& tolerances) {
     return std::max(tolerances.distance, 0.01) * box_diagonal(read.shape().mesh);
 }
 
-/// All vertices together as one kind would have them.
+/// A statement with one constraint of this kind on all vertices.
 Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(1, 0);
     Statement statement;
@@ -30,8 +31,8 @@ Statement all_on(const char* kind, const ReaderPtr& read, const RelationOptions&
     return statement;
 }
 
-/// The faces of an annotation as a mesh of their own, with the vertices it has in the whole. Each face stands alone, since a
-/// patch that touches itself at a vertex is no manifold.
+/// The faces of an annotation as a separate mesh, with the indices of its vertices in the whole. Faces are not connected, since
+/// a patch that touches itself at a vertex is not manifold.
 struct Piece {
     Mesh mesh;
     std::vector<Index> vertex;
@@ -47,14 +48,14 @@ struct Piece {
     }
 };
 
-/// Pairs of a point and the corners of the face that its mirror image falls on.
+/// Pairs of a point and the corners of the face that contains its mirror image.
 struct Partners {
     std::vector<int> ids;
     std::vector<double> coefficients;
-    std::vector<Vector3d> gaps;  ///< image less partner, at rest
+    std::vector<Vector3d> gaps;  ///< mirror image minus partner, at rest
 };
 
-/// Of the vertices of member `from` on the surface of member `to`.
+/// Partners of the vertices of member `from` on the surface of member `to`.
 Partners partners_of(const Reader& read, std::size_t from, std::size_t to, const Vector3d& point, const Vector3d& normal,
                      double search_radius) {
     const Piece piece(read.shape().mesh, read.faces(to));
@@ -80,7 +81,8 @@ Partners partners_of(const Reader& read, std::size_t from, std::size_t to, const
     return partners;
 }
 
-/// Pairs, lower index first, of each vertex with the nearest one within reach that is not at the same place.
+/// Adds a pair, lower index first, of each vertex and the nearest vertex within the search radius that does not coincide with
+/// it.
 void add_nearest(const Points& points, const std::vector<Index>& from, const std::vector<Index>& to, double search_radius,
                  std::vector<std::array<int, 2>>& pairs) {
     std::vector<Point> places;
@@ -100,7 +102,7 @@ void add_nearest(const Points& points, const std::vector<Index>& from, const std
     }
 }
 
-/// Of a shape alone: the distances of the mirror images of all vertices of either part from the surface of the other.
+/// For a shape judged alone: the distances between the mirror images of all vertices of each part and the surface of the other.
 Statement mirrored_alone(const ReaderPtr& read, const RelationOptions& tolerances, const std::optional<Vector3d>& point,
                          const std::optional<Vector3d>& normal) {
     Statement statement;
@@ -121,7 +123,7 @@ Statement mirrored_alone(const ReaderPtr& read, const RelationOptions& tolerance
     return statement;
 }
 
-/// Of a shape alone: how far apart the parts are.
+/// For a shape judged alone: the distance between the parts.
 Statement adjacent_alone(const ReaderPtr& read, double tolerance) {
     const auto first = read->vertices(0), second = read->vertices(1);
     std::vector<Point> places;
@@ -204,7 +206,7 @@ Statement adjacency(const ReaderPtr& read, const RelationOptions& tolerances) {
     const auto first = read->vertices(0), second = read->vertices(1);
     std::vector<Index> shared;
     std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
-    // Parts with common vertices cannot come apart; others keep the gap that they have where they are near each other.
+    // Parts with common vertices cannot separate; other parts keep the gap where they are close to each other.
     std::vector<std::array<int, 2>> pairs;
     if (shared.empty()) {
         add_nearest(read->shape().rest, first, second, search_radius, pairs);

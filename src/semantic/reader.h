@@ -1,4 +1,4 @@
-// What a relationship that is a constraint says, read and checked.
+// Reads and validates a relationship that is a constraint.
 #pragma once
 
 #include "statement.h"
@@ -18,7 +18,7 @@ namespace ostraka::semantic {
 
 using Eigen::Vector3d;
 
-/// As the solver has them.
+/// Indices as the solver's ids.
 inline std::vector<int> ids_of(const std::vector<Index>& vertices) { return {vertices.begin(), vertices.end()}; }
 
 /// minValue and maxValue of a constraint.
@@ -26,7 +26,7 @@ struct Range {
     double min = 0, max = 0;
 };
 
-/// Throws Error (input) that names the file and the constraint.
+/// Reads the members and parameters of a constraint. Errors (input) name the file and the constraint.
 class Reader {
 public:
     Reader(Shape shape, const Relationship& relationship, const std::string& where)
@@ -58,7 +58,7 @@ public:
             fail("annotation " + std::to_string(member(i).id) + " selects nothing", "select a part, or leave it out");
         return list;
     }
-    /// Of all members together.
+    /// The vertices of all members together.
     [[nodiscard]] std::vector<int> all_vertices() const {
         std::set<int> all;
         for (std::size_t i = 0; i < members(); ++i)
@@ -119,9 +119,9 @@ public:
                  "give a number of this range");
         return value->GetDouble();
     }
-    /// Whether the range is given, and not what there is at rest.
+    /// True if the range is given explicitly.
     [[nodiscard]] bool has_range() const { return has("minValue") || has("maxValue"); }
-    /// minValue and maxValue (Appendix B.2), positive; without both, what there is `at_rest`.
+    /// minValue and maxValue (Appendix B.2), positive; if both are absent, the value `at_rest`.
     [[nodiscard]] Range range(double at_rest) const {
         if (!has_range()) return {at_rest, at_rest};
         const auto number = [&](const char* name) {
@@ -135,7 +135,7 @@ public:
         if (r.min > r.max) fail("minValue is greater than maxValue", "exchange them");
         return r;
     }
-    /// To be called when everything was read: a name that nobody asked for is a slip of the pen.
+    /// Rejects unknown parameters (likely typos). Call it after all parameters were read.
     void refuse_others() const {
         for (const auto& member : parameters_.GetObject()) {
             const std::string name = member.name.GetString();
@@ -143,7 +143,7 @@ public:
             fail("has a parameter '" + name + "', which it does not know", "use: " + joined(asked_));
         }
     }
-    /// The measure that `name` names by id or name in the annotation; the only one if it is left out.
+    /// The measure of the annotation that parameter `name` refers to by id or name; without the parameter, its only measure.
     [[nodiscard]] const Measure& measure(const char* name, const Annotation& annotation) const {
         const JsonValue* value = given(name);
         // "equal attributes" names its attribute as the relation does.
@@ -166,8 +166,9 @@ public:
         return *found;
     }
 
-    /// The member that the others follow: the one that "follow" names (id or tag), or with "follow": true the one of which the
-    /// edit asks the largest share to move, the first of equals. None without "follow", and where the edit asks for none of them.
+    /// The member that the others follow. With "follow" an id or tag: that member. With "follow": true: the member of which the
+    /// edit moves the largest share of vertices (of equals, the first). Nothing without "follow", or if the edit moves none of
+    /// them.
     [[nodiscard]] std::optional<std::size_t> leader(const State& edited) const {
         const JsonValue* value = given("follow");
         if (value == nullptr || (value->IsBool() && !value->GetBool())) return {};
@@ -183,14 +184,14 @@ public:
         }
         return best;
     }
-    /// Whether parts follow one, if the edit moves one of them.
+    /// True if parts follow one that the edit moves.
     [[nodiscard]] bool follows() const {
         const JsonValue* value = given("follow");
         return value != nullptr && !(value->IsBool() && !value->GetBool());
     }
-    /// Checks "follow" before there is an edit.
+    /// Validates "follow" before there is an edit.
     void read_leader() const { static_cast<void>(leader(State(shape_.mesh))); }
-    /// What keeps a member as the edit leaves it.
+    /// A constraint that keeps a member as the edit leaves it.
     [[nodiscard]] std::unique_ptr<Constraint> as_edited(std::size_t i, const State& edited) const {
         const std::vector<Index> list = vertices(i);
         ConstraintParameters parameters;
@@ -199,7 +200,7 @@ public:
             parameters.target->col(static_cast<Eigen::Index>(k)) = edited.points.col(list[k]);
         return make("Closeness", ids_of(list), parameters);
     }
-    /// The tolerance that the relationship states for a quantity, or the one for all.
+    /// The tolerance stated for a quantity, otherwise the default.
     [[nodiscard]] double tolerance(const std::string& quantity, double for_all) const {
         for (const Deviation& deviation : relationship_.parameters.deviations)
             if (deviation.quantity == quantity && deviation.tolerance) return *deviation.tolerance;
@@ -217,7 +218,7 @@ public:
         }
     }
 
-    /// Diagonal of the box of a constraint's points at rest.
+    /// Diagonal of the bounding box of a constraint's points at rest.
     [[nodiscard]] double size_at_rest(const Constraint& constraint) const {
         Eigen::AlignedBox3d box;
         for (const int v : constraint.ids()) box.extend(Vector3d(shape_.rest.col(v)));
@@ -243,12 +244,13 @@ private:
     Json parameters_;
     mutable std::set<std::string> asked_;
 };
-using ReaderPtr = std::shared_ptr<const Reader>;  ///< what statements keep
+using ReaderPtr = std::shared_ptr<const Reader>;  ///< shared by statements
 
-/// Verdict of deviations against their tolerances.
+/// The verdict from deviations and their tolerances.
 Measured verdict_of(std::vector<Deviation> deviations);
 
-// One function a type, or several: shapes.cpp, axis_constraints.cpp, measures.cpp, places.cpp, parts_kept.cpp, low_level.cpp.
+// Functions that translate relationships to statements, for one or several types each: shapes.cpp, axis_constraints.cpp,
+// measures.cpp, places.cpp, parts_kept.cpp, low_level.cpp.
 Statement keep_shape(const ReaderPtr&, const RelationOptions&);
 Statement same_level(const ReaderPtr&, const RelationOptions&);
 Statement co_axiality(const ReaderPtr&, const RelationOptions&);
@@ -268,14 +270,14 @@ Statement part_similarity(const ReaderPtr&, const RelationOptions&);
 Statement same_length(const ReaderPtr&, const RelationOptions&);
 Statement keep_direction(const ReaderPtr&, const RelationOptions&);
 Statement keep_position(const ReaderPtr&, const RelationOptions&);
-/// The kind of the solver whose name the type is ("edge strain"); nullptr if there is none.
+/// The solver's kind with the name of the type ("edge strain"); nullptr if there is none.
 const ConstraintKind* low_level_kind(const std::string& type);
 Statement low_level(const ReaderPtr&, const RelationOptions&);
 
-/// The rigid motion that carries vertices from where they are back to their places at rest.
+/// The rigid motion from the current positions of vertices to their positions at rest.
 Motion motion_back(const Reader& read, const std::vector<Index>& vertices, const State& now);
-/// The axis of a member as it is measured on a shape, carried back to the part at rest by the best rigid motion: what a
-/// constraint carries along from there is then what is measured. Where there is none any more, that at rest.
+/// The axis of a member as measured on the current shape, transformed to the part at rest by the best rigid motion, so that a
+/// constraint that transforms it forward reproduces the measured axis. The axis at rest if the current shape has none.
 Axis axis_carried_back(const Reader& read, std::size_t i, const Axis& rest, const State& now);
 /// What keeps the surface around each of some vertices as `shape` has it, so many times as large, but lets it turn.
 Statement::Constraints stars_kept(const Reader& read, const std::vector<Index>& vertices, const Points& shape, double grown = 1);
@@ -288,16 +290,16 @@ inline Points columns_at(const Points& points, const std::vector<Index>& vertice
     return some;
 }
 
-/// What relations measure for the type of this name.
-/// An angle of axes that is within its tolerance is not known to hold where the axis of a part is less certain than that: where
-/// that of its slices and the longest principal axis of its area are farther apart, in a part at least twice as long as wide.
+/// Measures as the relation of this type does. doubt_axes: an angle within its tolerance gets the verdict unknown if the axis
+/// of a part is less certain than the tolerance, that is, if the axis of its slices and the longest principal axis of its area
+/// differ by more, for a part at least twice as long as wide.
 void doubt_axes(const Reader& read, const State& deformed, double tolerance, Measured& measured);
 
 std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances);
-/// The mean of vertices, and the unit normal of the plane that fits them.
+/// The mean of vertices, and the unit normal of their fitted plane.
 Vector3d mean_of(const std::vector<Index>& vertices, const Points& points);
 Vector3d normal_of(const Points& points, const std::vector<Index>& vertices);
-/// Tolerance of distances, in the mesh's unit.
+/// Distance tolerance in the mesh's unit.
 double length_tolerance(const Reader& read, const RelationOptions& tolerances);
 
 }  // namespace ostraka::semantic

@@ -1,4 +1,4 @@
-// Parts that keep their shape, and features that stand on one level.
+// Constraints on parts that keep their shape, and on features on one level.
 #include "ostraka/core/dense.h"
 #include "reader.h"
 
@@ -19,7 +19,8 @@ Vector3d normal_of(const Points& points, const std::vector<Index>& vertices) {
 
 namespace {
 
-/// The vertex of an annotation that stands for its place: nearest to the mean of its vertices on its plane (section 5.2.1).
+/// The vertex that represents the position of an annotation: on its fitted plane closest to the mean of its vertices (section
+/// 5.2.1).
 Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
     const Vector3d mean = mean_of(vertices, rest), normal = normal_of(rest, vertices);
     Index best = vertices.front();
@@ -32,14 +33,14 @@ Index reference_vertex(const Points& rest, const std::vector<Index>& vertices) {
     return best;
 }
 
-/// All members, with the kind that keeps their shape.
+/// Constraints of this kind, which preserves shape, for all members.
 Statement::Constraints kept(const Reader& read, const char* kind) {
     Statement::Constraints list;
     for (std::size_t i = 0; i < read.members(); ++i) list.push_back(read.make(kind, ids_of(read.vertices(i)), {}));
     return list;
 }
 
-/// The lowest twentieth of a part's height.
+/// The vertices in the lowest twentieth of a part's height.
 std::vector<Index> base_of(const Points& rest, const std::vector<Index>& vertices, const Vector3d& up) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Index v : vertices) low = std::min(low, up.dot(rest.col(v))), high = std::max(high, up.dot(rest.col(v)));
@@ -49,22 +50,22 @@ std::vector<Index> base_of(const Points& rest, const std::vector<Index>& vertice
     return base;
 }
 
-/// What stands for the height of a part, where it is solved for, seated and measured alike: the centroid of its area (of a line's
-/// length, of points), or the mean of some of its vertices. Of a base these are others where the part has turned.
+/// Reference for the height of a part, used for solving, seating and measuring: the centroid of its area (for lines of the
+/// length, for points of the points), or the mean of some of its vertices. The vertices of a base change when the part rotates.
 struct LevelReference {
     const Annotation* part;
     std::vector<Index> vertices;
     bool centroid;
     bool base = false;
 
-    /// On another state of the shape.
+    /// The reference on another state of the shape.
     [[nodiscard]] LevelReference on(const Mesh& mesh, const Points& points, const Vector3d& up) const {
         LevelReference now = *this;
         if (base) now.vertices = base_of(points, vertices_of(mesh, *part), up);
         return now;
     }
 
-    /// Of each vertex in the mean.
+    /// The weight of each vertex in the mean.
     [[nodiscard]] std::vector<double> weights(const Mesh& mesh) const {
         std::vector<double> list(vertices.size(), centroid ? 0 : 1);
         const auto add = [&](Index v, double weight) {
@@ -103,7 +104,7 @@ std::vector<LevelReference> level_references(const Reader& read, const std::stri
     return list;
 }
 
-/// How far apart the references are in height, beyond what they are at the places given for rest.
+/// Range of the heights of the references, relative to the given positions at rest.
 double apart(const std::vector<LevelReference>& references, const Vector3d& up, const State& state,
              const std::vector<Vector3d>& rest = {}) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -115,7 +116,7 @@ double apart(const std::vector<LevelReference>& references, const Vector3d& up, 
     return high - low;
 }
 
-/// The constraint on the heights of references; with places at rest, their differences are those.
+/// A constraint on the heights of references; with positions at rest their height differences are preserved.
 std::unique_ptr<Constraint> level_of(const Reader& read, const std::vector<LevelReference>& references, const Vector3d& up,
                                      const Mesh& weighted_on, const State& now, const std::vector<Vector3d>& rest) {
     ConstraintParameters level;
@@ -173,7 +174,7 @@ Statement keep_shape(const ReaderPtr& read, const RelationOptions& tolerances) {
     statement.lower = [read, kind, reattached = mode == "seat"](const State&, const State&) {
         return reattached ? Statement::Constraints() : kept(*read, kind);
     };
-    // A part is small against the object: its own size tells what matters.
+    // Tolerances are relative to the size of each part, since parts are small compared to the object.
     std::vector<double> tolerance;
     for (const auto& part : *parts) tolerance.push_back(tolerances.distance * read->size_at_rest(*part));
     statement.measure = [=, unit = read->shape().set.unit](const State& deformed) {
@@ -192,13 +193,13 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
     read->need(2, 0);
     const Vector3d up = read->up();
     const std::string shapes = read->word("shapes", "keep", {"keep", "similar", "free", "seat"});
-    // The thesis takes a reference vertex of each part, whose place on the part is as fine as the mesh: at rest such vertices are
-    // not on one level themselves. Centroids of parts are.
+    // The thesis uses a reference vertex of each part. Its position depends on the mesh, so that such vertices are not on one
+    // level even at rest; centroids of parts are.
     const std::string reference = read->word("reference", "mean", {"mean", "vertex", "base"});
     const auto references = std::make_shared<const std::vector<LevelReference>>(level_references(*read, reference, up));
     const Mesh& mesh = read->shape().mesh;
     const double tolerance = read->tolerance("height", length_tolerance(*read, tolerances));
-    // Parts that stand on one level keep what they are off at rest; others are brought to one.
+    // Parts on one level at rest keep their small height differences; others are moved to one level.
     const bool keeps = reference != "vertex" && !read->shape().alone && apart(*references, up, State(mesh)) <= tolerance;
     const bool as_at_rest = shapes != "seat" && read->word("heights", keeps ? "rest" : "equal", {"rest", "equal"}) == "rest";
     std::vector<Vector3d> places;
@@ -213,7 +214,7 @@ Statement same_level(const ReaderPtr& read, const RelationOptions& tolerances) {
         statement.lower = [](const State&, const State&) { return Statement::Constraints(); };
     } else {
         read->read_leader();
-        // Rigid parts have the centroid of their vertices as they weigh at rest; of others the weights follow.
+        // For rigid parts the centroid has the vertex weights at rest; for others the weights are updated.
         const bool rigid = shapes != "free";
         const char* const kind = shapes == "similar" ? "Similarity" : "Rigid";
         statement.follows = (!rigid && reference == "mean") || reference == "base";

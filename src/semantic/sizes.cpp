@@ -7,7 +7,7 @@ namespace ostraka::semantic {
 
 namespace {
 
-/// Whether nearly all of the second's vertices are the first's.
+/// True if at least nine tenths of the second's vertices belong to the first.
 bool holds(const Sized& whole, const Sized& part) {
     std::size_t common = 0;
     for (const Index v : part.vertices) common += std::binary_search(whole.vertices.begin(), whole.vertices.end(), v) ? 1 : 0;
@@ -37,7 +37,7 @@ Sizes::Sizes(std::vector<const Sized*> parts, const Shape& shape, const State& e
         }
         std::size_t asked = 0;
         for (const Index v : parts_[i]->vertices) asked += edited.asked.empty() || edited.asked[v] ? 1 : 0;
-        // A part that only gave way to its neighbours is as it was.
+        // A part that was only moved by its neighbours keeps its shape at rest.
         start_.push_back(2 * asked >= parts_[i]->vertices.size() ? edited.points : shape.rest);
         led_.push_back(parts_[i]->led ? parts_[i]->led(edited) : std::nullopt);
         const auto [low, high] = led_[i] ? *led_[i] : parts_[i]->range(edited);
@@ -65,7 +65,7 @@ Eigen::VectorXd Sizes::errors(const State& now) const {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const double value = parts_[i]->value(now);
         const auto [low, high] = led_[i] ? *led_[i] : parts_[i]->range(now);
-        constexpr double far = 5;  // of what has vanished
+        constexpr double far = 5;  // error of a measure that has vanished
         const double goal = side_[i] < 0 ? low : side_[i] > 0 ? high : std::clamp(value, low, high);
         list[static_cast<Eigen::Index>(i)] = value > 0 ? std::clamp(std::log(value / goal), -far, far) : -far;
     }
@@ -80,7 +80,7 @@ void Sizes::follow(const State& now) {
     if (errors_.size() > 0 && step_.norm() > least)
         slopes_ += (next - errors_ - slopes_ * step_) * step_.transpose() / step_.squaredNorm();
     errors_ = next;
-    // Of measures that contradict each other the slopes are singular: no step then leads to both.
+    // For contradictory measures the slopes are singular, and no step satisfies both.
     Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes_, Eigen::ComputeThinU | Eigen::ComputeThinV);
     svd.setThreshold(0.02);
     const Eigen::VectorXd before = factors_;
@@ -107,7 +107,7 @@ std::vector<Sizes::Copy> Sizes::copies() const {
             if (owner_[v] == static_cast<int>(i)) copy.ids.push_back(static_cast<int>(v));
             else copy.holds_others = true;
         }
-        if (copy.ids.size() < 3) continue;  // others have it all, and are stretched with it
+        if (copy.ids.size() < 3) continue;  // all vertices belong to parts inside, which are stretched with it
         copy.shape.resize(3, static_cast<Eigen::Index>(copy.ids.size()));
         for (std::size_t k = 0; k < copy.ids.size(); ++k)
             copy.shape.col(static_cast<Eigen::Index>(k)) = maps_[i] * start_[i].col(copy.ids[k]);

@@ -47,7 +47,7 @@ Measured verdict_of(std::vector<Deviation> deviations) {
 
 std::function<Measured(const State&)> as_related(const ReaderPtr& read, Relationship stated, const RelationOptions& tolerances) {
     stated.is_constraint = false;
-    // Distances are shares of the diagonal at rest, however large the shape has become.
+    // Distance tolerances are relative to the diagonal at rest, independent of the current size.
     const double diagonal = box_diagonal(read->shape().mesh);
     return [read, stated, given = tolerances, diagonal](const State& deformed) -> Measured {
         RelationOptions at_rest = given;
@@ -86,7 +86,7 @@ std::string contradiction(const Statement& one, const Statement& other) {
     for (const Statement::Direction& a : one.directions)
         for (const Statement::Direction& b : other.directions) {
             if (a.annotation != b.annotation || a.reference != b.reference) continue;
-            // Axes have no sign: each direction may be turned round.
+            // Axes have no sign: each direction may be reversed.
             const double between = std::atan2(a.direction.cross(b.direction).norm(), a.direction.dot(b.direction));
             const auto apart = [&](double angle) {
                 return angle < std::abs(a.angle - b.angle) - exact || angle > a.angle + b.angle + exact;

@@ -1,4 +1,5 @@
-// A relationship that is a constraint, understood: constraints on points, and how well it holds in its own unit.
+// The interpretation of a relationship that is a constraint: low-level constraints on points, and a measurement of how well it
+// holds.
 #pragma once
 
 #include "reattachment.h"
@@ -13,12 +14,12 @@
 
 namespace ostraka::semantic {
 
-/// What constraints are stated on. `rest` are the mesh's points before the edit, a column each.
+/// The shape on which constraints are stated. `rest`: the mesh's points before the edit, one per column.
 struct Shape {
     const Mesh& mesh;
     const AnnotationSet& set;
     const Points& rest;
-    /// There is no other state: the mesh is to be judged as it is, by what a constraint says outright.
+    /// There is no rest state: the mesh is judged by the explicit parameters of the constraint only.
     bool alone = false;
 };
 
@@ -27,8 +28,8 @@ struct State {
     explicit State(const Mesh& deformed) : mesh(deformed), points(columns_of(deformed)) {}
     const Mesh& mesh;
     Points points;
-    std::vector<bool> asked = {};  ///< of an edited shape: vertices that the edit asked to move; empty: any
-    bool is_under_way = false;     ///< of an edited shape: handles are being dragged, it is not yet what they ask for
+    std::vector<bool> asked = {};  ///< for an edited shape: vertices that the edit moves; empty: not given
+    bool is_under_way = false;     ///< for an edited shape: handles are still being dragged
 };
 
 struct Measured {
@@ -37,7 +38,7 @@ struct Measured {
     std::string text;
 };
 
-/// Whether all that was measured is within its tolerance, be it certain or not.
+/// True if all measured deviations are within their tolerances, even if the verdict is unknown.
 inline bool is_within(const Measured& measured) {
     return measured.verdict == Verdict::holds ||
            (measured.verdict == Verdict::unknown && !measured.deviations.empty() &&
@@ -45,50 +46,51 @@ inline bool is_within(const Measured& measured) {
                         [](const Deviation& one) { return one.value && one.tolerance && *one.value <= *one.tolerance; }));
 }
 
-/// A part, a measure of it, and the range that this is to be in.
+/// A part, a measure of it, and the required range of the measure.
 struct Sized {
-    std::vector<Index> vertices;  ///< of the part, sorted
-    std::vector<Index> anchors;   ///< of them, those that stay where they are
-    Eigen::Vector3d axis;         ///< of the measure, a unit vector
-    Eigen::Matrix3d along;        ///< projects on what is stretched: the axis, or all where the part is scaled
-    bool extent = false;          ///< the measure is how far the vertices reach along the axis, and its range does not change
+    std::vector<Index> vertices;  ///< vertices of the part, sorted
+    std::vector<Index> anchors;   ///< vertices of the part that stay fixed
+    Eigen::Vector3d axis;         ///< direction of the measure, a unit vector
+    Eigen::Matrix3d along;        ///< projection onto the stretched subspace: the axis, or all of space if the part is scaled
+    bool extent = false;          ///< the measure is the extent of the vertices along the axis, and its range is constant
     std::function<double(const State& deformed)> value;
     std::function<std::pair<double, double>(const State& deformed)> range;
-    /// Where it follows a part that the edit leads: the range that this one gives it; none where nothing leads. May be empty.
+    /// For a part that follows the one led by the edit: the range it must have; nothing if there is no leader. May be empty.
     std::function<std::optional<std::pair<double, double>>(const State& edited)> led = {};
 };
 
 struct Statement {
     using Constraints = std::vector<std::unique_ptr<Constraint>>;
-    /// Low-level constraints; shapes are those of the edited state, parts that others refer to are as they are `now`. Empty where
-    /// there is nothing to solve.
+    /// Creates low-level constraints; shapes are those of the edited state, parts used as references are in the state `now`.
+    /// Empty if there is nothing to solve.
     using Lowering = std::function<Constraints(const State& edited, const State& now)>;
     Lowering lower;
-    Lowering support;  ///< what helps the surface to follow; never hard; may be empty
+    Lowering support;  ///< helps the surface to follow; never hard; may be empty
     std::function<Measured(const State& deformed)> measure;
-    /// Where to start from: the part where it is to be, so that it need not be pulled there through itself. May be empty.
+    /// Moves the part to its expected position in the initial state of the solve, so that it is not dragged there through
+    /// itself. May be empty.
     std::function<void(const State& now, Points& start)> prepare;
-    std::vector<Index> rotating;  ///< vertices whose surface is kept by `support` alone, since it has to turn
-    std::vector<Index> anchors;   ///< vertices that are to stay where the edit leaves them
-    /// Vertices of the part that is referred to: they stay where the edit leaves them unless another constraint moves them.
+    std::vector<Index> rotating;  ///< vertices whose surface is preserved by `support` alone, since it has to rotate
+    std::vector<Index> anchors;   ///< vertices that stay where the edit leaves them
+    /// Vertices of the reference part: they stay where the edit leaves them unless another constraint moves them.
     std::vector<Index> referred;
-    std::vector<Sized> sized;  ///< what it says as measures of parts; hard ones are enforced by their values (see Sizes)
-    std::optional<Reattachment> reattachment;  ///< features that are put back on the deformed base
-    bool follows = false;                      ///< lower gives others when the shape has moved
-    bool until_it_holds = false;               ///< follows only as long as it does not hold
-    bool left_alone = false;                   ///< not solved for as long as it holds where edit and other constraints leave it
-    bool resizes = false;                      ///< it is about how large its members are
+    std::vector<Sized> sized;                  ///< measures of parts to be enforced; hard ones by adjusting factors (see Sizes)
+    std::optional<Reattachment> reattachment;  ///< features that are reattached to the deformed base
+    bool follows = false;                      ///< `lower` must be called again after the shape has moved
+    bool until_it_holds = false;               ///< follows only until it holds
+    bool left_alone = false;                   ///< not solved for as long as the edit and other constraints leave it satisfied
+    bool resizes = false;                      ///< it concerns the size of its members
     bool hard = false;
-    /// The axis of an annotation at an angle (radians) with a direction, or with the axis of another.
+    /// The angle (radians) between the axis of an annotation and a direction, or the axis of another annotation.
     struct Direction {
         int annotation = 0;
         Eigen::Vector3d direction;
         double angle = 0;
-        std::optional<int> reference = {};  ///< then the direction is that at rest
+        std::optional<int> reference = {};  ///< annotation of the other axis; `direction` is then its direction at rest
     };
-    std::vector<Direction> directions;  ///< of parts, that it asks for outright
-    std::string unknown;                ///< why it is left out, if it is
-    std::string keeps;  ///< what it keeps of the shape at rest: nothing says that of a shape alone; empty: nothing
+    std::vector<Direction> directions;  ///< explicitly required directions of parts
+    std::string unknown;                ///< reason why the constraint is ignored, if it is
+    std::string keeps;  ///< what it preserves of the shape at rest, which cannot be judged on a shape alone; empty: nothing
 };
 
 /// A list of one constraint.
@@ -98,17 +100,17 @@ inline Statement::Constraints only(std::unique_ptr<Constraint> constraint) {
     return list;
 }
 
-/// A vertex and its neighbours, as the ids of points of which the mesh's begin at `first`.
+/// The ids of a vertex and its neighbours; `first` is the id of the mesh's first vertex.
 std::vector<int> star_of(const Mesh& mesh, Vertex vertex, int first = 0);
 
-/// Reads a relationship and checks it on the shape at rest. Throws Error (input) naming it where it makes no sense.
+/// Interprets a relationship and validates it on the shape at rest. Throws Error (input) that names it if it is invalid.
 Statement understand(const Shape& shape, const Relationship& relationship, const RelationOptions& tolerances,
                      const std::string& where);
 
-/// Why no shape can meet both, as far as the directions of parts tell; empty: it can.
+/// The reason why no shape satisfies both, as far as the directions of parts show; empty if there is none.
 std::string contradiction(const Statement& one, const Statement& other);
 
-/// Of a constraint that was understood, before anything is measured: what it is, and whether it is used.
+/// The report of an interpreted constraint before measuring: its description, and whether it is used.
 ConstraintReport report_of(const Relationship& relationship, const Statement& statement);
 
 }  // namespace ostraka::semantic

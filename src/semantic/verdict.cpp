@@ -42,12 +42,12 @@ EditFollowed followed_edit(const HandleSpace& space, const EditState& last, cons
             ++all;
             if (asked[v]) continue;
             ++others;
-            // Handles of a cage say not which parts they are to move.
+            // Handles of a cage do not tell which parts the edit is meant to move; count only changes after the edit.
             const double way = last.by_handles ? off[v] : (now.col(v) - rest.col(v)).norm();
             sum += way;
             largest = std::max(largest, way / diagonal);
         }
-        // Nor what holds all that was asked, such as the whole object.
+        // Skip annotations that contain all vertices the edit moves, such as the whole object.
         if (2 * others <= all || (result.vertices > 0 && all - others == result.vertices)) continue;
         const double share = sum / (static_cast<double>(others) * diagonal);
         if (share > 1e-3 || largest > 5e-3) result.others.push_back({annotation.id, annotation.tag, share, largest});

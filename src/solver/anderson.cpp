@@ -8,7 +8,7 @@ namespace ostraka::solver {
 namespace {
 constexpr std::size_t block = 4096;
 
-/// out = a - b, or out -= factor a, by blocks.
+/// Runs a loop over columns in parallel blocks.
 template <class Body>
 void by_blocks(Eigen::Index columns, Body body) {
     parallel_blocks(static_cast<std::size_t>(columns), block, [&](std::size_t begin, std::size_t end) {
@@ -55,7 +55,7 @@ void Anderson::next(const Points& x, const Points& g, Points& accelerated) {
             products_(i, slot) = products_(slot, i) = dot(df_[i], df_[slot]);
             right[i] = dot(df_[i], f);
         }
-        // Least squares min |f - sum theta_i df_i| by its scaled normal equations; a complete orthogonal decomposition copes with
+        // Least squares min |f - sum theta_i df_i| by its scaled normal equations; a complete orthogonal decomposition handles
         // differences that have become parallel.
         const Eigen::MatrixXd normal = products_.topLeftCorner(used_, used_);
         Eigen::VectorXd scale(used_);

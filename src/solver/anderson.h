@@ -17,8 +17,8 @@ private:
     int window_, used_ = 0, oldest_ = 0;
     bool started_ = false;
     Points last_f_, last_g_;
-    std::vector<Points> df_, dg_;  ///< a ring of differences of residuals G(x) - x and of G(x)
-    Eigen::MatrixXd products_;     ///< of the df among each other
+    std::vector<Points> df_, dg_;  ///< ring buffers of differences of residuals G(x) - x and of G(x)
+    Eigen::MatrixXd products_;     ///< inner products of the df
 };
 
 /// Sum of a_i . b_i, the same for any number of threads.

@@ -1,5 +1,5 @@
-// The solver over the points of a cage. All is in displacements d = c - c0 of the cage from rest, so that no digits are lost far
-// from the origin: rows are r0 + M d with M = B W.
+// The solver over the points of a cage. All quantities are expressed in displacements d = c - c0 of the cage from rest, so that
+// no digits are lost far from the origin: rows are r0 + M d with M = B W.
 #include "ostraka/core/dense.h"
 #include "ostraka/solver/solve.h"
 
@@ -17,15 +17,15 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
-using Thin = Eigen::Matrix<double, Eigen::Dynamic, 3>;  ///< a row a cage point
+using Thin = Eigen::Matrix<double, Eigen::Dynamic, 3>;  ///< one row per cage point
 
-/// Below this reciprocal condition number the system counts as singular.
+/// The system counts as singular below this reciprocal condition number.
 constexpr double min_rcond = 1e-13;
 constexpr double min_regularisation = 1e-10;
 constexpr Eigen::Index rows_of_piece = 1024;
 constexpr std::size_t pieces_of_wave = 16;
 
-/// A large group, reduced: sums over its rows.
+/// A large group reduced to sums over its rows.
 struct Group {
     std::size_t constraint = 0;
     MatrixXd m_m;               ///< M^T M
@@ -37,12 +37,12 @@ struct Group {
 
 enum class Treatment { constant, group, rows };
 
-/// Some rows of a constraint.
+/// A range of rows of a constraint.
 struct Slice {
     std::size_t constraint;
     Eigen::Index first, count;
 };
-/// Slices that are summed at once, all with one treatment; of a group, one alone.
+/// Slices that are summed together, all of the same treatment; a slice of a group stands alone.
 using Piece = std::vector<Slice>;
 
 Eigen::Index rows_in(const Piece& piece) {
@@ -51,7 +51,7 @@ Eigen::Index rows_in(const Piece& piece) {
     return rows;
 }
 
-/// Over the rows of a piece: M^T M; M^T r0 and M^T q of a group, or the first w M^T (p - r0) of constant ones.
+/// Sums over the rows of a piece: M^T M; for a group M^T r0 and M^T q, otherwise w M^T (p - r0) of constant rows in `first`.
 struct Sum {
     MatrixXd m_m;
     Thin first, second;
@@ -63,25 +63,25 @@ using Constraints = std::span<const std::unique_ptr<Constraint>>;
 }  // namespace
 
 struct CageSpaceSolver::State {
-    Points rest;             ///< the cage's
-    std::vector<int> index;  ///< of each point of the shape among those that are constrained
-    CageWeights weights;     ///< of those
-    Points rest_points;      ///< of the shape, all of it; not constrained: zero
+    Points rest;             ///< points of the cage at rest
+    std::vector<int> index;  ///< for each point of the shape, its index among the constrained points
+    CageWeights weights;     ///< rows of the constrained points
+    Points rest_points;      ///< all points of the shape at rest; zero for unconstrained points
     Eigen::Index cage = 0;
     std::vector<Treatment> treatment;
-    std::vector<std::size_t> place_of;        ///< constraint -> its place among the groups, or in `moving`
-    std::vector<Eigen::RowVectorXd> mean_of;  ///< mean row of weights of centred constraints
+    std::vector<std::size_t> place_of;        ///< constraint -> its index in `groups` or `moving`
+    std::vector<Eigen::RowVectorXd> mean_of;  ///< mean row of the weights, for centred constraints
 
     bool formed = false, factored = false;
     MatrixXd normal, constant_normal;
     Thin constant_right;
     double constant_objective = 0;
     std::vector<Group> groups;
-    // Rows that are projected one by one.
-    std::vector<std::size_t> moving;      ///< constraints
-    std::vector<std::size_t> blocks;      ///< first of each block in `moving`, and the end
-    std::vector<Eigen::Index> first_row;  ///< of each of `moving`, and the number of rows
-    Eigen::Index stride = 0;              ///< of rows of m, which end in zeros
+    // Rows that are projected individually.
+    std::vector<std::size_t> moving;      ///< indices of the constraints
+    std::vector<std::size_t> blocks;      ///< start of each block in `moving`, and the end
+    std::vector<Eigen::Index> first_row;  ///< first row of each constraint in `moving`, and the number of rows
+    Eigen::Index stride = 0;              ///< length of the rows of m, which are padded with zeros
     CageWeights m;
     Points r0;
     std::vector<Thin> parts;
@@ -102,17 +102,17 @@ struct CageSpaceSolver::State {
     [[nodiscard]] std::vector<Piece> pieces_of(Constraints constraints) const;
     void take_means(Constraints constraints);
     void clear_sums();
-    /// Gives its rows at rest.
+    /// Initialises a group; returns its rows at rest.
     [[nodiscard]] Points start_group(Group& group, const Constraint& c) const;
     [[nodiscard]] Sum sum_of(Constraints constraints, const Piece& piece, const std::vector<Points>& group_rows);
-    /// `rows` of M; observed ones become zero. Rows that are projected one by one are kept.
+    /// `rows`: rows of M; observed rows are set to zero. Rows that are projected individually are stored.
     void sum_slice(const Constraint& c, const Slice& slice, const std::vector<Points>& group_rows, CageWeights& rows, Sum& sum);
     void add(const Sum& sum, std::size_t constraint);
     void add_constant(const Constraint& c, std::size_t i, double by_weight);
     void make_factor();
 };
 
-/// Rows first ... first + count of M.
+/// Computes the rows first ... first + count of M.
 void CageSpaceSolver::State::weight_rows(const Constraint& c, std::size_t i, Eigen::Index first, Eigen::Index count,
                                          CageWeights& out) const {
     const auto& map = c.map();
@@ -280,7 +280,7 @@ void CageSpaceSolver::State::form(Constraints constraints) {
     clear_sums();
     std::vector<Points> group_rows;
     for (Group& group : groups) group_rows.push_back(start_group(group, *constraints[group.constraint]));
-    // Pieces in waves, so that their sums need little memory; added up in their order.
+    // Pieces are processed in waves, so that their sums need little memory, and added in their order.
     const std::vector<Piece> pieces = pieces_of(constraints);
     for (std::size_t wave = 0; wave < pieces.size(); wave += pieces_of_wave) {
         std::vector<Sum> sums(std::min(pieces_of_wave, pieces.size() - wave));
@@ -375,7 +375,7 @@ double CageSpaceSolver::project(const Points& cage) {
     const std::size_t blocks = s.parts.size();
     Thin padded_d = Thin::Zero(s.stride, 3);
     padded_d.topRows(s.cage) = d;
-    constexpr std::size_t groups_together = 8;  // too little work to be worth a thread's while
+    constexpr std::size_t groups_together = 8;  // a single group is too little work for a thread
     parallel_for(
         s.groups.size(),
         [&](std::size_t k) {
@@ -397,7 +397,7 @@ double CageSpaceSolver::project(const Points& cage) {
     parallel_for(
         blocks,
         [&](std::size_t k) {
-            // One pass over the block's part of M: it stays in the cache from the rows to the sums.
+            // One pass over the block's part of M, which stays in the cache between rows and sums.
             const Eigen::Index start = s.first_row[s.blocks[k]];
             Points rows = s.r0.middleCols(start, s.first_row[s.blocks[k + 1]] - start), wanted(3, rows.cols());
             const double* m = s.m.data() + start * s.stride;
@@ -446,7 +446,7 @@ void CageSpaceSolver::weight_changed(std::size_t constraint, double before) {
         s.normal += change * s.groups[s.place_of[constraint]].m_m;
         return;
     }
-    if (c.map().rows > rows_of_piece) {  // as much work as forming all of it
+    if (c.map().rows > rows_of_piece) {  // as expensive as forming all of it
         s.formed = false;
         return;
     }

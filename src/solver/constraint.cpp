@@ -8,7 +8,7 @@
 namespace ostraka {
 
 namespace {
-constexpr double largest_coordinate = 1e100;  // squares, and products of four of them, stay finite
+constexpr double largest_coordinate = 1e100;  // keeps squares, and products of four coordinates, finite
 }
 
 void check_points(const Points& points, const std::string& what) {
@@ -46,7 +46,7 @@ void Constraint::rows_of(const Points& points, Points& rows) const {
     rows.setZero(3, map_.rows);
     for (Eigen::Index i = 0; i < map_.direct; ++i) rows.col(i) = points.col(ids_[i]);
     if (map_.centred && map_.direct > 0) {
-        // The first point is subtracted first, so that far from the origin no digit is lost in the sum.
+        // The first point is subtracted first, so that no digits are lost in the sum far from the origin.
         const Eigen::Vector3d first = rows.col(0);
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (Eigen::Index i = 0; i < map_.direct; ++i) {
@@ -94,7 +94,7 @@ Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b) {
 
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m) {
     const Svd3 svd(m);
-    if (!svd.found()) return Eigen::Matrix3d::Identity();  // not finite
+    if (!svd.found()) return Eigen::Matrix3d::Identity();  // the matrix is not finite
     Eigen::Matrix3d u = svd.matrixU();
     if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) *= -1;
     return u * svd.matrixV().transpose();

@@ -133,7 +133,8 @@ Floating floating_parts(const Unknowns& unknowns, std::span<const double> row_we
     DisjointSets sets(static_cast<std::size_t>(unknowns.count));
     std::vector<char> active(sets.size(), 0), held(sets.size(), 0);
     const RowMatrix& rows = unknowns.rows;
-    for (int pass = 0; pass < 2; ++pass)  // first who belongs together, then who is held
+    for (int pass = 0; pass < 2; ++pass)  // the first pass joins connected unknowns, the second finds sets with a fixed
+                                          // position
         for (std::size_t r = 0; r < rows.rows(); ++r) {
             if (!(row_weight[r] > 0) || rows.begin[r] == rows.begin[r + 1]) continue;
             const int first = rows.unknown[rows.begin[r]];

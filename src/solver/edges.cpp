@@ -1,4 +1,4 @@
-// Differences of points: their lengths, angles and directions.
+// Constraints on differences of points: lengths, angles and directions.
 #include "kinds.h"
 #include "ostraka/core/angles.h"
 
@@ -26,7 +26,7 @@ protected:
             rest_.col(r) = m.rest.col(b) - m.rest.col(a);
         }
     }
-    /// Row r at another length; a row of no length takes the direction it has in the rest state.
+    /// Row r scaled to another length; a row of zero length takes the direction of the rest state.
     [[nodiscard]] Vector3d with_length(const RowsIn& rows, Index r, double length) const {
         if (const double now = rows.col(r).norm(); now > 0) return rows.col(r) * (length / now);
         if (const double then = rest_.col(r).norm(); then > 0) return rest_.col(r) * (length / then);
@@ -48,17 +48,17 @@ std::vector<std::pair<int, int>> pairs_of(const Making& m) {
     return pairs;
 }
 
-/// The closest pair of vectors at an angle `wanted` to one another, in the plane of both. Both turn, the shorter one more: with A
-/// and B their squared lengths and D the angle in excess, A sin^2 a + B sin^2 (D - a) is least for 2 a = arg(A + B exp(2 i D)).
+/// The closest pair of vectors at the angle `wanted`, in the plane of both. Both rotate, the shorter one more: with A and B
+/// their squared lengths and D the excess angle, A sin^2 a + B sin^2 (D - a) is minimal for 2 a = arg(A + B exp(2 i D)).
 void bring_to_angle(Vector3d& u, Vector3d& v, double wanted) {
     const double lu = u.norm(), lv = v.norm();
-    if (!(lu > 0) || !(lv > 0)) return;  // a vector of no length is at any angle
+    if (!(lu > 0) || !(lv > 0)) return;  // a zero vector has no angle
     const Vector3d eu = u / lu, ev = v / lv;
-    Vector3d across = ev - eu.dot(ev) * eu;  // at right angles to u, on v's side
+    Vector3d across = ev - eu.dot(ev) * eu;  // perpendicular to u, on v's side
     const double sine = across.norm();
     across = sine > 1e-15 ? Vector3d(across / sine) : any_perpendicular(eu);
     const double now = std::atan2(across.dot(ev), eu.dot(ev));
-    const double excess = now - wanted;  // positive: the vectors must close in
+    const double excess = now - wanted;  // positive: the angle must decrease
     if (std::abs(excess) > pi / 2) {
         (lu < lv ? u : v).setZero();
         return;
@@ -70,7 +70,7 @@ void bring_to_angle(Vector3d& u, Vector3d& v, double wanted) {
     v = lv * std::cos(excess - a) * at(a + wanted);
 }
 
-/// The angle at the first point, or between two segments, within a range.
+/// The angle at the first point, or between two segments, is within a range.
 class Angle final : public Edges {
 public:
     Angle(const Making& m, const std::vector<std::pair<int, int>>& pairs, Making::Interval range)
@@ -87,7 +87,7 @@ private:
     Making::Interval range_;
 };
 
-/// All segments along one direction, either way: the rank one matrix closest to the rows.
+/// All segments are parallel or antiparallel: the rank-one matrix closest to the rows.
 class Parallel final : public Edges {
 public:
     explicit Parallel(const Making& m) : Edges(m, pairs_of(m)) {}
@@ -97,10 +97,10 @@ public:
     }
 };
 
-/// Lengths l'_i = max(l_i + s_i delta, 0), s_i = 1 or -1, with sum of s_i l'_i = total: the closest ones. The sum is piecewise
-/// linear and increasing in delta.
+/// The closest lengths l'_i = max(l_i + s_i delta, 0), s_i = 1 or -1, with sum of s_i l'_i = total. The sum is piecewise linear
+/// and increasing in delta.
 void shift_lengths(std::vector<double>& lengths, const std::vector<double>& sign, double total) {
-    std::vector<double> breaks;  // where a length reaches zero
+    std::vector<double> breaks;  // values of delta at which a length becomes zero
     for (std::size_t i = 0; i < lengths.size(); ++i) breaks.push_back(-sign[i] * lengths[i]);
     std::sort(breaks.begin(), breaks.end());
     const auto sum = [&](double delta) {
@@ -108,7 +108,7 @@ void shift_lengths(std::vector<double>& lengths, const std::vector<double>& sign
         for (std::size_t i = 0; i < lengths.size(); ++i) s += sign[i] * std::max(lengths[i] + sign[i] * delta, 0.0);
         return s;
     };
-    // The stretch of delta that holds the answer, by halves; within it the sum is linear.
+    // Bisection for the interval of delta that contains the solution; the sum is linear within it.
     std::size_t low = 0, high = breaks.size();
     while (low < high) {
         const std::size_t middle = (low + high) / 2;
@@ -129,7 +129,7 @@ void shift_lengths(std::vector<double>& lengths, const std::vector<double>& sign
     for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = std::max(lengths[i] + sign[i] * delta, 0.0);
 }
 
-/// The length of a poly-line within a range: all edges become longer or shorter by the same amount.
+/// The length of a polyline is within a range; the projection changes all edges by the same amount.
 class PolylineLength final : public Edges {
 public:
     explicit PolylineLength(const Making& m) : Edges(m, path_edges(0, static_cast<int>(m.ids.size()))) {
@@ -149,7 +149,7 @@ private:
     Making::Interval range_{0, 0};
 };
 
-/// All segments of one length: their mean.
+/// All segments have the same length; the projection uses their mean.
 class EqualLengths final : public Edges {
 public:
     explicit EqualLengths(const Making& m) : Edges(m, pairs_of(m)) {}
@@ -159,7 +159,7 @@ public:
     }
 };
 
-/// Two poly-lines of one length.
+/// Two polylines have the same length.
 class EqualLength final : public Edges {
 public:
     EqualLength(const Making& m, std::vector<std::pair<int, int>> first, const std::vector<std::pair<int, int>>& second)

@@ -1,4 +1,4 @@
-// Constraints by name.
+// Creates constraints by name.
 #include "kinds.h"
 
 #include "ostraka/core/words.h"

@@ -1,11 +1,11 @@
-// Points at places, on a surface, on a line, on a plane.
+// Constraints of points to positions, a surface, a line or a plane.
 #include "kinds.h"
 
 namespace ostraka::solver {
 
 namespace {
 
-/// x_i at target positions. Rows: the points.
+/// The points x_i are at target positions. Rows: the points.
 class Closeness final : public Constraint {
 public:
     explicit Closeness(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight), target_(m.target_or(m.rest)) {
@@ -23,7 +23,7 @@ private:
     Points target_;
 };
 
-/// x_i on a surface. Rows: the points.
+/// The points x_i are on a surface. Rows: the points.
 class OnSurface final : public Constraint {
 public:
     explicit OnSurface(Making&& m) : Constraint(m.kind, std::move(m.ids), m.weight), closest_(m.parameters.closest_point) {
@@ -40,7 +40,7 @@ private:
     std::function<Eigen::Vector3d(const Eigen::Vector3d&)> closest_;
 };
 
-/// On some line: the first principal axis (ShapeUp, section 4).
+/// The points are on a line: the first principal axis (ShapeUp, section 4).
 class Line final : public MomentConstraint {
 public:
     using MomentConstraint::MomentConstraint;
@@ -50,7 +50,7 @@ public:
     }
 };
 
-/// On some plane: the one at right angles to the last principal axis.
+/// The points are on a plane: the one perpendicular to the last principal axis.
 class Plane final : public MomentConstraint {
 public:
     using MomentConstraint::MomentConstraint;
@@ -60,7 +60,7 @@ public:
     }
 };
 
-/// On some plane of a given normal (the thesis, section 5.2.1).
+/// The points are on a plane with given normal (the thesis, section 5.2.1).
 class Orientation final : public MomentConstraint {
 public:
     Orientation(const Making& m, const Eigen::Vector3d& n)

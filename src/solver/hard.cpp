@@ -6,7 +6,7 @@ namespace ostraka {
 
 namespace {
 
-/// P(rows + u) - u: with the scaled multipliers u, the local step of the augmented Lagrangian (Boyd et al. 2011, section 3.1.1).
+/// P(rows + u) - u with the scaled multipliers u: the local step of the augmented Lagrangian (Boyd et al. 2011, section 3.1.1).
 class Shifted final : public Constraint {
 public:
     explicit Shifted(std::unique_ptr<Constraint> inner)
@@ -24,7 +24,7 @@ public:
     [[nodiscard]] std::optional<Components> given_components() const override { return inner_->given_components(); }
     [[nodiscard]] const Constraint& inner() const { return *inner_; }
 
-    /// Greatest distance of a row from what is admissible; the multipliers grow by how far the shifted rows are off.
+    /// Updates the multipliers by the residual of the shifted rows; returns the greatest distance of a row from its projection.
     double update(const Points& points) {
         Points rows, shifted(3, map_.rows);
         rows_of(points, rows);
@@ -42,11 +42,11 @@ private:
 }  // namespace
 
 struct HardSolver::State {
-    std::vector<Shifted*> hard;  ///< of each constraint; null for the others
+    std::vector<Shifted*> hard;  ///< for each constraint; null for soft ones
     std::unique_ptr<MeshSpaceSolver> solver;
     double diagonal = 0;
 
-    /// Which of the hard constraints are eliminated; the others take turns.
+    /// Selects the hard constraints that are eliminated; the others are enforced by multipliers.
     std::vector<bool> eliminated() const {
         std::vector<bool> flags(hard.size(), false);
         std::vector<std::size_t> list;
@@ -88,7 +88,7 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     if (!(options.start > 0 && options.start < 1e100)) fail_usage("the start of enforcement is not positive", "1 is the weights");
     HardSummary summary;
     summary.tolerance = options.tolerance * state_->diagonal;
-    constexpr double raise = 4, maximum = 1e8;  // of weights, against where they start
+    constexpr double raise = 4, maximum = 1e8;  // growth factor and limit of the penalty weight, relative to the initial weight
     for (std::size_t i = 0; i < state_->hard.size(); ++i)
         if (state_->hard[i] != nullptr) {
             state_->hard[i]->u.setZero();
@@ -98,11 +98,12 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
     bool turns = false;
     for (std::size_t i = 0; i < state_->hard.size(); ++i) turns = turns || (state_->hard[i] != nullptr && !eliminated[i]);
     SolveOptions inner = options.inner;
-    if (!turns) inner.iterations *= 4;  // one round is all that is needed
+    if (!turns) inner.iterations *= 4;  // a single round suffices
     summary.scale = options.start;
     summary.of_constraint.assign(state_->hard.size(), 0.0);
     std::vector<double> before(state_->hard.size(), std::numeric_limits<double>::infinity());
-    // Contradictory constraints pull ever harder: the state that came nearest is kept, and what does not come nearer is ended.
+    // With contradictory constraints the penalties keep growing: keep the best state, and stop after some rounds without
+    // progress.
     constexpr int patience = 12;
     Points best = points;
     double minimum = std::numeric_limits<double>::infinity();
@@ -119,7 +120,8 @@ HardSummary HardSolver::solve(Points& points, const HardOptions& options) {
                 eliminated[i] ? hard->inner().greatest_distance(points) : hard->update(points);
             worst = std::max(worst, now);
             if (eliminated[i]) continue;
-            // Where multipliers alone are too slow, the weight grows; the multipliers themselves, weight times u, stay.
+            // If multipliers alone converge too slowly the penalty weight is raised; the multipliers (weight times u) are
+            // unchanged.
             constexpr double fast_enough = 0.5;
             const double weight = hard->weight();
             if (now > summary.tolerance && now > fast_enough * before[i] && weight < maximum * constraint(i).weight()) {

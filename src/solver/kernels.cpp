@@ -1,6 +1,6 @@
 #include "kernels.h"
 
-// Eight sums side by side and no fused operations: the same bits from whatever vectors the processor has.
+// Eight separate sums and no fused operations give the same bits for every vector width.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 #define OSTRAKA_EACH_WIDTH __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

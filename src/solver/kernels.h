@@ -1,4 +1,4 @@
-// Products of a few thousand rows of weights with three columns: the hot loops of the solver through a cage.
+// Products of a few thousand rows of weights with three columns: the innermost loops of the cage-space solver.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@ namespace ostraka::solver {
 /// Rows are padded with zeros to a multiple of eight.
 inline Eigen::Index padded(Eigen::Index columns) { return (columns + 7) / 8 * 8; }
 
-/// out(axis, r) += m(r, :) . d(:, axis): m has `rows` rows of `stride` doubles, d three columns of `stride`, out a column of
-/// three a row.
+/// out(axis, r) += m(r, :) . d(:, axis). m: `rows` rows of `stride` doubles; d: three columns of `stride`; out: three values
+/// per row.
 void add_rows(const double* m, Eigen::Index rows, Eigen::Index stride, const double* d, double* out);
 
 /// sum(:, axis) += sum over r of p(axis, r) m(r, :).

@@ -1,4 +1,4 @@
-// What the files of constraint kinds share.
+// Declarations shared by the sources of constraint kinds.
 #pragma once
 
 #include "ostraka/core/dense.h"
@@ -6,7 +6,7 @@
 
 namespace ostraka::solver {
 
-/// What a constraint is made of. `rest` holds the constraint's own points in the order of ids.
+/// Arguments from which a constraint is created. `rest` holds the constraint's own points in the order of ids.
 struct Making {
     std::string_view kind;
     std::vector<int> ids;
@@ -15,17 +15,17 @@ struct Making {
     Points rest;
 
     [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) const;
-    /// Unit vector; fails where it is missing or has no length.
+    /// The direction as a unit vector; fails if it is missing or has zero length.
     [[nodiscard]] Eigen::Vector3d direction() const;
     [[nodiscard]] Eigen::Vector3d point() const;
     struct Interval {
         double min, max;
         [[nodiscard]] double clamp(double value) const { return value < min ? min : (value > max ? max : value); }
     };
-    /// The range, at least `minimum`; with `rest_measure` given, times that unless absolute.
+    /// The range of the parameters, at least `minimum`. range_of: multiplied by `rest_measure` unless absolute.
     [[nodiscard]] Interval range(double default_min, double default_max, double minimum = 0) const;
     [[nodiscard]] Interval range_of(double rest_measure) const;
-    /// The target's points or the rest points, as many as `columns`.
+    /// The target's points if given, otherwise the rest points; the number of columns must be the same.
     [[nodiscard]] Points target_or(const Points& rest_rows) const;
 };
 
@@ -37,7 +37,7 @@ std::unique_ptr<Constraint> make_on_surface(Making&&);
 std::unique_ptr<Constraint> make_line(Making&&);
 std::unique_ptr<Constraint> make_plane(Making&&);
 std::unique_ptr<Constraint> make_orientation(Making&&);
-// round.cpp
+// radial_constraints.cpp
 std::unique_ptr<Constraint> make_circle(Making&&);
 std::unique_ptr<Constraint> make_sphere(Making&&);
 // strain.cpp
@@ -59,11 +59,11 @@ std::unique_ptr<Constraint> make_equilateral(Making&&);
 std::unique_ptr<Constraint> make_non_uniform_scaling(Making&&);
 std::unique_ptr<Constraint> make_parallelogram(Making&&);
 std::unique_ptr<Constraint> make_rectangle(Making&&);
-// axes.cpp
+// orientations.cpp
 std::unique_ptr<Constraint> make_fitted_plane_orientation(Making&&);
 std::unique_ptr<Constraint> make_co_axiality(Making&&);
 std::unique_ptr<Constraint> make_axis_direction(Making&&);
-// placement.cpp
+// levels_and_symmetry.cpp
 std::unique_ptr<Constraint> make_axis_on_line(Making&&);
 std::unique_ptr<Constraint> make_means_on_level(Making&&);
 std::unique_ptr<Constraint> make_mean_position(Making&&);
@@ -83,13 +83,13 @@ Eigen::Matrix3d outer_sum(const RowsIn& a, const RowsIn& b);
 /// The proper rotation R that maximises tr(R^T M): R q_i is closest to r_i for M = sum of r_i q_i^T.
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& m);
 
-/// Unit eigenvectors of a symmetric matrix, least eigenvalue first.
+/// Unit eigenvectors of a symmetric matrix, in ascending order of eigenvalues.
 SymmetricEigen3 principal(const Eigen::Matrix3d& symmetric);
 
-/// Some unit vector at right angles to a unit vector.
+/// An arbitrary unit vector perpendicular to a unit vector.
 Eigen::Vector3d any_perpendicular(const Eigen::Vector3d& unit);
 
-/// A constraint whose projection follows from moments. Rows: the centred points.
+/// A constraint whose projection is determined by moments. Rows: the centred points.
 class MomentConstraint : public Constraint {
 public:
     explicit MomentConstraint(const Making& m) : Constraint(m.kind, m.ids, m.weight) {

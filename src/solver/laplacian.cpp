@@ -1,4 +1,4 @@
-// Weighted differences between a point and its neighbours, and across an edge.
+// Laplacian constraints (weighted mean of the neighbours minus the point), and bending across an edge.
 #include "kinds.h"
 
 #include <cmath>
@@ -7,7 +7,7 @@ namespace ostraka::solver {
 
 namespace {
 
-/// One row: the weighted mean of the neighbours less the point. It shall be zero, or what it was in the rest state.
+/// One row: the weighted mean of the neighbours minus the point. The projection is zero, or the value of the rest state.
 class Laplacian final : public Constraint {
 public:
     Laplacian(const Making& m, const std::vector<double>& weights, bool displacement)
@@ -43,7 +43,7 @@ std::vector<double> uniform(const Making& m) {
     return std::vector<double>(m.ids.size() - 1, 1.0 / static_cast<double>(m.ids.size() - 1));
 }
 
-/// Cotangent of the angle at c in the triangle a, b, c; 0 where it has none.
+/// Cotangent of the angle at c in the triangle a, b, c; 0 if the triangle is degenerate there.
 double cotangent(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
     const double sine = (a - c).cross(b - c).norm();
     return sine > 0 ? (a - c).dot(b - c) / sine : 0.0;
@@ -68,14 +68,14 @@ std::vector<double> cotangent_weights(const Making& m) {
         sum += std::abs(w);
         total += w;
     }
-    // A row whose weights do not add up to what stands at the centre would not be free of translation.
+    // The row must be invariant to translation: the weights have to add up to that of the centre.
     if (!(total > 1e-9 * sum)) m.fail("the coefficients do not add up to a positive number", "use Laplacian here");
     for (double& w : weights) w /= total;
     return weights;
 }
 
-/// One row over two triangles 0 1 2 and 0 1 3 that share the edge 0 1, which is their bend as a length: its size stays in a range
-/// (ShapeOp's Bending, without its factor of area).
+/// One row over two triangles 0 1 2 and 0 1 3 that share the edge 0 1; its length measures the bending and is kept in a range
+/// (ShapeOp's Bending, without its area factor).
 class Bending final : public Constraint {
 public:
     Bending(Making&& m, const Eigen::Vector4d& weights) : Constraint(m.kind, std::move(m.ids), m.weight) {

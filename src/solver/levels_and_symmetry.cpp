@@ -1,4 +1,4 @@
-// Stations of an axis, levels, mirrored pairs, proportions.
+// Constraints on stations of an axis, levels, mirrored pairs and proportions.
 #include "kinds.h"
 
 #include <cmath>
@@ -11,8 +11,8 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Rows are the means of groups of points. With shares, a point counts for the next station by its share and for its own by the
-/// rest: hat functions, so that no wave as long as a group is left where the stations move.
+/// Rows are the means of groups of points. With shares, a point counts for the next station by its share and for its own
+/// station by the rest: hat functions, which avoid waves of the length of a group between moved stations.
 class StationMeans : public Constraint {
 protected:
     StationMeans(const Making& m, const std::vector<double>& shares, const std::vector<double>& weights = {})
@@ -56,7 +56,7 @@ protected:
     }
 };
 
-/// The stations of an axis on a given line: the axis is constrained, and the surface follows.
+/// The stations of an axis lie on a given line: constrains the axis, and the surface follows.
 class AxisOnLine final : public StationMeans {
 public:
     AxisOnLine(const Making& m, const Vector3d& direction, const Vector3d& point)
@@ -77,8 +77,8 @@ private:
     Vector3d direction_, point_;
 };
 
-/// The closest common height of the means is the mean of theirs. With a target, a point a group, the differences of height are
-/// those of the target's points.
+/// The means of the groups have the same height; the closest is the mean of their heights. With a target (one point per group)
+/// their height differences are those of the target's points.
 class MeansOnLevel final : public StationMeans {
 public:
     MeansOnLevel(const Making& m, const Vector3d& up) : StationMeans(m, {}, m.parameters.coefficients), up_(up) {
@@ -99,10 +99,10 @@ public:
 
 private:
     Vector3d up_;
-    Eigen::VectorXd heights_;  ///< of each group above their mean
+    Eigen::VectorXd heights_;  ///< height of each group relative to the mean of all
 };
 
-/// The mean of all points at a given place.
+/// The mean of all points is at a given position.
 class MeanPosition final : public StationMeans {
 public:
     MeanPosition(const Making& m, const Vector3d& place) : StationMeans(m, {}, m.parameters.coefficients), place_(place) {}
@@ -119,7 +119,7 @@ private:
     Vector3d place_;
 };
 
-/// Pairs of points that mirror each other: in a given plane (rows: the points), or in the best one (rows: the centred points),
+/// Pairs of points that mirror each other in a given plane (rows: the points) or in the best plane (rows: the centred points),
 /// whose normal is the last eigenvector of the symmetric part of sum p q^T.
 class MirrorSymmetry final : public Constraint {
 public:
@@ -151,8 +151,8 @@ private:
     Vector3d normal_ = Vector3d::UnitZ(), point_ = Vector3d::Zero();
 };
 
-/// A point and the combination of three others, its partner, mirror each other in a given plane, but for a discrepancy of each
-/// that stays. Rows: the point and the combination.
+/// Pairs of a point and a partner, a combination of three other points, that mirror each other in a given plane up to a
+/// constant discrepancy per pair. Rows: the point and the combination.
 class MirroredInTriangles final : public Constraint {
 public:
     MirroredInTriangles(const Making& m, const Vector3d& normal, const Vector3d& point)
@@ -199,11 +199,11 @@ private:
     Points discrepancy_;
 };
 
-/// The first part, as it is, stretched along its measure so that this, or its share of a second measure, is within a range (the
-/// thesis, section 5.3.2): about its mean (rows: the centred points of the part), or about the mean of its anchors (rows: the
-/// points). One more row, which is only observed, is the second measure where there is one. With a target it is a turned copy of
-/// that shape instead, stretched along the measure or scaled as a whole (rows: the centred points): the set of such copies does
-/// not move with the points, so that what others hold against it cannot wear it down.
+/// The first part, stretched along its measure so that the measure, or its ratio to a second measure, is within a range (the
+/// thesis, section 5.3.2). It is stretched about its mean (rows: the centred points of the part) or about the mean of its
+/// anchors (rows: the points). The second measure, if any, is one more row, which is only observed. With a target the part is a
+/// rotated copy of that shape instead, stretched along the measure or scaled uniformly (rows: the centred points). The set of
+/// such copies does not depend on the points, so that conflicting constraints cannot degrade the shape over the iterations.
 class Proportion final : public Constraint {
 public:
     Proportion(Making&& m, Making::Interval range)
@@ -249,7 +249,7 @@ public:
         }
         const Vector3d first = rows.col(pins_[1]) - rows.col(pins_[0]);
         const double l1 = length(first, along_first_), unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
-        if (!(l1 > 0)) return;  // there is nothing to stretch
+        if (!(l1 > 0)) return;  // a measure of zero length cannot be stretched
         const double wanted = std::isinf(range_.max) ? std::max(l1, unit * range_.min)
                                                      : Making::Interval{unit * range_.min, unit * range_.max}.clamp(l1);
         if (wanted == l1) return;
@@ -277,8 +277,8 @@ private:
         axis_ = along_first_ ? *along_first_ : Vector3d(edge.normalized());
     }
 
-    /// The copy R S q that is closest to the rows, S a stretch by s along the axis or a scaling by s, with its measure in range.
-    /// R and s by turns, from the copy that stands as the reference does.
+    /// The copy R S q closest to the rows, where S is a stretch by s along the axis or a scaling by s, with its measure in
+    /// range. Alternates between R and s, from the unrotated copy.
     void project_copy(const RowsIn& rows, RowsOut projected) const {
         const double unit = single_ ? 1.0 : length(rows.col(rows.cols() - 1), along_second_);
         const Points part = rows.leftCols(map_.direct);
@@ -289,7 +289,7 @@ private:
         Matrix3d rotation = Matrix3d::Identity();
         double s = 1;
         for (int round = 0; round < 30; ++round) {
-            // |R (rest + s along) q - r|^2 is least at s where its derivative vanishes; rest and along are at right angles.
+            // |R (rest + s along) q - r|^2 is minimal at the zero of its derivative by s; rest and along are orthogonal.
             const double size = (along * own).trace();
             if (size > 0) s = ((rotation.transpose() * moment * along).trace()) / size;
             s = within(s, unit, rotation * (rest * edge), rotation * (along * edge));
@@ -302,10 +302,11 @@ private:
         projected.leftCols(map_.direct) = rotation * (rest + s * along) * reference_;
     }
 
-    /// The factor nearest to s whose measure is in range: of constant + s growing, along the direction or in length.
+    /// The factor closest to s for which the measure is in range. The measure is that of constant + s growing, along the
+    /// direction or as a length.
     [[nodiscard]] double within(double s, double unit, const Vector3d& constant, const Vector3d& growing) const {
         const double low = range_.min * unit, high = std::isinf(range_.max) ? range_.max : range_.max * unit;
-        constexpr double minimum = 1e-3;  // a part does not vanish or turn inside out
+        constexpr double minimum = 1e-3;  // prevents a part from vanishing or inverting
         s = std::max(s, minimum);
         const double now = length(constant + s * growing, along_first_);
         const double wanted = now < low ? low : now > high ? high : now;
@@ -316,9 +317,9 @@ private:
     }
 
     Making::Interval range_;
-    bool single_;  ///< the range is that of the first measure
+    bool single_;  ///< the range applies to the first measure alone
     bool whole_ = false;
-    Points reference_;  ///< centred; empty: the points as they are
+    Points reference_;  ///< centred; empty: the points keep their shape
     Vector3d axis_ = Vector3d::UnitZ();
     std::vector<int> pins_, anchors_;
     std::optional<Vector3d> along_first_, along_second_;

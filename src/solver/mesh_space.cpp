@@ -21,9 +21,9 @@ double diagonal_of(const Points& points) {
     return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
 }
 
-/// Below this the matrix counts as singular (see SparseCholesky::reciprocal_condition).
+/// The matrix counts as singular below this value (see SparseCholesky::reciprocal_condition).
 constexpr double singular = 1e-14;
-/// Weight of the rest shape in singular systems, as a share of the mean diagonal entry.
+/// Initial weight of the rest shape in singular systems, as a share of the mean diagonal entry.
 constexpr double first_regularisation = 1e-9;
 
 }  // namespace
@@ -41,10 +41,10 @@ struct MeshSpaceSolver::State {
     double pin = 0, regularisation = 0, symbolic_seconds = 0;
     Points rows, projected;
     Eigen::MatrixXd constant_right, right;
-    std::vector<std::size_t> blocks;  ///< constraints projected together: first of each, and the end
+    std::vector<std::size_t> blocks;  ///< blocks of constraints that are projected together: first of each, and the end
 
-    // Weights that have changed since the factorisation, few of them: A + U S U^T by the formula of Woodbury.
-    std::map<std::size_t, double> factored_weight;  ///< constraint -> weight that the factorisation has
+    // A few weights that changed since the factorisation: A + U S U^T by the Woodbury formula.
+    std::map<std::size_t, double> factored_weight;  ///< constraint -> weight used in the factorisation
     bool updates_current = true;
     std::vector<std::size_t> updated_rows;
     Eigen::VectorXd update_sign, update_root;
@@ -100,7 +100,8 @@ void MeshSpaceSolver::State::renew_weights(std::span<const std::unique_ptr<Const
     for (const int i : floating.idle) idle[i] = 1;
 }
 
-/// A part that floats is held by one of its points, which costs nothing, and moved back by its mean after each solve.
+/// A floating part is fixed at one of its points, which does not change the objective, and its mean is restored after each
+/// solve.
 bool MeshSpaceSolver::State::factorise() {
     LowerTriangle matrix = solver::normal_matrix(unknowns.rows, columns, row_weight);
     if (!has_pattern) {
@@ -129,7 +130,7 @@ bool MeshSpaceSolver::State::factorise() {
     return regularisation == 0;
 }
 
-/// False where too many rows have changed, or the update is ill-conditioned.
+/// Returns false if too many rows have changed, or the update is ill-conditioned.
 bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>> constraints) {
     constexpr std::size_t max_rows = 24;
     updated_rows.clear();
@@ -138,7 +139,7 @@ bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>>
         const Constraint& constraint = *constraints[c];
         std::fill_n(row_weight.data() + unknowns.first_row[c], unknowns.rows_of(c), constraint.weight());
         if (constraint.weight() == before) continue;
-        // What holds parts in place may have changed, too.
+        // The set of fixed parts may have changed, too.
         if (constraint.weight() == 0 || before == 0 || static_cast<std::size_t>(constraint.map().rows) > max_rows) return false;
         for (std::size_t r = unknowns.first_row[c]; r < unknowns.first_row[c + 1]; ++r) {
             updated_rows.push_back(r);
@@ -166,7 +167,7 @@ bool MeshSpaceSolver::State::update(std::span<const std::unique_ptr<Constraint>>
         for (std::size_t e = unknowns.rows.begin[r]; e < unknowns.rows.begin[r + 1]; ++e)
             small.row(k) += update_root[k] * unknowns.rows.value[e] * update_columns.row(unknowns.rows.unknown[e]);
     }
-    // The update takes back what the old factors give: as many digits are lost as this has.
+    // The update subtracts from the solution of the old factors; the size of this matrix bounds the digits lost.
     constexpr double max_lost = 1e3;
     if (!(small.cwiseAbs().maxCoeff() < max_lost)) return false;
     capacity.compute(small);
@@ -193,7 +194,7 @@ void MeshSpaceSolver::State::renew_constants(std::span<const std::unique_ptr<Con
         constraints[c]->project(rows.middleCols(first, count), projected.middleCols(first, count));
     });
     constant_right.setZero(unknowns.count, 3);
-    // The rows that move have no say here.
+    // Rows whose projection changes do not contribute here.
     std::vector<char> constant(unknowns.rows.rows(), 0);
     for (std::size_t c = 0; c < constraints.size(); ++c)
         if (constraints[c]->constant()) std::fill_n(constant.data() + unknowns.first_row[c], unknowns.rows_of(c), 1);
@@ -253,7 +254,7 @@ void MeshSpaceSolver::initialize() {
     if (!s.has_constants) {
         s.renew_constants(constraints_);
         s.has_constants = true;
-        if (!s.exact.empty()) s.eliminate(constraints_);  // constants are renewed whenever the matrix is
+        if (!s.exact.empty()) s.eliminate(constraints_);  // constants are recomputed whenever the matrix is
     }
     total_weight_ = 0;
     for (const double w : s.row_weight) total_weight_ += w;
@@ -308,7 +309,7 @@ void MeshSpaceSolver::global_step(Points& points) {
         4096);
 }
 
-/// Whether constraints of positive weight hold all points of this one.
+/// True if constraints of positive weight involve all points of this one.
 bool MeshSpaceSolver::State::holds_points_of(std::size_t constraint) const {
     for (std::size_t r = unknowns.first_row[constraint]; r < unknowns.first_row[constraint + 1]; ++r)
         for (std::size_t e = unknowns.rows.begin[r]; e < unknowns.rows.begin[r + 1]; ++e)
@@ -352,7 +353,7 @@ bool MeshSpaceSolver::enforce(const std::vector<std::size_t>& constraints) {
 void MeshSpaceSolver::start(Points& points) {
     State& s = *state_;
     if (s.exact.empty()) return;
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(s.unknowns.count, 3);  // means are in no row that is eliminated
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(s.unknowns.count, 3);  // means occur in no eliminated row
     for (std::size_t i = 0; i < s.unknowns.point.size(); ++i)
         x.row(static_cast<Eigen::Index>(i)) = points.col(s.unknowns.point[i]).transpose();
     const Eigen::MatrixXd by = s.elimination.correction(x);
@@ -361,7 +362,7 @@ void MeshSpaceSolver::start(Points& points) {
 }
 
 void MeshSpaceSolver::weight_changed(std::size_t constraint, double before) {
-    constexpr std::size_t many = 1000;  // remembered one by one
+    constexpr std::size_t many = 1000;  // limit for tracking changed weights individually
     if (!state_->has_factor) return;
     state_->factored_weight.emplace(constraint, before);
     state_->updates_current = false;

@@ -1,4 +1,4 @@
-// Groups that rotate rigidly: towards a normal, onto an axis, to an angle with an axis.
+// Groups that are rotated rigidly: to a plane normal, onto an axis, to an angle with a direction.
 #include "kinds.h"
 #include "ostraka/core/angles.h"
 #include "ostraka/core/dense.h"
@@ -21,8 +21,8 @@ Matrix3d cross_matrix(const Vector3d& n) {
     return m;
 }
 
-/// The rotation R with R a = d or R a = -d that maximises tr(R m): the rotation from a to +-d, then a spin about d, whose angle
-/// has a closed form.
+/// The rotation R with R a = d or R a = -d that maximises tr(R m): the rotation from a to +-d, followed by a rotation about d,
+/// whose angle has a closed form.
 Matrix3d rotation_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
     Matrix3d best = Matrix3d::Identity();
     double maximum = -std::numeric_limits<double>::infinity();
@@ -40,11 +40,11 @@ Matrix3d rotation_to(const Vector3d& a, const Vector3d& d, const Matrix3d& m) {
 }
 
 /// The rotation R with d . R a = cos(angle), 0 < angle < pi, that maximises tr(R m) for a symmetric m. In unit quaternions q
-/// these are q^T C q = cos(angle) and q^T N q. What the pair of forms takes on the sphere is convex (Brickman 1961), so the best
-/// q is a top eigenvector of N + l C for some l: found by halves, since q^T C q grows with l.
+/// these are q^T C q = cos(angle) and q^T N q. The joint range of the two forms on the sphere is convex (Brickman 1961), so
+/// that the best q is a top eigenvector of N + l C for some l, which is found by bisection, since q^T C q grows with l.
 Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, const Matrix3d& m) {
     const double size = m.norm();
-    if (!(size > 0)) return Matrix3d::Identity();  // all points are at one place
+    if (!(size > 0)) return Matrix3d::Identity();  // all points coincide
     Matrix4d n = Matrix4d::Zero(), c;
     n(0, 0) = m.trace() / size;
     n.bottomRightCorner<3, 3>() = 2 * m / size - n(0, 0) * Matrix3d::Identity();
@@ -52,7 +52,7 @@ Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, c
     c.bottomLeftCorner<3, 1>() = a.cross(d);
     c.topRightCorner<1, 3>() = a.cross(d).transpose();
     c.bottomRightCorner<3, 3>() = a * d.transpose() + d * a.transpose() - c(0, 0) * Matrix3d::Identity();
-    // C has the eigenvalues 1, 1, -1, -1: the part of q in each half says the angle.
+    // C has the eigenvalues 1, 1, -1, -1; the norm of q in each eigenspace determines the angle.
     const Matrix4d near = (Matrix4d::Identity() + c) / 2, far = (Matrix4d::Identity() - c) / 2;
     const double wanted = std::pow(std::sin(angle / 2), 2);
     const auto too_far = [&](const Vector4d& q) { return (far * q).squaredNorm() > wanted * q.squaredNorm(); };
@@ -66,7 +66,7 @@ Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, c
         if (!(middle > low && middle < high)) break;
         (too_far(top(middle)) ? low : high) = middle;
     }
-    // Both sides are the same but where the top eigenvalue is double; there the answer is a mixture.
+    // Both limits are equal unless the top eigenvalue is double; then the solution is a mixture of both eigenvectors.
     const Vector4d before = top(low);
     Vector4d after = top(high);
     if (before.dot(after) < 0) after = -after;
@@ -80,7 +80,7 @@ Matrix3d rotation_to_angle(const Vector3d& a, const Vector3d& d, double angle, c
     return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
-/// Direction of the axis in the rest state; without one, the longest principal axis of the centred shape.
+/// Direction of the axis in the rest state; by default the longest principal axis of the centred shape.
 Vector3d rest_axis_of(const Making& m, const Points& shape) {
     if (!m.parameters.rest_direction) return principal(outer_sum(shape, shape)).eigenvectors().col(2);
     const Vector3d& given = *m.parameters.rest_direction;
@@ -89,10 +89,10 @@ Vector3d rest_axis_of(const Making& m, const Points& shape) {
     return (given / size).normalized();
 }
 
-/// The mean, taken from the first point on, so that far from the origin no digit is lost in the sum.
+/// The mean, computed relative to the first point, so that no digits are lost in the sum far from the origin.
 Vector3d mean_of(const Points& points) { return points.col(0) + (points.colwise() - points.col(0).eval()).rowwise().mean(); }
 
-/// The points as they are, turned about their mean so that their fitted plane has the given normal, either way round.
+/// The points, rotated about their mean so that their fitted plane has the given normal, up to sign.
 class FittedPlaneOrientation final : public MomentConstraint {
 public:
     FittedPlaneOrientation(const Making& m, const Vector3d& normal) : MomentConstraint(m), normal_(normal) {}
@@ -105,8 +105,8 @@ private:
     Vector3d normal_;
 };
 
-/// The points as they are, moved rigidly so that their axis lies on a line (the thesis, section 5.2.2). The axis is given in the
-/// rest state and carried along by the best rigid motion from there. Rows: the points.
+/// The points, moved rigidly so that their axis lies on a line (the thesis, section 5.2.2). The axis is given in the rest state
+/// and transformed by the best rigid motion. Rows: the points.
 class CoAxiality final : public Constraint {
 public:
     CoAxiality(Making&& m, const Vector3d& direction, const Vector3d& point)
@@ -141,8 +141,8 @@ private:
     Points shape_;
 };
 
-/// The points as they are, turned about their mean so that the angle between their axis and a direction is within a range. The
-/// axis is that of the rest state, carried along by the best rotation from there. Rows: the centred points.
+/// The points, rotated about their mean so that the angle between their axis and a direction is within a range. The axis is
+/// that of the rest state, transformed by the best rotation. Rows: the centred points.
 class AxisDirection final : public MomentConstraint {
 public:
     AxisDirection(const Making& m, const Vector3d& direction, Making::Interval range)
@@ -158,7 +158,7 @@ public:
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
         const Vector3d axis = best_rotation(moments.reference) * rest_axis_;
         const double now = std::atan2(axis.cross(direction_).norm(), std::abs(axis.dot(direction_))), wanted = range_.clamp(now);
-        // Points at one place would be at any angle: not a way out of a contradiction.
+        // Coincident points satisfy any angle; the minimum size prevents this as a solution of contradictory constraints.
         const double size = moments.rows.trace(), grown = size > 0 && size < minimum_ ? std::sqrt(minimum_ / size) : 1;
         if (wanted == now) return {grown * Matrix3d::Identity(), Matrix3d::Zero()};
         if (!(wanted > 0)) return {grown * rotation_to(axis, direction_, moments.rows), Matrix3d::Zero()};
@@ -170,7 +170,7 @@ public:
 
 private:
     Vector3d direction_, rest_axis_;
-    double minimum_ = 0;  ///< of the squared distances from the mean together
+    double minimum_ = 0;  ///< lower bound of the sum of squared distances from the mean
     Making::Interval range_;
     Points shape_;
 };

@@ -1,4 +1,4 @@
-// Circles and spheres: geometric least squares, by damped Gauss-Newton from the algebraic fit.
+// Circles and spheres: geometric least squares by damped Gauss-Newton, initialised by the algebraic fit.
 #include "kinds.h"
 #include "ostraka/core/dense.h"
 
@@ -12,8 +12,8 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Least squares by Levenberg and Marquardt. `normal(state, JtJ, Jtf)` returns the cost at a state and fills the rest;
-/// `step(state, d)` gives the state after a step.
+/// Levenberg-Marquardt least squares. `normal(state, JtJ, Jtf)` returns the cost at a state and fills the matrices;
+/// `step(state, d)` returns the state after a step.
 template <int N, class State, class Normal, class Step>
 double minimise(State& state, const Normal& normal, const Step& step) {
     using Square = Eigen::Matrix<double, N, N>;
@@ -52,7 +52,7 @@ protected:
     }
     /// Root mean square distance from the mean.
     static double size_of(const RowsIn& rows) { return rows.norm() / std::sqrt(static_cast<double>(rows.cols())); }
-    /// Centre of the circle or sphere in a space of D dimensions that fits |x|^2 = 2 c . x + e best (Kasa).
+    /// Centre of the circle or sphere in D dimensions that best fits |x|^2 = 2 c . x + e (Kasa).
     template <int D>
     static Eigen::Matrix<double, D, 1> algebraic_centre(const Eigen::Matrix<double, D, Eigen::Dynamic>& x) {
         Eigen::Matrix<double, D + 1, D + 1> normal = Eigen::Matrix<double, D + 1, D + 1>::Zero();
@@ -68,7 +68,7 @@ protected:
     }
 };
 
-/// On some sphere, or on a plane where that, its limit, is closer.
+/// The points are on a sphere, or on a plane (the limit of spheres) if that is closer.
 class Sphere final : public RadialConstraint {
 public:
     explicit Sphere(Making&& m) : RadialConstraint(std::move(m)) {}
@@ -114,7 +114,7 @@ public:
     }
 };
 
-/// On some circle, or on a line where that, its limit, is closer.
+/// The points are on a circle, or on a line (the limit of circles) if that is closer.
 class Circle final : public RadialConstraint {
 public:
     explicit Circle(Making&& m) : RadialConstraint(std::move(m)) {}
@@ -163,7 +163,7 @@ private:
         const Vector3d v = x - ring.centre;
         return v - ring.normal.dot(v) * ring.normal;
     }
-    /// Two residuals a point: its height above the plane, and its distance from the axis less the radius.
+    /// Two residuals per point: its height above the plane, and its distance from the axis minus the radius.
     static double equations(const Ring& ring, const Points& x, Eigen::Matrix<double, 6, 6>& jj, Eigen::Matrix<double, 6, 1>& jf) {
         const Vector3d& n = ring.normal;
         const Vector3d s = any_perpendicular(n), t = n.cross(s);

@@ -1,4 +1,4 @@
-// Groups of points that keep a shape up to some motion, and quadrilaterals.
+// Groups of points that keep their shape up to a class of motions, and quadrilaterals.
 #include "kinds.h"
 #include "ostraka/core/angles.h"
 
@@ -33,7 +33,7 @@ protected:
     Eigen::Matrix3d outer_;  ///< sum of q_i q_i^T
 };
 
-/// A turned, moved and, within a range, scaled copy of the reference shape. Rigid is the range [1, 1].
+/// A copy of the reference shape, rotated, translated and scaled by a factor within a range. Rigid is the range [1, 1].
 class Similarity final : public ShapeGroup {
 public:
     Similarity(const Making& m, const Points& shape, Making::Interval scale) : ShapeGroup(m, shape), scale_(scale) {}
@@ -49,14 +49,14 @@ private:
     Making::Interval scale_;
 };
 
-/// A copy R (I + (s - 1) a a^T) of the reference shape that is stretched by s along its own axis a, turned and moved.
+/// A copy R (I + (s - 1) a a^T) of the reference shape: stretched by s along its own axis a, rotated and translated.
 class NonUniformScaling final : public ShapeGroup {
 public:
     NonUniformScaling(const Making& m, const Points& shape, const Eigen::Vector3d& axis, Making::Interval scale)
         : ShapeGroup(m, shape), axis_(axis), scale_(scale) {}
     [[nodiscard]] LinearProjection project_moments(const Moments& moments) const override {
-        // For a given s the best rotation is known, for a given rotation the best s: the squared distance as a function of s
-        // alone is smooth but may have several minima, so that it is sampled first.
+        // The best rotation is known for a given s, and the best s for a given rotation. The squared distance as a function of
+        // s alone is smooth but may have several minima, so that it is sampled first.
         const double along = axis_.dot(outer_ * axis_);
         const double maximum = std::sqrt(moments.rows.trace() / (along > 0 ? along : 1.0));
         const double low = scale_.min, high = std::max(low, std::min(scale_.max, 2 * maximum + 1));
@@ -83,7 +83,7 @@ private:
     [[nodiscard]] Eigen::Matrix3d stretch(double s) const {
         return Eigen::Matrix3d::Identity() + (s - 1) * axis_ * axis_.transpose();
     }
-    /// Squared distance for a given s, less what does not depend on it.
+    /// Squared distance for a given s, without terms that do not depend on s.
     [[nodiscard]] double cost(const Moments& moments, double s, double along) const {
         const Eigen::Matrix3d m = moments.reference * stretch(s);
         return along * s * s - 2 * best_rotation(m).cwiseProduct(m).sum();
@@ -92,8 +92,8 @@ private:
     Making::Interval scale_;
 };
 
-/// Corners in order around. Rows: the centred points. The closest parallelogram takes a quarter of the alternating sum from each
-/// corner; the closest rectangle also gives both diagonals their mean length.
+/// Corners in cyclic order. Rows: the centred points. The closest parallelogram subtracts a quarter of the alternating sum from
+/// each corner; the closest rectangle also gives both diagonals their mean length.
 class Quadrilateral final : public Constraint {
 public:
     Quadrilateral(Making&& m, bool rectangle) : Constraint(m.kind, std::move(m.ids), m.weight), rectangle_(rectangle) {
@@ -107,7 +107,7 @@ public:
             if (a > 0 && b > 0) {
                 first *= mean / a;
                 second *= mean / b;
-            } else if (a > 0 || b > 0) {  // a diagonal of no length: the other one turned by a right angle
+            } else if (a > 0 || b > 0) {  // one diagonal has zero length: use the other one, rotated by a right angle
                 const Eigen::Vector3d known = (a > 0 ? first : second).normalized();
                 const Eigen::Vector3d other = mean * any_perpendicular(known);
                 (a > 0 ? first : second) = mean * known;

@@ -71,7 +71,7 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
         summary.objective.push_back(objective);
         summary.seconds.push_back(clock.seconds());
     };
-    // Below this share of the starting value the objective is rounding.
+    // The objective counts as rounding below this share of its initial value.
     constexpr double rounding = 1e-15;
     solver::Anderson anderson(options.window);
     Points& x = variables;
@@ -109,7 +109,7 @@ SolveSummary Solver::solve(Points& variables, const SolveOptions& options) {
         if (!accelerated) {
             next = project_at(plain);
             if (!(next <=
-                  phi + rounding * start + rounding_)) {  // only where a projection is not the closest of all admissible rows
+                  phi + rounding * start + rounding_)) {  // happens only if a projection is not the closest admissible one
                 project_at(x);
                 summary.stop = StopReason::stalled;
                 record(phi);

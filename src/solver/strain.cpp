@@ -1,4 +1,4 @@
-// Edges, triangles and tetrahedra that stretch within limits (ShapeUp; Bouaziz et al. 2014, Projective Dynamics).
+// Edges, triangles and tetrahedra with limited strain (ShapeUp; Bouaziz et al. 2014, Projective Dynamics).
 #include "kinds.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace ostraka::solver {
 
 namespace {
 
-/// x_1 - x_0 has a length within a range.
+/// The length of x_1 - x_0 is within a range.
 class EdgeStrain final : public Constraint {
 public:
     explicit EdgeStrain(Making&& m)
@@ -28,8 +28,9 @@ private:
     Making::Interval range_;
 };
 
-/// s >= 0 with product t closest to a >= b >= 0, of two: s_i = (a_i +- sqrt(a_i^2 + 4 mu)) / 2, where mu is a multiple of the
-/// Lagrange multiplier; the lesser one takes the minus sign where the product must shrink below its value at 4 mu = -b^2.
+/// The s >= 0 with product t closest to a, for two factors a >= b >= 0: s_i = (a_i +- sqrt(a_i^2 + 4 mu)) / 2, where mu is a
+/// multiple of the Lagrange multiplier. The smaller factor takes the minus sign if the product must fall below its value at 4
+/// mu = -b^2.
 std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double t) {
     if (!(t > 0)) {
         std::array<double, 3> s = a;
@@ -41,7 +42,7 @@ std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double
         for (int i = 0; i < n; ++i) {
             const double root = std::sqrt(std::max(a[i] * a[i] + 4 * mu, 0.0));
             const bool less = minus && i == n - 1;
-            // Written so that no digits cancel.
+            // Written to avoid cancellation.
             if ((a[i] >= 0) != less) s[i] = (a[i] + (less ? -root : root)) / 2;
             else s[i] = (less ? a[i] + root : a[i] - root) != 0 ? -2 * mu / (less ? a[i] + root : a[i] - root) : 0;
         }
@@ -80,7 +81,8 @@ std::array<double, 3> with_product(const std::array<double, 3>& a, int n, double
         consider(bisect(start, high, false));
     }
     if (minimum > 0) {
-        // From `start` to 0 with the minus sign the product ends at 0, but it may rise before.
+        // With the minus sign the product ends at 0 as mu goes from `start` to 0, but it may rise before; therefore it is
+        // sampled.
         constexpr int samples = 64;
         double previous = start, value = excess(start, true);
         for (int i = 1; i <= samples; ++i) {
@@ -100,8 +102,9 @@ struct SvdOfTwo : Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>> {
 
 enum class Limits { singular_values, product };
 
-/// Rows: the columns of the deformation gradient F of a simplex times a length, the 1/2 or 1/3 power of its rest area or volume.
-/// Limits on each singular value (strain) or on their product (area, volume). A tetrahedron turned inside out is turned back.
+/// Rows: the columns of the deformation gradient F of a simplex times a length, the 1/2 or 1/3 power of its rest area or
+/// volume. Limits apply to each singular value (strain) or to their product (area, volume). An inverted tetrahedron is
+/// restored.
 template <int N>
 class Simplex final : public Constraint {
     using Edges = Eigen::Matrix<double, 3, N>;
@@ -112,7 +115,7 @@ public:
     Simplex(Making&& m, Limits limits) : Constraint(m.kind, m.ids, m.weight), limits_(limits) {
         Edges edges;
         for (int i = 0; i < N; ++i) edges.col(i) = m.rest.col(i + 1) - m.rest.col(0);
-        // Edges in a frame of their own, by Gram and Schmidt.
+        // Edges in a local frame, by Gram-Schmidt orthogonalisation.
         Square local = Square::Zero();
         Edges frame = edges;
         for (int i = 0; i < N; ++i) {
@@ -130,7 +133,7 @@ public:
                    "leave it out");
         scale_ = std::pow(measure, 1.0 / N);
         const Square inverse = local.inverse();
-        // F = (x_i - x_0) inverse; a column of it is a combination of the points.
+        // F = (x_i - x_0) inverse; each column is a combination of the points.
         map_.rows = N;
         for (int c = 0; c < N; ++c) {
             map_.entries.push_back({c, 0, -scale_ * inverse.col(c).sum()});

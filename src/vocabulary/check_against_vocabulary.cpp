@@ -1,4 +1,4 @@
-// Annotations against a vocabulary, and a vocabulary against itself.
+// Checks annotations against a vocabulary, and a vocabulary for consistency.
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
@@ -117,7 +117,7 @@ private:
     CheckVocabularyOptions options_;
 };
 
-/// Bounds of a condition as an interval, closed or open at each end.
+/// The bounds of a condition as an interval, closed or open at each end.
 struct Interval {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
     bool low_open = false, high_open = false;
@@ -136,7 +136,7 @@ struct Interval {
 
 /// A condition with its names resolved.
 struct Side {
-    std::string subject;  ///< what it speaks of
+    std::string subject;  ///< the attribute or ratio that the condition is about
     std::set<std::string> words;
     Condition bounds;
     std::string unit;
@@ -165,7 +165,7 @@ ResolvedRule resolved(const VocabularySearch& search, const InferenceRule& rule)
     return result;
 }
 
-/// Can both conditions hold of one annotation? Yes unless they speak of the same thing and exclude one another.
+/// True if both conditions can hold for one annotation: they are about different things, or do not exclude each other.
 bool compatible(const Side& a, const Side& b) {
     if (a.subject != b.subject) return true;
     if (!a.words.empty() && !b.words.empty())
@@ -180,8 +180,8 @@ bool compatible(const Side& a, const Side& b) {
     return Interval(a.bounds).meets(Interval(scaled));
 }
 
-/// Rules that speak of one attribute of one concept (or of a narrower one) and can both hold with different results. There may
-/// be as many as pairs of rules: the first hundred are named, the others counted.
+/// Reports pairs of rules about one attribute of one concept (or of a narrower one) that can both hold with different results.
+/// Their number may be quadratic; the first hundred are named, the others counted.
 void compare_rules(const VocabularySearch& search, std::vector<Finding>& findings) {
     constexpr std::size_t maximum = 100;
     const auto& rules = search.vocabulary().rules;
@@ -199,7 +199,7 @@ void compare_rules(const VocabularySearch& search, std::vector<Finding>& finding
                 if (!compatible(x, y)) return false;
         return true;
     };
-    std::vector<std::pair<std::size_t, std::size_t>> found;  // the first ones, in the order of the rules
+    std::vector<std::pair<std::size_t, std::size_t>> found;  // the first hundred, in the order of the rules
     std::size_t count = 0;
     for (const auto& [attribute, list] : by_attribute) {
         std::size_t here = 0;
@@ -264,7 +264,7 @@ std::vector<Finding> examine(const Vocabulary& vocabulary) {
             if (!entry.labels.empty() && !entry.labels.contains(language)) missing.push_back(language);
         if (!missing.empty())
             findings.push_back({false, at, "the concept '" + entry.id + "' has no label in " + joined(missing)});
-        // Of concepts that share a label, the last one names the others.
+        // If concepts share a label, the finding is reported at the last of them.
         std::set<std::string> reported;
         const auto look = [&](const std::string& label) {
             const auto concepts = label == entry.id ? std::vector<std::size_t>{i} : search.concepts_of(label);

@@ -101,7 +101,7 @@ private:
         return subject.tag == "*" ? kind : in_quotes(subject.tag) + (subject.type ? " " + kind : "");
     }
 
-    /// Containment is stored without the pairs that follow from others.
+    /// Adds the transitive pairs: containment is stored as its transitive reduction.
     void close_containment() {
         std::map<int, std::vector<int>> contained;
         for (const RelationFact& fact : relations_)
@@ -245,7 +245,7 @@ private:
     std::string where_, at_;
     std::optional<VocabularySearch> search_;
     std::vector<std::optional<std::size_t>> concepts_;
-    TagWords letters_;  ///< where there is no vocabulary
+    TagWords letters_;  ///< used if there is no vocabulary
     std::map<int, std::set<int>> contained_;
     const ClassRule* rule_ = nullptr;
 };

@@ -16,7 +16,7 @@ using namespace detail;
 
 namespace {
 
-/// What an operand came to, or why it came to nothing.
+/// The value of an operand, or the reason why it has none.
 struct Value {
     std::optional<double> number;
     std::string word, unit;
@@ -28,7 +28,7 @@ enum class Verdict { holds, fails, unknown };
 struct Judgement {
     Verdict verdict = Verdict::holds;
     std::string why;      ///< the conditions that hold, with their inputs
-    std::string missing;  ///< what keeps the rule from being judged
+    std::string missing;  ///< the input that is missing for an evaluation
 };
 
 class Reasoner {
@@ -44,7 +44,7 @@ public:
     }
 
     InferenceResult run() {
-        // Where rules disagree, their attribute is blocked and all is done again without it.
+        // If rules contradict each other, their attribute is blocked and the inference repeated without it.
         for (std::size_t blocked = 0;; blocked = blocked_.size()) {
             begin();
             std::set<Task> tasks;
@@ -64,10 +64,10 @@ public:
 
 private:
     using Key = std::pair<std::size_t, std::string>;   // annotation, attribute
-    using Task = std::pair<std::size_t, std::size_t>;  // annotation, place in the list of rules that speak of it
+    using Task = std::pair<std::size_t, std::size_t>;  // annotation, index in the list of rules that apply to it
     struct Applicable {
         const InferenceRule* rule;
-        const AllowedAttribute* allowed;  ///< what it infers
+        const AllowedAttribute* allowed;  ///< the attribute that the rule infers
     };
 
     static bool inferred(const Attribute& attribute) {
@@ -81,8 +81,8 @@ private:
         return concepts_[i] ? rules_.at(*concepts_[i]) : none;
     }
 
-    /// Names are looked up once: which rules speak of which concept, whom conditions look at, and which rules an attribute
-    /// may make hold.
+    /// Resolves names once: the rules that apply to each concept, the annotations that operands refer to, and the rules that
+    /// depend on an attribute.
     void resolve() {
         for (const auto& entry : concepts_) {
             if (!entry || rules_.contains(*entry)) continue;
@@ -109,16 +109,16 @@ private:
                     }
     }
 
-    /// The annotations an operand may look at, seen from annotation `i`.
+    /// The annotations that an operand may refer to, for a rule on annotation `i`.
     [[nodiscard]] std::vector<std::size_t> owner_of(const Operand& operand, std::size_t i) const {
         if (operand.concept_id.empty()) return {i};
         const auto found = owners_.find(*search_.find(operand.concept_id));
         if (found == owners_.end()) return {};
-        // Two are as many as all.
+        // Two suffice: more than one means ambiguous.
         return {found->second.begin(), found->second.begin() + std::min<std::ptrdiff_t>(2, std::ssize(found->second))};
     }
 
-    /// All as it was given, without what was inferred.
+    /// Resets the annotations to the input, without inferred attributes.
     void begin() {
         annotations() = given_;
         result_.inferred.clear();
@@ -128,13 +128,13 @@ private:
                 named_[i][meaning(i, given_[i].attributes[k].name)].push_back(k);
     }
 
-    /// One text for all names of an attribute.
+    /// A text that is equal for all names of an attribute.
     [[nodiscard]] std::string meaning(std::size_t i, const std::string& text) const {
         const AllowedAttribute* allowed = concepts_[i] ? search_.attribute_of(*concepts_[i], text) : nullptr;
         return folded(allowed == nullptr ? text : allowed->name);
     }
 
-    /// The attributes of an annotation that a name means.
+    /// The attributes of an annotation with this name or a label of it.
     [[nodiscard]] std::vector<const Attribute*> attributes_named(std::size_t i, const std::string& name) {
         std::vector<const Attribute*> found;
         if (const auto known = named_[i].find(meaning(i, name)); known != named_[i].end())
@@ -239,8 +239,9 @@ private:
         return all;
     }
 
-    /// Judges a rule on an annotation. What may hold by what it adds comes into `now` where it stands behind it in the order of
-    /// annotations and rules, and into the next pass otherwise; without `now` all behind it comes anyway.
+    /// Evaluates a rule on an annotation. Tasks that depend on the attribute added are scheduled: in `now` if they come later
+    /// in the order of annotations and rules, otherwise in the next pass. Without `now` the later tasks are not scheduled,
+    /// since the caller evaluates all tasks in order.
     void judge_task(const Task& task, std::set<Task>* now) {
         const auto& [rule, allowed] = rules_of(task.first)[task.second];
         const Key key{task.first, allowed->name};
@@ -266,7 +267,7 @@ private:
         for (const Attribute* other : stands) {
             if (other->type == AttributeType::semantic) {
                 const Term* stated = term_of(allowed, other->note);
-                if (folded(stated == nullptr ? other->note : stated->name) == folded(value)) return false;  // said already
+                if (folded(stated == nullptr ? other->note : stated->name) == folded(value)) return false;  // already stated
             }
             blocked_.insert(key);
             result_.contradictions.push_back(
@@ -303,9 +304,11 @@ private:
     std::vector<Annotation> given_;
     std::set<Key> blocked_;
     std::map<std::size_t, std::vector<Applicable>> rules_;                ///< by concept
-    std::map<std::size_t, std::vector<std::size_t>> owners_;              ///< concept -> annotations that are one
-    std::vector<std::map<std::string, std::vector<Task>>> readers_;       ///< by annotation and attribute: what looks at it
-    std::vector<std::map<std::string, std::vector<std::size_t>>> named_;  ///< by annotation and meaning: attributes
+    std::map<std::size_t, std::vector<std::size_t>> owners_;              ///< concept -> annotations of that concept
+    std::vector<std::map<std::string, std::vector<Task>>> readers_;       ///< for each annotation and attribute, the tasks that
+                                                                          ///< depend on it
+    std::vector<std::map<std::string, std::vector<std::size_t>>> named_;  ///< for each annotation and folded name, indices of
+                                                                          ///< attributes
     std::set<Task> later_;
 };
 

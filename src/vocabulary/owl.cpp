@@ -19,7 +19,7 @@ const std::string obo_in_owl = "http://www.geneontology.org/formats/oboInOwl#";
 
 RdfTerm owl_uri(const std::string& text) { return {RdfTerm::Kind::uri, text, {}, {}}; }
 
-/// Letters alone, small: "is part_of" and "isPartOf" are the same.
+/// Only the letters, in lower case: "is part_of" and "isPartOf" are equal.
 std::string letters_of(const std::string& text) {
     std::string letters;
     for (const char c : text) {
@@ -84,7 +84,7 @@ private:
                            [](const RdfTerm& mark) { return mark.value == "true" || mark.value == "1"; });
     }
 
-    /// By their names and labels, then those below them and their inverses.
+    /// Finds part-of properties by their names and labels, then their subproperties and inverses.
     void find_properties() {
         std::vector<RdfTerm> found;
         const auto take = [&](const RdfTerm& property, Partitive kind) {
@@ -138,18 +138,18 @@ private:
         else made_.push_back(one);
     }
 
-    /// A class above, or what a class is a part of; false for what is neither.
+    /// Handles a superclass or a whole of a class; returns false if the object is neither.
     bool above(const RdfTerm& subject, const RdfTerm& object, bool equivalent) {
         if (object.kind == RdfTerm::Kind::uri) {
             if (object.value == owl + "Thing" || deprecated_.contains(object)) return true;
-            // Of two classes that are equivalent neither is above the other.
+            // Equivalent classes are not broader than each other.
             add(subject, skos::core + (equivalent ? "exactMatch" : "broader"), object);
             return true;
         }
         if (const auto lists = values(object, owl + "intersectionOf"); lists.size() == 1) {
             bool all = true;
             RdfTerm cell = lists.front();
-            for (std::set<RdfTerm> seen; seen.insert(cell).second;) {  // a list that leads to itself ends here
+            for (std::set<RdfTerm> seen; seen.insert(cell).second;) {  // stops at cyclic lists
                 for (const RdfTerm& member : values(cell, skos::rdf + "first"))
                     all = (member.kind == RdfTerm::Kind::uri ? above(subject, member, false) : partitive(subject, member)) && all;
                 const auto rest = values(cell, skos::rdf + "rest");
@@ -161,7 +161,7 @@ private:
         return partitive(subject, object);
     }
 
-    /// A restriction that says what a class is a part of.
+    /// Handles a restriction that states a whole of the class.
     bool partitive(const RdfTerm& subject, const RdfTerm& object) {
         const auto property = values(object, owl + "onProperty"), filler = values(object, owl + "someValuesFrom");
         if (property.size() != 1 || filler.size() != 1 || filler.front().kind != RdfTerm::Kind::uri) return false;

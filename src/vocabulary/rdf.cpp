@@ -28,7 +28,7 @@ struct RaptorDeleter {
 template <class T>
 using Owned = std::unique_ptr<T, RaptorDeleter>;
 
-/// Raptor and the XML library under it have global state.
+/// Raptor and its XML library have global state.
 std::mutex& library_mutex() {
     static std::mutex mutex;
     return mutex;
@@ -38,7 +38,7 @@ const unsigned char* bytes(const std::string& text) { return reinterpret_cast<co
 
 [[noreturn]] void no_memory() { fail_work("RDF", "the library cannot be used: out of memory"); }
 
-/// What the library says of errors; the first one counts.
+/// Error log of the library; keeps the first error.
 struct Log {
     std::string text;
     int line = -1;
@@ -79,11 +79,12 @@ RdfTerm value_of(const raptor_term* term) {
     RdfTerm value{RdfTerm::Kind::text, {reinterpret_cast<const char*>(literal.string), literal.string_len}, {}, {}};
     if (literal.language != nullptr) value.language.assign(reinterpret_cast<const char*>(literal.language), literal.language_len);
     if (literal.datatype != nullptr) value.datatype = text_of_uri(literal.datatype);
-    if (value.datatype == "http://www.w3.org/2001/XMLSchema#string") value.datatype.clear();  // RDF 1.1: the same
+    if (value.datatype == "http://www.w3.org/2001/XMLSchema#string") value.datatype.clear();  // equivalent in RDF 1.1
     return value;
 }
 
-/// What statements take. Prefixes, bases and entities stand for texts of any length, so that a short file may grow without end.
+/// Collects statements and limits their memory: prefixes, bases and entities stand for texts of any length, so that a short
+/// file may expand without bound.
 struct Collector {
     explicit Collector(std::size_t bytes_of_file) : allowed(12.0 * static_cast<double>(bytes_of_file) + 256e6) {}
     double allowed, taken = 0;
@@ -94,7 +95,7 @@ struct Collector {
     static double size_of(const RdfTerm& term) {
         return static_cast<double>(term.value.size() + term.language.size() + term.datatype.size());
     }
-    // No exception may pass through the library.
+    // Exceptions must not propagate through the C library.
     static void add(void* self, raptor_statement* statement) noexcept {
         auto& collector = *static_cast<Collector*>(self);
         if (collector.too_large) return;
@@ -121,7 +122,7 @@ int line_of(std::string_view text, std::size_t offset) {
     fail_input(line > 0 ? where + ", line " + std::to_string(line) : where, what, remedy);
 }
 
-/// Both syntaxes are read as UTF-8 only, so that no other encoding hides anything from the checks below.
+/// Both syntaxes are restricted to UTF-8, so that no other encoding can bypass the checks below.
 void require_utf8(const std::string& text, const std::string& where) {
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t length = text[i] == 0 ? 0 : utf8_length(text, i);
@@ -130,7 +131,7 @@ void require_utf8(const std::string& text, const std::string& where) {
     }
 }
 
-/// Short entities, named often enough, still make much of little.
+/// Rejects text in which many references to short entities expand to far more than the size of the file.
 void refuse_many_entities(const std::string& text, const std::map<std::string, std::size_t>& lengths, const std::string& where) {
     const std::size_t most = 4 * text.size() + 16'000'000;
     std::size_t sum = 0;
@@ -144,7 +145,8 @@ void refuse_many_entities(const std::string& text, const std::map<std::string, s
     }
 }
 
-/// Entities that stand for plain text are common in RDF/XML; those that read other files or multiply are not let in.
+/// Entities for plain text are common in RDF/XML and allowed; entities that read other files or that contain entities are
+/// rejected.
 void refuse_dangerous_entities(const std::string& text, const std::string& where) {
     const auto upper = [](std::string part) {
         for (char& c : part) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -182,7 +184,7 @@ void refuse_dangerous_entities(const std::string& text, const std::string& where
     if (!lengths.empty()) refuse_many_entities(text, lengths, where);
 }
 
-/// The parser's time grows with the square of the depth. What is no XML is left to the parser.
+/// The parser's time is quadratic in the nesting depth, which is therefore limited. Malformed XML is left to the parser.
 void refuse_deep_nesting(const std::string& text, const std::string& where) {
     const auto behind = [&](const char* end, std::size_t from) {
         const std::size_t at = text.find(end, from);
@@ -269,7 +271,7 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
     collector.parser = parser.get();
     raptor_parser_set_statement_handler(parser.get(), &collector, &Collector::add);
     int result = raptor_parser_parse_start(parser.get(), base_uri.get());
-    // The XML library takes no more than ten million bytes at once.
+    // The XML library accepts at most ten million bytes at once.
     const std::size_t piece = xml ? std::min<std::size_t>(65536, text.size()) : text.size();
     for (std::size_t at = 0; result == 0 && !collector.too_large && at + piece < text.size(); at += piece)
         result = raptor_parser_parse_chunk(parser.get(), bytes(text) + at, piece, 0);

@@ -1,4 +1,4 @@
-// RDF in and out through Raptor, as plain values.
+// Reads and writes RDF through Raptor, as plain values.
 #pragma once
 
 #include <string>
@@ -23,12 +23,12 @@ struct RdfStatement {
 
 enum class RdfSyntax { turtle, rdf_xml };
 
-/// The statements in the order of the file. Nothing but `text` is read: no network, no other file, no entity that is external
-/// or made of entities. Throws Error (input) with file, line and reason.
+/// The statements in the order of the file. Reads nothing but `text`: no network, no other file, no external or nested
+/// entities. Throws Error (input) with file, line and reason.
 std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, const std::string& base, const std::string& where);
 
-/// `prefixes`: prefix and namespace. Throws Error (input) for a URI that is none and for characters the syntax cannot hold;
-/// `where` names the file to write.
+/// `prefixes`: pairs of prefix and namespace. Throws Error (input) for an invalid URI and for characters that the syntax cannot
+/// represent; `where` names the file to write.
 std::string serialise_rdf(const std::vector<RdfStatement>& statements, RdfSyntax syntax,
                           const std::vector<std::pair<std::string, std::string>>& prefixes, const std::string& where);
 

@@ -1,4 +1,4 @@
-// SKOS -> vocabulary.
+// Converts SKOS to a vocabulary.
 #include "owl.h"
 #include "rdf.h"
 #include "rules_json.h"
@@ -20,7 +20,7 @@ namespace {
 using Kind = RdfTerm::Kind;
 using std::to_string;
 
-/// Statements by subject, and what of them was used.
+/// Statements by subject, with a record of those that were used.
 class Graph {
 public:
     explicit Graph(std::vector<RdfStatement> list) : statements_(std::move(list)) {
@@ -105,7 +105,8 @@ private:
         }
     }
 
-    /// Everything said to be a concept, or in a scheme, or below or above another; of this scheme or of none.
+    /// Finds the concepts: resources declared as concepts, in a scheme, or with a broader or narrower concept, unless they
+    /// belong only to other schemes.
     void find_concepts() {
         std::set<RdfTerm> seen, elsewhere;
         std::size_t nameless = 0;
@@ -138,8 +139,8 @@ private:
                              [&](const RdfTerm& a, const RdfTerm& b) { return positions.at(a) < positions.at(b); });
     }
 
-    /// The part behind the vocabulary's namespace, if that is all the URI says; else the URI's last part, if no other concept
-    /// has it; else the URI.
+    /// Assigns ids: the id stated in the file; otherwise the URI without the vocabulary's namespace, or else its last part. A
+    /// candidate that is empty or not unique is replaced by the whole URI.
     void name_concepts() {
         const std::string prefix = skos::namespace_of(vocabulary_.uri), slash = vocabulary_.uri + "/";
         std::map<std::string, std::size_t> names;
@@ -174,7 +175,7 @@ private:
         return error == std::errc() && end == text.data() + text.size() ? std::optional<std::size_t>(number) : std::nullopt;
     }
 
-    /// The first text of each language; false where the language is taken already.
+    /// Stores the first text of each language; returns false if the language already has one.
     static bool put(Labels& labels, const RdfTerm& text) { return labels.emplace(text.language, text.value).second; }
 
     void keep(std::vector<ForeignStatement>& list, const std::string& property, const RdfTerm& value) {
@@ -252,7 +253,7 @@ private:
                     vocabulary_.concepts[found->second].part_of.push_back(ids_.at(term.value));
     }
 
-    /// What the file calls it: its first label, or its URI.
+    /// Name for messages: the first label, or the URI.
     [[nodiscard]] std::string called(const RdfTerm& subject) const {
         for (const std::string& property : {skos::core + "prefLabel", skos::rdfs + "label", skos::dcterms + "title"})
             for (const RdfTerm& value : graph_.values(subject, property))
@@ -260,11 +261,11 @@ private:
         return subject.kind == Kind::uri ? "<" + subject.value + ">" : "one without a name";
     }
 
-    /// Concepts and collections that a collection lists.
+    /// Number of concepts and collections listed by a collection.
     [[nodiscard]] std::size_t members_of(const RdfTerm& collection) const {
         std::size_t count = graph_.values(collection, skos::core + "member").size();
         for (RdfTerm cell : graph_.values(collection, skos::core + "memberList"))
-            for (std::set<RdfTerm> seen; seen.insert(cell).second;) {  // a list that leads to itself ends here
+            for (std::set<RdfTerm> seen; seen.insert(cell).second;) {  // stops at cyclic lists
                 count += graph_.values(cell, skos::rdf + "first").size();
                 const auto rest = graph_.values(cell, skos::rdf + "rest");
                 if (rest.empty()) break;
@@ -273,7 +274,7 @@ private:
         return count;
     }
 
-    /// Things of the file that are no concepts of this scheme: collections by name, what else has a URI by its kind.
+    /// Notes resources of the file that are not concepts of this scheme: collections by name, others with a URI by type.
     void note_unread() {
         std::vector<std::string> collections;
         std::size_t members = 0, labels = 0, others = 0;
@@ -306,7 +307,7 @@ private:
             vocabulary_.notes.push_back("what is said of " + counted(others, "thing") + " that are no concepts is not kept");
     }
 
-    /// Nodes in the order of their positions, or as they stand.
+    /// The nodes sorted by their positions, if they have any.
     [[nodiscard]] std::vector<RdfTerm> ordered(const RdfTerm& owner, const std::string& property) const {
         std::vector<RdfTerm> nodes = graph_.values(owner, property);
         std::map<RdfTerm, std::size_t> positions;
@@ -364,7 +365,7 @@ private:
     std::string where_, scheme_;
     std::vector<RdfTerm> concepts_;
     std::map<std::string, std::string> ids_;    ///< URI -> id
-    std::map<std::string, std::size_t> index_;  ///< URI -> place among the concepts
+    std::map<std::string, std::size_t> index_;  ///< URI -> index of the concept
     std::map<std::string, std::size_t> dropped_;
     std::size_t outside_ = 0;
     Vocabulary vocabulary_;

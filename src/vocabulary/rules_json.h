@@ -1,11 +1,11 @@
-// Rules by themselves, as SKOS files hold them in one literal.
+// JSON form of inference rules, which SKOS files store in one literal.
 #pragma once
 
 #include "ostraka/vocabulary/vocabulary.h"
 
 namespace ostraka {
 
-/// `list` is checked against the schema first; what the rules speak of is not.
+/// Reads rules. The list is checked against the schema, but references to concepts and attributes are not checked.
 std::vector<InferenceRule> rules_from_json(const JsonValue& list, const std::string& where);
 
 }  // namespace ostraka

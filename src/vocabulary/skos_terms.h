@@ -1,4 +1,4 @@
-// The names that SKOS files are made of.
+// URIs used in SKOS files.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -13,12 +13,12 @@ inline const std::string rdfs = "http://www.w3.org/2000/01/rdf-schema#";
 inline const std::string xsd = "http://www.w3.org/2001/XMLSchema#";
 inline const std::string core = "http://www.w3.org/2004/02/skos/core#";
 inline const std::string xl = "http://www.w3.org/2008/05/skos-xl#";
-/// ISO 25964: wholes and parts (broaderPartitive, narrowerPartitive).
+/// ISO 25964: part-whole relations (broaderPartitive, narrowerPartitive).
 inline const std::string thesaurus = "http://purl.org/iso25964/skos-thes#";
 inline const std::string dcterms = "http://purl.org/dc/terms/";
-/// Ours: attributes that a concept may carry, and rules.
+/// Our namespace: attributes that a concept may have, and rules.
 inline const std::string own = "urn:ostraka:ns#";
-/// The URI of a vocabulary that has none.
+/// The URI of a vocabulary without one.
 inline const std::string default_scheme = "urn:ostraka:vocabulary";
 
 inline bool is_rdf_xml(const Path& file) {
@@ -26,7 +26,7 @@ inline bool is_rdf_xml(const Path& file) {
     return ending == ".rdf" || ending == ".owl" || ending == ".xml";
 }
 
-/// What stands before the id in the URI of a concept.
+/// The prefix of concept URIs, before the id.
 inline std::string namespace_of(const std::string& scheme) {
     const std::string uri = scheme.empty() ? default_scheme : scheme;
     return uri.ends_with('#') || uri.ends_with('/') ? uri : uri + "#";

@@ -30,7 +30,7 @@ std::string TagWords::key(const std::string& tag) const {
     const std::string text = folded(tag);
     if (!search_) return text;
     const auto meant = search_->concept_of(tag);
-    // Ids may hold any text: a control character keeps them apart from plain tags.
+    // Ids may contain any text; a control character distinguishes them from plain tags.
     return meant ? "\x01" + search_->vocabulary().concepts[*meant].id + text.substr(without_number(text).size()) : text;
 }
 

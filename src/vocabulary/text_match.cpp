@@ -26,8 +26,8 @@ std::string encoded(const std::u32string& points) {
 char32_t lower(char32_t c) {
     const auto within = [c](char32_t first, char32_t last) { return c >= first && c <= last; };
     if (within(U'A', U'Z') || (within(0xC0, 0xDE) && c != 0xD7)) return c + 32;  // ASCII, Latin-1
-    if (within(0x100, 0x137) && c != 0x130 && c != 0x131) return c | 1U;         // Latin Extended-A: pairs, even is upper
-    if (within(0x139, 0x148)) return c % 2 == 1 ? c + 1 : c;                     // odd is upper
+    if (within(0x100, 0x137) && c != 0x130 && c != 0x131) return c | 1U;         // Latin Extended-A: pairs, upper case is even
+    if (within(0x139, 0x148)) return c % 2 == 1 ? c + 1 : c;                     // upper case is odd
     if (within(0x14A, 0x177)) return c | 1U;
     if (c == 0x178) return 0xFF;
     if (within(0x179, 0x17E)) return c % 2 == 1 ? c + 1 : c;
@@ -46,7 +46,7 @@ bool blank(char32_t c) { return c == ' ' || (c >= 9 && c <= 13) || c == 0xA0 || 
 
 struct Unit {
     double factor;
-    int length;  ///< power of length, 0 for an angle
+    int length;  ///< power of length; 0 for an angle
 };
 
 std::optional<Unit> unit_of(std::string text) {
@@ -82,7 +82,7 @@ std::string folded(std::string_view text) {
 std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t maximum) {
     if (text.size() > 200) return {};
     const std::string wanted = folded(text);
-    std::vector<std::pair<std::size_t, std::size_t>> found;  // distance, candidate
+    std::vector<std::pair<std::size_t, std::size_t>> found;  // distance, candidate index
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (candidates[i].size() > 400) continue;
         const std::string candidate = folded(candidates[i]);

@@ -1,4 +1,4 @@
-// What a vocabulary must be, and where things stand in it.
+// Validation of vocabularies, and VocabularySearch.
 #include "ostraka/vocabulary/vocabulary.h"
 
 #include "skos_terms.h"
@@ -15,7 +15,7 @@ namespace {
 
 using std::to_string;
 
-/// The structure alone: what VocabularySearch needs to be true.
+/// Checks the structure only, as VocabularySearch requires it.
 class Checker {
 public:
     Checker(const Vocabulary& vocabulary, const std::string& where) : vocabulary_(vocabulary), where_(where) {}
@@ -66,7 +66,8 @@ private:
         fail_input(where_, "at " + at + ": " + what, remedy);
     }
 
-    /// As in BCP 47: letters, then parts of letters and digits, each up to eight, joined by hyphens.
+    /// Checks a language tag as in BCP 47: letters, then groups of letters and digits, each of at most eight characters, joined
+    /// by hyphens.
     void language(const std::string& tag, const std::string& at) const {
         std::size_t length = 0;
         bool good = true, first = true;
@@ -117,7 +118,7 @@ private:
             fail("/concepts/" + to_string(i) + "/partOf", "'" + entry.id + "' is said to be a part of itself", "remove it");
     }
 
-    /// Ids of other concepts in a member of one.
+    /// Checks ids of other concepts in a member of a concept.
     void named(std::size_t i, const std::vector<std::string>& ids, const std::string& member, const std::string& said) const {
         const Concept& entry = vocabulary_.concepts[i];
         std::set<std::string> seen;
@@ -132,13 +133,13 @@ private:
         }
     }
 
-    /// Depth first, without recursion: a chain of concepts may be as long as the file.
+    /// Iterative depth-first search, since a chain of concepts may be as long as the file.
     void cycles() const {
         enum class State : char { fresh, open, done };
         const std::size_t count = vocabulary_.concepts.size();
         std::vector<State> state(count, State::fresh);
         for (std::size_t start = 0; start < count; ++start) {
-            std::vector<std::pair<std::size_t, std::size_t>> path;  // concept, how many of its broader ones are looked at
+            std::vector<std::pair<std::size_t, std::size_t>> path;  // concept, number of its broader concepts visited
             if (state[start] == State::fresh) path.emplace_back(start, 0), state[start] = State::open;
             while (!path.empty()) {
                 auto& [at, next] = path.back();
@@ -175,7 +176,7 @@ private:
                  "name a concept of the vocabulary" + did_you_mean(search.suggestions(id)));
     }
 
-    /// The attributes of that name the concept may carry; for a rule about any concept, those of all.
+    /// The attributes of that name that the concept may have; for a rule about any concept, those of all concepts.
     [[nodiscard]] std::vector<const AllowedAttribute*> meant(const VocabularySearch& search, const std::string& concept_id,
                                                              const std::string& name) const {
         std::vector<const AllowedAttribute*> found;

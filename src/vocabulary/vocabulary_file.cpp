@@ -1,4 +1,4 @@
-// Vocabulary <-> JSON.
+// Converts vocabularies to and from JSON.
 #include "rules_json.h"
 #include "skos_terms.h"
 
@@ -47,7 +47,7 @@ std::vector<AllowedAttribute> attributes_of(const JsonValue& object) {
     return list;
 }
 
-/// Sets are kept in one order, so that equal vocabularies are written alike.
+/// Sorted without duplicates, so that equal vocabularies are written identically.
 template <class T>
 std::vector<T> canonical(std::vector<T> list) {
     std::sort(list.begin(), list.end());
@@ -67,7 +67,7 @@ std::vector<ForeignStatement> statements_of(const JsonValue& object, const std::
         statement.value = text_in(entry, statement.is_uri ? "uri" : "value");
         statement.language = text_in(entry, "language");
         statement.datatype = text_in(entry, "datatype");
-        if (statement.datatype == skos::xsd + "string") statement.datatype.clear();  // as texts are without one
+        if (statement.datatype == skos::xsd + "string") statement.datatype.clear();  // equivalent to a text without a datatype
         if ((!statement.language.empty() && !statement.datatype.empty()) ||
             (statement.is_uri && (!statement.language.empty() || !statement.datatype.empty())))
             fail_input(where, here + ": a URI has neither language nor datatype, a text one", "take one away");
@@ -136,7 +136,7 @@ InferenceRule inference_rule_of(const JsonValue& object, const std::string& wher
     return rule;
 }
 
-/// Members that are empty are left out.
+/// Writes a vocabulary; empty members are omitted.
 class Writer {
 public:
     Json document = json_document("vocabulary");

@@ -1,4 +1,4 @@
-// Texts and numbers of rules and vocabularies, as messages show them.
+// Formats texts and numbers of rules and vocabularies for messages.
 #pragma once
 
 #include "ostraka/core/text.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka::detail {
 
-/// A name or a list of them in a member.
+/// The names in a member that is a text or a list of texts.
 inline std::vector<std::string> names_in(const JsonValue& object, const char* member) {
     const JsonValue* value = find_member(object, member);
     if (value != nullptr && value->IsString()) return {ostraka::text_of(*value)};
@@ -26,7 +26,7 @@ inline std::string whose(const Annotation& annotation) {
     return in_quotes(annotation.tag) + " (id " + std::to_string(annotation.id) + ")";
 }
 
-/// Is a word one of several, or by `allowed`, which may be none, another name of the same term?
+/// True if a text is one of several words, or another name of the same term in `allowed` (which may be null).
 inline bool is_one_of(const std::string& stated, const std::vector<std::string>& words, const AllowedAttribute* allowed) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
         if (folded(word) == folded(stated)) return true;

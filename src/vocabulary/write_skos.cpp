@@ -1,4 +1,4 @@
-// Vocabulary -> SKOS.
+// Converts a vocabulary to SKOS.
 #include "rdf.h"
 #include "skos_terms.h"
 

@@ -1,4 +1,4 @@
-// Cages: closed coarse meshes around an object, whose vertices steer its deformation (thesis, section 4.1.3 and 6.1.1;
+// Cages: closed coarse meshes around an object, whose vertices control its deformation (thesis, sections 4.1.3 and 6.1.1;
 // doc/cages.md).
 #pragma once
 
@@ -15,10 +15,11 @@
 namespace ostraka {
 
 struct CageOptions {
-    std::uint64_t vertices = 200;  ///< wanted number of vertices, a cage of several levels has it on the finest
-    double alpha = 0;        ///< openings narrower than this share of the diagonal are closed; 0: chosen and doubled at need
-    double offset = 0.0167;  ///< distance of the wrap from the mesh, as a share of the diagonal
-    enum class Genus { follow, fill } genus = Genus::follow;  ///< handles and holes through the object
+    std::uint64_t vertices = 200;  ///< wanted number of vertices; in nested cages that of the finest
+    double alpha = 0;              ///< openings narrower than this share of the diagonal are closed; 0: automatic, doubled when
+                                   ///< needed
+    double offset = 0.0167;        ///< distance of the wrap from the mesh, as a share of the diagonal
+    enum class Genus { follow, fill } genus = Genus::follow;  ///< whether handles and holes are filled
 
     void describe(OptionList& visit);
 };
@@ -28,71 +29,77 @@ struct MirrorPlane {
     Vector normal{1, 0, 0};
 };
 
-/// How many times more vertices than elsewhere a place of the surface wants; positive.
+/// Relative vertex density wanted at a point of the surface; positive.
 using CageDensity = std::function<double(const Point&)>;
 
 struct CageResult {
     Mesh cage;             ///< closed, oriented outwards, without self-intersections, strictly around the mesh
-    bool reached = false;  ///< it has the wanted number of vertices, or with a mirror plane one or two fewer
-    double alpha = 0;      ///< share of the diagonal that the wrap was made with
+    bool reached = false;  ///< true if it has the wanted number of vertices, or with a mirror plane one or two fewer
+    double alpha = 0;      ///< alpha of the wrap, as a share of the diagonal
     std::size_t wrap_vertices = 0;
 };
 
-/// Wraps the mesh (Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022) and collapses edges of the wrap (cost:
-/// Garland and Heckbert 1997) as long as no triangle meets the mesh or another triangle and no part of the mesh is left outside:
-/// every collapse is checked exactly before it is made, so that the cage encloses the mesh at each moment. Where the wanted
-/// number is not reached a coarser wrap is tried. With a mirror plane one half is made, around the mesh and its image, and
-/// mirrored. The mesh need not be closed; vertices that no face has are left out. Throws Error (input) for a mesh without extent
-/// or without a face with an area, and for one so far from the origin that its coordinates are too coarse for the offset; (usage)
-/// for bad options and a plane without a direction.
+/// Wraps the mesh (Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez 2022) and collapses edges of the wrap (cost: Garland
+/// and Heckbert 1997). A collapse is made only if no triangle then intersects the mesh or another triangle and no part of the
+/// mesh is left outside. This is checked exactly before every collapse, so that the cage always encloses the mesh. If the
+/// wanted number is not reached, a coarser wrap is tried. With a mirror plane one half is built, around the mesh and its image,
+/// and mirrored. The mesh need not be closed; isolated vertices are ignored. Throws Error (input) for a mesh without extent or
+/// without a face of positive area, and for one so far from the origin that its coordinates are too coarse for the offset;
+/// Error (usage) for invalid options and a plane without a direction.
 CageResult make_cage(const Mesh& mesh, const CageOptions& options = {}, const CageDensity& density = {},
                      const std::optional<MirrorPlane>& mirror = {});
 
-/// The image of a closed mesh in a plane, oriented outward again, vertices and faces in their order.
+/// The mirror image of a closed mesh in a plane, oriented outwards again; vertices and faces keep their order.
 Mesh mirror_image(const Mesh& mesh, const MirrorPlane& plane);
 
-/// Cages of `levels` numbers of vertices, sorted from fine to coarse: the first around the mesh, each next around the one before.
+/// Nested cages with the numbers of vertices in `levels`, sorted from fine to coarse: the first around the mesh, each other
+/// around the one before.
 std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uint64_t> levels, const CageOptions& options = {},
                                           const CageDensity& density = {}, const std::optional<MirrorPlane>& mirror = {});
 
-/// A vertex of the mesh that is not strictly inside.
+/// A vertex of the mesh that is not strictly inside the cage.
 struct OutsideVertex {
     Index vertex = no_index;
-    double distance = 0;    ///< to the cage; 0: on it
+    double distance = 0;    ///< distance to the cage; 0 if the vertex is on it
     Index face = no_index;  ///< the nearest face of the cage
 };
 
 struct CageCheck {
-    bool closed = false;                     ///< no border; otherwise nothing below but the components is known
-    bool flat = false;                       ///< no face has an area; nothing below but the components and those faces is known
-    bool outward = false;                    ///< faces are counter-clockwise seen from outside
-    std::size_t components = 0, nested = 0;  ///< nested: cages within the outermost (coords/nested.h)
-    long genus = 0;                          ///< of all components together
+    bool closed = false;                     ///< no border; if false, only `components` is known besides
+    bool flat = false;                       ///< no face has positive area; if true, only `components` and `degenerate` are
+                                             ///< known besides
+    bool outward = false;                    ///< faces are counter-clockwise when seen from outside
+    std::size_t components = 0, nested = 0;  ///< number of components; number of cages nested in the outermost
+                                             ///< (coords/nested.h)
+    long genus = 0;                          ///< sum over all components
     std::size_t degenerate = 0;              ///< faces without area
-    std::vector<std::pair<Index, Index>> intersections;  ///< pairs of faces of the cage, the first few thousands
-    std::vector<OutsideVertex> outside;                  ///< by vertex
-    std::size_t touching = 0;                            ///< how many of these are on the cage
-    std::vector<Index> crossing;  ///< faces of the mesh that the cage crosses though their vertices are inside; the first few
-    double clearance = 0;         ///< least distance from a vertex of the mesh to the cage, 0 unless it encloses
+    std::vector<std::pair<Index, Index>> intersections;  ///< pairs of intersecting faces of the cage, up to a few thousand
+    std::vector<OutsideVertex> outside;                  ///< sorted by vertex
+    std::size_t touching = 0;                            ///< number of those vertices that are on the cage
+    std::vector<Index> crossing;  ///< faces of the mesh that the cage crosses although their vertices are inside; the first few
+    double clearance = 0;         ///< smallest distance from a vertex of the mesh to the cage; 0 unless the cage encloses the
+                                  ///< mesh
 
     [[nodiscard]] bool encloses() const { return closed && !flat && outside.empty() && crossing.empty(); }
     [[nodiscard]] bool valid() const { return encloses() && outward && intersections.empty() && degenerate == 0; }
 };
 
-/// Every property that a cage needs, exact for the coordinates as given. Of cages within cages the outermost has to enclose the
-/// mesh; each is judged by itself otherwise, and they may cross each other. Vertices of the mesh that no face has count as well.
+/// Checks every property that a cage needs, exactly for the given coordinates. Of nested cages the outermost must enclose the
+/// mesh; the other properties are checked for each cage separately, and the cages may intersect each other. Isolated vertices
+/// of the mesh are included.
 CageCheck check_cage(const Mesh& cage, const Mesh& mesh);
 
-/// The check in words: what is wrong, where, and what to do about it; lengths in `unit` ("" if unknown).
+/// The findings of a check as text: defect, location and remedy. `unit`: unit of length ("" if unknown).
 std::vector<Finding> findings(const CageCheck& check, const std::string& unit);
 
-/// Largest sum of the absolute values of a point's weights: how many times as far as the cage's vertices it may move.
+/// Largest sum of the absolute values of a point's weights: bounds the displacement of a point relative to the largest
+/// displacement of a cage vertex.
 double amplification(const Coordinates& coordinates);
-/// What is still fit for deformation: in cages that enclose their object it is below 1.5.
+/// Limit of `amplification` for deformation; for cages that enclose their object it is below 1.5.
 inline constexpr double max_amplification = 3;
 
-/// Why a mesh should not be deformed through the cage by these coordinates, in words: the cage is not sound (`CageCheck::valid`)
-/// or the weights are large (`max_amplification`). Empty where nothing speaks against it.
+/// Reasons against deforming the mesh through the cage with these coordinates, as text: the cage is invalid
+/// (`CageCheck::valid`) or the weights are large (`max_amplification`). Empty if there are none.
 std::vector<std::string> unfit_for_deformation(const CageCheck& check, const Coordinates& coordinates);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// How much each vertex of a cage has to say where.
+// The influence of each cage vertex on a set of points.
 #pragma once
 
 #include "ostraka/coords/coordinates.h"
@@ -9,15 +9,15 @@ namespace ostraka {
 
 enum class InfluenceBy { max, sum };
 
-/// For each cage vertex its largest weight (what the thesis, section 5.2.3, compares with a threshold) or the sum of its weights
-/// over the given points. Throws Error (usage) for an index out of range, Error (input) if there are no points.
+/// For each cage vertex the maximum of its weights (compared with a threshold in the thesis, section 5.2.3) or their sum over
+/// the given points. Throws Error (usage) for an index out of range, Error (input) if there are no points.
 std::vector<double> influence_on(const Coordinates& coordinates, const std::vector<Index>& points,
                                  InfluenceBy by = InfluenceBy::max);
 
-/// The weights of one cage vertex, one a point. Throws Error (usage) for an index out of range.
+/// The weights of one cage vertex, one per point. Throws Error (usage) for an index out of range.
 std::vector<double> influence_of(const Coordinates& coordinates, Index cage_vertex);
 
-/// For each point the number of its weights that carry `share` of the sum of their absolute values, largest first.
+/// For each point the smallest number of weights that carry `share` of the sum of the absolute values of its weights.
 std::vector<Index> carriers(const WeightMatrix& weights, double share = 0.95);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Relationships that the geometry of the parts tells, each with a tolerance and its measured deviation.
+// Relationships determined by the geometry of the parts, each with its measured deviation and a tolerance.
 #pragma once
 
 #include "ostraka/axis/axis.h"
@@ -10,20 +10,20 @@
 
 namespace ostraka {
 
-/// Measures relationships on one mesh; what it needs of a part (axis, samples, search tree) is made once. Not for use by several
-/// threads at a time. Mesh and set must outlive it.
+/// Measures relationships on one mesh. Data of a part (axis, samples, search tree) is computed once. Not thread-safe. Mesh and
+/// set must outlive it.
 class RelationMeter {
 public:
     RelationMeter(const Mesh& mesh, const AnnotationSet& set, const RelationOptions& options = {});
     ~RelationMeter();
 
-    /// One relationship of a geometric type other than containment, equal selections and adjacency. Tolerances that it states
-    /// take the place of those of the options. doc/relations.md says what each type measures.
+    /// Measures one relationship of a geometric type except containment, equal selections and adjacency. Tolerances stated in
+    /// the relationship override those of the options. doc/relations.md describes what each type measures.
     RelationCheck measure(const Relationship& relationship);
 
-    /// All that hold between annotations of the set, except the root; see doc/relations.md for the candidates. `types` names
-    /// those wanted (all if empty). Ids count up from `first_id`. At most 10000 of a type; of pairs that take long to measure the
-    /// most alike: `notes` then says so.
+    /// All relationships that hold between annotations of the set, except the root; doc/relations.md describes the candidates.
+    /// `types`: the types wanted (all if empty). Ids count up from `first_id`. At most 10000 relationships of a type are
+    /// returned; of pairs that are expensive to measure only the most similar are measured, and `notes` reports that.
     std::vector<Relationship> extract(const std::vector<std::string>& types, int first_id,
                                       std::vector<std::string>* notes = nullptr);
 
@@ -33,28 +33,29 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// What selections and geometry tell of an annotated mesh.
+/// The relationships determined by the selections and the geometry of an annotated mesh.
 struct ExtractedRelations {
-    RelationGraph graph;  ///< what was stated, then what was found, with fresh ids
+    RelationGraph graph;  ///< stated relationships, followed by the extracted ones with fresh ids
     ContainmentOrder order;
-    std::vector<int> stated;                  ///< ids of stated relationships that were found too, and not added again
-    std::vector<std::string> not_looked_for;  ///< types that need an upward direction, which the set does not have
-    std::vector<std::string> notes;           ///< what was left out of very many
+    std::vector<int> stated;                  ///< ids of stated relationships that were also extracted, and not added again
+    std::vector<std::string> not_looked_for;  ///< types skipped because they need an upward direction, which the set does not
+                                              ///< have
+    std::vector<std::string> notes;           ///< reports what was omitted because of the limits on number
 };
 
-/// All relationships that hold, of these types (all if empty), beside those of `old` that were not extracted. Throws Error
-/// (usage) for a type that geometry does not tell.
+/// Extracts all relationships of these types (all if empty) that hold, and keeps those of `old` that were not extracted. Throws
+/// Error (usage) for a type that is not geometric.
 ExtractedRelations extract_relations(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& old = {},
                                      const std::vector<std::string>& types = {}, const RelationOptions& options = {});
 
-/// The types under their own spelling. Throws Error (usage), with the nearest name, for one that geometry does not tell.
+/// The types in their canonical spelling. Throws Error (usage), with the most similar name, for a type that is not geometric.
 std::vector<std::string> geometric_types(const std::vector<std::string>& names);
 
-/// The axis of a part that relationships about axes measure: of its slices where it is longer than wide and not bent, else of
-/// rotation, or the shortest principal axis of what is flat and round.
+/// The axis of a part used by relationships about axes: the axis of its slices if the part is longer than wide and not bent;
+/// otherwise its axis of rotation, or the shortest principal axis of a flat round part.
 Axis axis_of_part(const Mesh& mesh, const Annotation& annotation);
 
-/// The quantities that a type measures, e.g. {"angle", "distance"}; none for types that are not measured here.
+/// The quantities that a type measures, e.g. {"angle", "distance"}; empty for types that are not measured here.
 std::vector<std::string> measured_quantities(const std::string& type);
 
 }  // namespace ostraka

@@ -1,5 +1,5 @@
-// Where the annotations and relationships of a graph stand in a drawing: the tree of what contains what, a row an annotation, and
-// beside it a bracket for each other relationship.
+// Layout of a relationship graph in a drawing: the containment tree with one annotation per row, and beside it a bracket for
+// each other relationship.
 #pragma once
 
 #include "ostraka/relation/topology.h"
@@ -10,13 +10,13 @@
 namespace ostraka {
 
 struct GraphLayout {
-    std::vector<TreeEntry> rows;  ///< from above
+    std::vector<TreeEntry> rows;  ///< from top to bottom
     std::vector<std::optional<int>>
-        lanes;  ///< of each relationship, from inside; none: the tree says it, or nothing is there to say
+        lanes;  ///< lane of each relationship, counted from the inside; none if the tree shows it or it has no rows to connect
 };
 
-/// Children stand below what contains them, in the order of the set. Brackets that share rows lie in different lanes, short ones
-/// inside: each in the first free lane, by length. O(r^2) in the relationships.
+/// Children are placed below their container, in the order of the set. Brackets that share rows lie in different lanes, short
+/// brackets inside: sorted by length, each takes the first free lane. O(r^2) in the number of relationships.
 GraphLayout layout_of(const RelationGraph& graph, const AnnotationSet& set, const ContainmentOrder& order);
 
 }  // namespace ostraka

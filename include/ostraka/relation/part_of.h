@@ -1,4 +1,4 @@
-// Wholes and parts as a vocabulary has them, held against the selections.
+// Compares the part-whole relations of a vocabulary with the containment of the selections.
 #pragma once
 
 #include "ostraka/core/finding.h"
@@ -7,23 +7,24 @@
 
 namespace ostraka {
 
-/// The type of relationships between an annotation and a part of it, [whole, part]. Geometry alone cannot tell it.
+/// The type of relationships between a whole and a part of it, [whole, part]. It does not follow from geometry alone.
 inline constexpr const char* part_of_type = "part of";
 
-/// An annotation whose concept is a part of others'.
+/// An annotation whose concept is, by the vocabulary, a part of other concepts.
 struct PartInVocabulary {
-    std::size_t part;                      ///< place in the set
-    std::vector<std::size_t> wholes;       ///< of the nearest whole concept that has annotations: these
-    std::optional<std::size_t> contained;  ///< the one that contains it, of several the smallest; none where none does
+    std::size_t part;                      ///< index in the set
+    std::vector<std::size_t> wholes;       ///< indices of the annotations of the nearest whole concept that has any
+    std::optional<std::size_t> contained;  ///< the whole that contains the part (the smallest, if several); none if no whole
+                                           ///< does
 };
 
-/// Of every annotation with a concept that is a part, where a whole is annotated. The whole object counts by its tag.
+/// All annotations whose concept is a part, if one of its wholes is annotated. The whole object counts by its tag.
 std::vector<PartInVocabulary> parts_in_vocabulary(const ContainmentOrder& order, const AnnotationSet& set,
                                                   const Vocabulary& vocabulary);
 
-/// A defect for each part that lies in none of its wholes.
+/// Reports a defect for each part that is contained in none of its wholes.
 std::vector<Finding> check_parts(const Mesh& mesh, const AnnotationSet& set, const Vocabulary& vocabulary);
-/// A relationship for each part that lies in one of its wholes; ids count up from `first_id`.
+/// A relationship for each part that is contained in one of its wholes; ids count up from `first_id`.
 std::vector<Relationship> part_relationships(const ContainmentOrder& order, const AnnotationSet& set,
                                              const Vocabulary& vocabulary, int first_id);
 

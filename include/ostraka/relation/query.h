@@ -11,45 +11,45 @@
 
 namespace ostraka {
 
-/// An attribute of another object, which `same(attribute, object)` compares with.
+/// A reference to an attribute of another object, as in `same(attribute, object)`.
 struct QueryReference {
     std::string attribute, object;
     auto operator<=>(const QueryReference&) const = default;
 };
 
-/// What a query is asked of.
+/// The object that a query is evaluated on.
 struct QueriedObject {
     const Mesh* mesh = nullptr;
     const AnnotationSet* set = nullptr;
     const RelationGraph* graph = nullptr;    ///< nullptr: no relationship is known
-    const Vocabulary* vocabulary = nullptr;  ///< by which words and names of attributes are compared; may be none
-    /// The values that the named object has of the attribute, as `values_of` gives them.
+    const Vocabulary* vocabulary = nullptr;  ///< used to compare words and attribute names; may be null
+    /// Values of the attribute in the other object, in the form of `values_of`.
     std::function<std::vector<std::string>(const QueryReference&)> values_elsewhere;
 };
 
 struct QueryAnswer {
     bool holds = false;
-    std::vector<int> annotations;       ///< ids of those by which it holds, ascending
-    std::vector<std::string> problems;  ///< comparisons that could not be made, in words: units that do not go together
+    std::vector<int> annotations;       ///< ids of the annotations that satisfy the query, ascending
+    std::vector<std::string> problems;  ///< comparisons that could not be made, as text: incompatible units
 };
 
 /// A query such as `2 arm and not handle`, `area(handle) >= area(body) / 3`, `related("same mould", 17)` (grammar:
-/// doc/annotation-find.md). A word stands for one annotation that means it (TagWords) throughout the query: it holds if it does
-/// for some choice of one annotation for each word.
+/// doc/annotation-find.md). A word stands for the same annotation throughout the query, one that has this meaning (TagWords).
+/// The query holds if some assignment of annotations to words satisfies it.
 class AnnotationQuery {
 public:
-    /// Throws Error (usage) with the column, what is wrong and the remedy.
+    /// Parses a query. Throws Error (usage) with the column, the error and the remedy.
     explicit AnnotationQuery(const std::string& text);
     ~AnnotationQuery();
     AnnotationQuery(AnnotationQuery&&) noexcept;
 
-    /// Words that stand for annotations, and names of attributes and quantities, in the order of the text, none twice.
+    /// Words that stand for annotations, and names of attributes and quantities; in the order of the text, without duplicates.
     [[nodiscard]] const std::vector<std::string>& words() const;
     [[nodiscard]] const std::vector<std::string>& names() const;
     [[nodiscard]] const std::vector<QueryReference>& references() const;
 
-    /// Quantities that are no attribute (area, perimeter, length, volume ...) are computed from the mesh. Throws Error (input)
-    /// for more than a million choices. Safe for several threads at once.
+    /// Evaluates the query. Quantities that are not attributes (area, perimeter, length, volume ...) are computed from the
+    /// mesh. Throws Error (input) for more than a million assignments. Thread-safe.
     [[nodiscard]] QueryAnswer ask(const QueriedObject& object) const;
 
     struct Node;
@@ -60,8 +60,8 @@ private:
     std::vector<QueryReference> references_;
 };
 
-/// All values of the attribute of that name (in any language of the vocabulary) that annotations of the set have, as text that is
-/// the same for the same value; ascending, none twice.
+/// All values that annotations of the set have for the attribute of that name (in any language of the vocabulary), as text that
+/// is equal for equal values; ascending, without duplicates.
 std::vector<std::string> values_of(const QueriedObject& object, const std::string& attribute);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The rules of a class held against annotations and what stands between them.
+// Checks the rules of a class on annotations and their relationships.
 #pragma once
 
 #include "ostraka/relation/graph.h"
@@ -6,8 +6,8 @@
 
 namespace ostraka {
 
-/// Every rule that is broken, as `check_class_rules` finds it. Relationships are those of the graph; without one, containment and
-/// adjacency are taken from the mesh. `where` names the file of the rules. Throws as `check_class_rules`.
+/// Every violated rule, as found by `check_class_rules`. Relationships are taken from the graph; without a graph, containment
+/// and adjacency are computed from the mesh. `where` names the file of the rules. Throws as `check_class_rules`.
 std::vector<BrokenRule> broken_rules(const Mesh& mesh, const AnnotationSet& set, const ClassRules& rules,
                                      const Vocabulary* vocabulary, const RelationGraph* graph, const std::string& where);
 

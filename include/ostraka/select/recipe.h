@@ -1,5 +1,4 @@
-// Recipes: how annotations are made, step by step, so that they can be made again on any resolution of an object
-// (doc/recipes.md).
+// Recipes: annotations described step by step, so that they can be reproduced on any resolution of an object (doc/recipes.md).
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -7,22 +6,23 @@
 
 namespace ostraka {
 
-/// What a recipe is followed with.
+/// Initial state for a recipe.
 struct RecipeStart {
-    std::vector<std::int32_t> face_labels;  ///< of the mesh's faces, if it has any
-    AnnotationSet annotations;              ///< that the recipe's steps edit, and to which they add
-    Path folder;                            ///< where files that the recipe names lie
+    std::vector<std::int32_t> face_labels;  ///< labels of the mesh's faces, if any
+    AnnotationSet annotations;              ///< annotations that the steps of the recipe edit and extend
+    Path folder;                            ///< folder that file names in the recipe are relative to
 };
 
-/// Follows a recipe (*.recipe.json). Measures are taken and known descriptors computed. Where the recipe names a class, the whole
+/// Executes a recipe (*.recipe.json). Measures are taken and known descriptors computed. If the recipe names a class, the whole
 /// object is annotated too. The same recipe, start and mesh give the same set to the bit. Throws Error (input) that names the
 /// file, the JSON pointer of the step and the remedy.
 AnnotationSet follow_recipe(const JsonValue& recipe, const Mesh& mesh, RecipeStart start, const std::string& where);
 
-/// The files that a recipe's thresholds read, in its order, each once.
+/// The files that a recipe's thresholds read, in the recipe's order without duplicates.
 std::vector<Path> files_named_by(const JsonValue& recipe, const Path& folder);
 
-/// The same from nothing; files that the recipe names lie in its own folder (in the current one).
+/// Executes a recipe without initial annotations. File names in the recipe are relative to the recipe's folder (second form: to
+/// the current folder).
 AnnotationSet apply_recipe(const Path& file, const Mesh& mesh, const std::vector<std::int32_t>& face_labels = {});
 AnnotationSet apply_recipe(const JsonValue& recipe, const Mesh& mesh, const std::vector<std::int32_t>& face_labels,
                            const std::string& where);

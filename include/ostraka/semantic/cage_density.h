@@ -1,4 +1,4 @@
-// Where annotations want the vertices of a cage, and the plane that a symmetric cage is mirrored in.
+// Vertex density of a cage from annotations, and the mirror plane of a symmetric cage.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -6,14 +6,15 @@
 
 namespace ostraka {
 
-/// Density of cage vertices by the annotation that is nearest (thesis, section 6.1.1). With `factors` (id, factor) the largest
-/// factor of the regions, lines and points within a twentieth of the diagonal counts; without, places that near to an annotated
-/// point, to a line, or to an outline of a region other than the whole get 4. Elsewhere 1. The result owns what it needs.
+/// Density of cage vertices from the nearest annotation (thesis, section 6.1.1). With `factors` (id, factor) it is the largest
+/// factor of the regions, lines and points within a twentieth of the diagonal. Without factors it is 4 within this distance of
+/// an annotated point, a line, or the outline of a region other than the whole. Elsewhere it is 1. The result does not refer to
+/// the arguments.
 CageDensity annotation_density(const Mesh& mesh, const AnnotationSet& set,
                                const std::vector<std::pair<int, double>>& factors = {});
 
-/// The plane in which the whole object is mirror-symmetric (relation/geometric.h). Throws Error (failure) that names `where` if
-/// there is none.
+/// The mirror plane of the whole object (relation/geometric.h). Throws Error (failure) that names `where` if the object is not
+/// mirror-symmetric.
 MirrorPlane find_mirror_plane(const Mesh& mesh, AnnotationSet set, const std::string& where);
 
 }  // namespace ostraka

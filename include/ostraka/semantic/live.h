@@ -1,4 +1,5 @@
-// A cage whose handles are dragged while constraints hold, at the rate of pictures (doc/deformation.md, "While a handle moves").
+// Interactive deformation: handles of a cage are dragged while constraints hold, at frame rate (doc/deformation.md, "While a
+// handle moves").
 #pragma once
 
 #include "ostraka/semantic/deform.h"
@@ -7,23 +8,24 @@
 
 namespace ostraka {
 
-/// The constraints of a graph over the handles of a cage, set up once for a drag. What they ask is taken from the shape at its
-/// beginning; `deform` with the same steps gives the exact answer once the handles rest.
+/// The constraints of a graph over the handles of a cage, set up once for a drag. They are evaluated on the shape at the start
+/// of the drag; `deform` with the same steps gives the exact result once the handles are at rest.
 class LiveDeformation {
 public:
-    /// `edit`: the steps so far. `handles`: the vertices of the cage that will be dragged. Throws as deform; Error (usage) where
-    /// there is no cage, or a handle is none of its vertices.
+    /// `edit`: the steps so far. `handles`: the vertices of the cage to be dragged. Throws as deform; Error (usage) without a
+    /// cage, or for a handle that is not a vertex of the cage.
     LiveDeformation(const HandleSpace& space, const RelationGraph& graph, const JsonValue& edit, std::vector<Index> handles,
                     const DeformOptions& options = {}, const RelationOptions& tolerances = {});
     ~LiveDeformation();
 
-    /// The vertices of the cage at the beginning.
+    /// The vertices of the cage at the start of the drag.
     [[nodiscard]] const std::vector<Point>& cage() const;
-    /// Whether there is a constraint to solve for.
+    /// True if there is a constraint to solve for.
     [[nodiscard]] bool has_constraints() const;
 
-    /// The cage when the handles are dragged to these places, one for each, from where the last call left it: a few iterations.
-    /// O(handles of the cage squared) where no constraint reaches far, and linear in the constrained vertices.
+    /// The cage after the handles were dragged to these positions (one per handle), by a few iterations from the result of the
+    /// last call. Quadratic in the number of cage vertices if constraints involve few points, and linear in the constrained
+    /// vertices.
     const std::vector<Point>& follow(const std::vector<Point>& places);
 
 private:

@@ -1,10 +1,10 @@
-// Low-level geometric constraints: what a set of points should be, and the closest way to be it.
+// Low-level geometric constraints: sets of admissible configurations of points, and projections onto them.
 //
-// A constraint C over points x_1 ... x_k has a linear map B from its points to rows (B acts on the three coordinates alike), and
-// a projection P from rows to the closest rows that C admits. A solver minimises the sum of w |B x - P(B x)|^2 over its
+// A constraint C over points x_1 ... x_k has a linear map B from its points to rows (B acts on the three coordinates alike),
+// and a projection P from rows to the closest rows that C admits. A solver minimises the sum of w |B x - P(B x)|^2 over its
 // constraints: the shape proximity function of ShapeUp (Bouaziz et al. 2012; the thesis, equation 4.7), where the weight w
-// multiplies the SQUARED norm; the rows of Q in equation 4.8 are sqrt(w) B. Names and the order of ids are those of ShapeOp
-// (Deuss et al. 2015) where it has the constraint. doc/solver.md tells of each what it admits.
+// multiplies the SQUARED norm; the rows of Q in equation 4.8 are sqrt(w) B. Where ShapeOp (Deuss et al. 2015) has the
+// constraint, its name and order of ids are used. doc/solver.md describes what each constraint admits.
 #pragma once
 
 #include "ostraka/core/error.h"
@@ -21,7 +21,7 @@
 
 namespace ostraka {
 
-/// A point a column.
+/// One point per column.
 using Points = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using RowsIn = Eigen::Ref<const Points>;
 using RowsOut = Eigen::Ref<Points>;
@@ -31,22 +31,22 @@ void check_points(const Points& points, const std::string& what);
 
 class Constraint {
 public:
-    /// An entry of B: row, position in ids(), value. The direct rows (see below) are not listed.
+    /// An entry of B: row, position in ids(), value. The direct rows (see below) are implicit.
     struct Entry {
         std::int32_t row, position;
         double value;
     };
-    /// B. Its first `direct` rows are the first `direct` points themselves, in their order; when `centred`, less their mean: N_i
-    /// of equation 4.7, kept as what it is and never as a dense block. Then come rows with entries. The last `observed` of
-    /// those are read by the projection but weigh nothing.
+    /// The matrix B. Its first `direct` rows are the first `direct` points in their order; if `centred`, minus their mean (N_i
+    /// of equation 4.7, stored implicitly and never as a dense block). Rows with entries follow. The last `observed` of those
+    /// are read by the projection but have no weight.
     struct Map {
         Eigen::Index direct = 0;
         bool centred = false;
-        std::vector<Entry> entries;  ///< by row, rows counted from `direct` on
-        Eigen::Index rows = 0;       ///< all of them
+        std::vector<Entry> entries;  ///< by row; rows are counted from `direct` on
+        Eigen::Index rows = 0;       ///< number of all rows
         Eigen::Index observed = 0;
     };
-    /// Sums over rows r_i and reference points q_i, from which alone some constraints find their projection.
+    /// Sums over rows r_i and reference points q_i, which suffice for the projection of some constraints.
     struct Moments {
         Eigen::Matrix3d rows;       ///< sum of r_i r_i^T
         Eigen::Matrix3d reference;  ///< sum of r_i q_i^T
@@ -64,44 +64,45 @@ public:
     [[nodiscard]] const std::vector<int>& ids() const { return ids_; }
     [[nodiscard]] double weight() const { return weight_; }
     [[nodiscard]] const Map& map() const { return map_; }
-    /// Throws Error (usage) unless finite and not negative. Solvers have their own set_weight, which also renews their matrices.
+    /// Throws Error (usage) unless the weight is finite and not negative. Solvers have their own set_weight, which also updates
+    /// their matrices.
     void set_weight(double weight);
 
-    /// Closest admissible rows; rows are unweighted. Never NaN for finite rows. Both have map().rows columns; they may not
-    /// overlap.
+    /// Closest admissible rows; rows are unweighted. Never NaN for finite rows. Both arguments have map().rows columns and must
+    /// not overlap.
     virtual void project(const RowsIn& rows, RowsOut projected) const = 0;
 
-    /// Components of rows that are given, whatever their others: those along `directions`, orthonormal rows, are `values`, a
-    /// column for each row of B. The projection sets them and leaves the others.
+    /// Prescribed components of rows: the components along `directions` (orthonormal rows) are `values`, one column for each
+    /// row of B. The projection sets these components and leaves the others unchanged.
     struct Components {
         Eigen::Matrix<double, Eigen::Dynamic, 3> directions;
         Eigen::MatrixXd values;
     };
-    /// None where the projection is not of this kind.
+    /// The prescribed components, if the projection is of this form.
     [[nodiscard]] virtual std::optional<Components> given_components() const { return {}; }
 
-    /// Whether the projection is the same whatever the rows are.
+    /// True if the projection does not depend on the rows.
     [[nodiscard]] virtual bool constant() const { return false; }
-    /// New target positions (Closeness), displacements (LaplacianDisplacement, one column) or reference shape (Rigid ...).
-    /// Throws Error (usage) where the kind has none, or the number of columns is wrong.
+    /// Sets target positions (Closeness), displacements (LaplacianDisplacement, one column) or the reference shape (Rigid ...).
+    /// Throws Error (usage) if the kind has no target or the number of columns is wrong.
     virtual void set_target(const Points& target);
 
-    /// Whether project_moments says all; then reference() has a column for each row, or none where it is not needed.
+    /// True if project_moments defines the projection; reference() then has one column per row, or none if it is not needed.
     [[nodiscard]] virtual bool by_moments() const { return false; }
     [[nodiscard]] virtual const Points& reference() const;
     [[nodiscard]] virtual LinearProjection project_moments(const Moments& moments) const;
 
-    /// B x, for all points of the shape (not only this constraint's).
+    /// Computes B x; `points` are all points of the shape (not only this constraint's).
     void rows_of(const Points& points, Points& rows) const;
 
-    /// Sum over the rows of |row - projected row|, in the points' unit, unweighted and the same wherever the shape stands in the
-    /// world (thesis, section 4.2.3).
+    /// Sum over the rows of |row - projected row|, in the points' unit, unweighted and invariant to rigid motions of the shape
+    /// (thesis, section 4.2.3).
     [[nodiscard]] double residual(const Points& points) const;
     /// The residual divided by the number of points.
     [[nodiscard]] double normalised_residual(const Points& points) const;
-    /// |B x - P(B x)|^2: what the solver multiplies by the weight.
+    /// |B x - P(B x)|^2, the term that the solver multiplies by the weight.
     [[nodiscard]] double squared_distance(const Points& points) const;
-    /// Greatest distance of a weighing row from its projection.
+    /// Greatest distance of a weighted row from its projection.
     [[nodiscard]] double greatest_distance(const Points& points) const;
 
 protected:
@@ -109,60 +110,60 @@ protected:
     Map map_;
 
 private:
-    std::string_view kind_;  ///< of static storage
+    std::string_view kind_;  ///< points to static storage
     std::vector<int> ids_;
     double weight_ = 1;
 };
 
-/// What a kind may need besides ids, weight and rest points; doc/solver.md tells which reads what.
+/// Parameters of constraints besides ids, weight and rest points; doc/solver.md lists which kind uses which.
 struct ConstraintParameters {
-    /// Range. Of EdgeStrain, TriangleStrain, TetrahedronStrain, Area, Volume, Bending, PolylineLength: as a share of the rest
-    /// state's, or in the measure's own unit with `absolute`. Of Similarity and NonUniformScaling: the factor. Of Angle and
-    /// AxisDirection: radians. Of Proportion: first measure / second, or with `absolute` the first measure.
+    /// Range. For EdgeStrain, TriangleStrain, TetrahedronStrain, Area, Volume, Bending, PolylineLength: relative to the rest
+    /// state's value, or in the measure's own unit with `absolute`. For Similarity and NonUniformScaling: the factor. For Angle
+    /// and AxisDirection: radians. For Proportion: first measure / second, or with `absolute` the first measure.
     std::optional<double> min, max;
     bool absolute = false;
-    /// Positions or displacements aimed at, reference shape; without it, the rest points'. Of MirrorSymmetry with coefficients:
-    /// for each group the mirrored point less its partner, zero without it. Of MeansOnLevel: a point for each group, whose
-    /// differences of height the means keep; without it, none. Of AxisDirection: a shape that the points become no smaller than
-    /// half of; without it, nothing keeps them from shrinking where others contradict.
+    /// Target positions or displacements, or the reference shape; default: the rest points'. MirrorSymmetry with coefficients:
+    /// for each group the mirrored point minus its partner (default zero). MeansOnLevel: one point per group, whose height
+    /// differences the means keep (default none). AxisDirection: a shape; the size of the points is kept at least at half of
+    /// its size (default: no lower bound, so that contradictory constraints may shrink the points).
     std::optional<Points> target;
-    /// Normal of planes, direction of axes and measures; need not have unit length.
+    /// Normal of planes, direction of axes and measures; need not be a unit vector.
     std::optional<Eigen::Vector3d> direction;
     /// A point of an axis or plane.
     std::optional<Eigen::Vector3d> point;
-    /// Axis in the rest state, of CoAxiality and (direction only) AxisDirection; without it, the rest points' longest principal
-    /// axis.
+    /// Axis in the rest state, for CoAxiality and (direction only) AxisDirection; default: the longest principal axis of the
+    /// rest points.
     std::optional<Eigen::Vector3d> rest_direction, rest_point;
-    /// Weights of the neighbours in cotangent Laplacians; without them, the neighbours must be the closed ring in order. Shares
-    /// of each point that count for the next station (AxisOnLine). Weights of the points in the means of their groups
-    /// (MeansOnLevel). Three barycentric coordinates of each partner (MirrorSymmetry).
+    /// Cotangent Laplacians: weights of the neighbours (default: the neighbours must be the closed ring in order). AxisOnLine:
+    /// share of each point that counts for the next station. MeansOnLevel: weights of the points in the means of their groups.
+    /// MirrorSymmetry: three barycentric coordinates of each partner.
     std::vector<double> coefficients;
-    /// Positions in ids: where the second part begins (EqualLength, Proportion); the ends of the first and of the second measure
-    /// (Proportion: the first two lie in the first part; with `absolute` there are no others); points whose mean stays
-    /// (Proportion).
+    /// Positions in ids. split: start of the second part (EqualLength, Proportion). pins: ends of the first and of the second
+    /// measure (Proportion; the first two lie in the first part; with `absolute` there are no others). anchors: points whose
+    /// mean is fixed (Proportion).
     int split = 0;
     std::vector<int> pins, anchors;
-    /// Direction along which the second measure is taken (Proportion); without it, the distance of its ends.
+    /// Direction of the second measure (Proportion); default: the distance between its ends.
     std::optional<Eigen::Vector3d> second_direction;
-    /// Of Proportion with a target: its copies are scaled as a whole instead of stretched along the measure.
+    /// Proportion with a target: scales its copies uniformly instead of stretching them along the measure.
     bool uniform = false;
-    /// For each id, the station of the axis that it belongs to, from 0 on (AxisOnLine), or the group (MeansOnLevel); without
-    /// them, each is its own.
+    /// For each id its station along the axis, from 0 on (AxisOnLine), or its group (MeansOnLevel); default: a separate one for
+    /// each id.
     std::vector<int> stations;
-    /// Closest point of a surface (OnSurface). Called from several threads at once.
+    /// Closest point of a surface (OnSurface). Must be thread-safe.
     std::function<Eigen::Vector3d(const Eigen::Vector3d&)> closest_point;
 };
 
-/// One kind that make_constraint knows.
+/// A kind of constraint known to make_constraint.
 struct ConstraintKind {
     std::string_view name;
     int min_ids, max_ids;  ///< max_ids 0: any number
 };
 const std::vector<ConstraintKind>& constraint_kinds();
 
-/// A constraint of a kind. `rest` holds all points of the shape in their rest state. Throws Error (usage) for an unknown kind,
-/// ids out of range, too few or too many, weights negative or not finite, min > max, values that are not finite, a direction of
-/// no length, a missing parameter, and where the rest state is degenerate in a way that leaves the kind without meaning.
+/// Creates a constraint of a kind. `rest` holds all points of the shape in their rest state. Throws Error (usage) for an
+/// unknown kind, ids out of range, too few or too many ids, weights that are negative or not finite, min > max, values that are
+/// not finite, a direction of zero length, a missing parameter, and a degenerate rest state for which the kind is undefined.
 std::unique_ptr<Constraint> make_constraint(std::string_view kind, std::vector<int> ids, double weight,
                                             const ConstraintParameters& parameters, const Points& rest);
 

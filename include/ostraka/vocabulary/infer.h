@@ -1,32 +1,35 @@
-// From numbers to words: qualitative attributes that rules infer from quantitative ones (thesis, section 2.2.3).
+// Inference rules that derive qualitative from quantitative attributes (thesis, section 2.2.3).
 #pragma once
 
 #include "ostraka/vocabulary/vocabulary.h"
 
 namespace ostraka {
 
-/// An attribute that rules gave an annotation.
+/// An attribute that a rule added to an annotation.
 struct Inference {
     int annotation = 0;
     std::string attribute, value;
-    std::string rule;  ///< id of the first rule that says so
-    std::string why;   ///< the rule and its inputs, in words
+    std::string rule;  ///< id of the first rule that derived it
+    std::string why;   ///< the rule and its inputs, as text
 };
 
 struct InferenceResult {
-    AnnotationSet annotations;  ///< with the attributes inferred, their `origin` says why
+    AnnotationSet annotations;  ///< with the inferred attributes; their `origin` names the rule
     std::vector<Inference> inferred;
-    std::vector<std::string> contradictions;  ///< rules that disagree with each other or with what was stated; none was believed
-    std::vector<std::string> missing;         ///< rules that could not be judged, and what they lack
+    std::vector<std::string> contradictions;  ///< rules that contradict each other or stated attributes; none of them was
+                                              ///< applied
+    std::vector<std::string> missing;         ///< rules that could not be evaluated, and the missing input
 };
 
-/// Applies the vocabulary's rules to every annotation whose tag means one concept. A rule holds if all its conditions do; words
-/// inferred by one rule are inputs of others. Where rules that hold disagree, the attribute is left out and the rules are named;
-/// what a person stated stays, and a rule that says otherwise is named. Attributes that rules gave earlier are taken away first,
-/// so that inferring again gives the same. Bounds without a unit are in the unit the vocabulary gives the attribute.
+/// Applies the vocabulary's rules to every annotation whose tag means exactly one concept. A rule holds if all its conditions
+/// hold; inferred attributes are inputs of other rules. If rules that hold contradict each other, the attribute is omitted and
+/// the contradiction reported; attributes stated by a person are kept, and a rule that contradicts them is reported. Attributes
+/// inferred earlier are removed first, so that inference is idempotent. Bounds without a unit are in the unit that the
+/// vocabulary gives the attribute.
 InferenceResult infer(const AnnotationSet& set, const Vocabulary& vocabulary);
 
-/// The unit of a condition's bounds: its own, or that of the vocabulary's attribute; empty if neither is stated or for a ratio.
+/// The unit of a condition's bounds: the condition's own, or that of the vocabulary's attribute; empty if neither is given, and
+/// for a ratio.
 std::string condition_unit(const VocabularySearch& search, const InferenceRule& rule, const Condition& condition);
 
 }  // namespace ostraka

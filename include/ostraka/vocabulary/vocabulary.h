@@ -1,4 +1,5 @@
-// Controlled vocabularies: the concepts that tags name, and the attributes each may carry (thesis, sections 2.2.1 and 2.2.3).
+// Controlled vocabularies: the concepts that tags name, and the attributes that each may have (thesis, sections 2.2.1 and
+// 2.2.3).
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -14,71 +15,71 @@
 
 namespace ostraka {
 
-/// Text by language ("en", "it", "de-AT"); the key "" holds text of no stated language.
+/// Text by language ("en", "it", "de-AT"); the key "" holds text without a language.
 using Labels = std::map<std::string, std::string>;
 
-/// A word a qualitative attribute may have as its value.
+/// An allowed value of a qualitative attribute.
 struct Term {
-    std::string name;  ///< what annotation files hold; its labels are read as well
+    std::string name;  ///< as stored in annotation files; labels are accepted as well
     Labels labels;
 };
 
-/// An attribute that annotations of a concept may carry.
+/// An attribute that annotations of a concept may have.
 struct AllowedAttribute {
     std::string name;
     Labels labels;
     Labels definition;
-    std::vector<Term> values;        ///< of a qualitative attribute; empty: any text
-    std::optional<double> min, max;  ///< of a quantitative attribute, in `unit`
+    std::vector<Term> values;        ///< allowed values of a qualitative attribute; empty: any text
+    std::optional<double> min, max;  ///< range of a quantitative attribute, in `unit`
     std::string unit;
 
-    /// Stated to be a quantity, by a range or a unit.
+    /// True if a range or a unit declares a quantity.
     [[nodiscard]] bool quantitative() const { return min || max || !unit.empty(); }
 };
 
-/// A statement of a SKOS file that we keep but do not use: skos:related, skos:exactMatch, dcterms:source ...
+/// A statement of a SKOS file that is kept but not used: skos:related, skos:exactMatch, dcterms:source ...
 struct ForeignStatement {
-    std::string property;  ///< URI
+    std::string property;  ///< URI of the property
     std::string value;     ///< text or URI
     bool is_uri = false;
-    std::string language, datatype;  ///< of a text; at most one of the two
+    std::string language, datatype;  ///< of a text; at most one of the two is set
     auto operator<=>(const ForeignStatement&) const = default;
 };
 
 struct Concept {
     std::string id;
-    std::string uri;  ///< empty where it is the vocabulary's with the id behind it
+    std::string uri;  ///< empty if it is the vocabulary's URI followed by the id
     Labels labels;
-    std::map<std::string, std::vector<std::string>> alternatives;  ///< further labels by language
-    std::vector<std::string> broader;                              ///< ids
-    std::vector<std::string> part_of;                              ///< ids of concepts that it is a part of
+    std::map<std::string, std::vector<std::string>> alternatives;  ///< alternative labels by language
+    std::vector<std::string> broader;                              ///< ids of broader concepts
+    std::vector<std::string> part_of;                              ///< ids of concepts that this one is a part of
     Labels definition;
     std::vector<AllowedAttribute> attributes;
     std::vector<ForeignStatement> others;
 };
 
-/// A side of a comparison in a rule: an attribute of the annotation itself, or of the only annotation of another concept.
+/// An operand of a condition: an attribute of the annotation itself, or of the only annotation of another concept.
 struct Operand {
     std::string attribute;
-    std::string concept_id;  ///< empty: the annotation the rule looks at
+    std::string concept_id;  ///< empty: the annotation that the rule is applied to
     auto operator<=>(const Operand&) const = default;
 };
 
-/// One condition of a rule: a number (an attribute, or the ratio of two) within bounds, or a word that is one of several.
+/// A condition of a rule: a number (an attribute, or the ratio of two) within bounds, or a word from a list.
 struct Condition {
     Operand operand;
     std::optional<Operand> divisor;
-    std::optional<double> min, max;      ///< bounds that belong to the range
-    std::optional<double> above, below;  ///< bounds that do not
-    std::string unit;                    ///< of the bounds; empty: as the attribute has it
-    std::vector<std::string> is;         ///< of a qualitative attribute
+    std::optional<double> min, max;      ///< inclusive bounds
+    std::optional<double> above, below;  ///< exclusive bounds
+    std::string unit;                    ///< unit of the bounds; empty: that of the attribute
+    std::vector<std::string> is;         ///< accepted values of a qualitative attribute
 };
 
-/// Infers a qualitative attribute of annotations of a concept where all conditions hold (thesis, section 2.2.3).
+/// Infers a qualitative attribute of annotations of a concept if all conditions hold (thesis, section 2.2.3).
 struct InferenceRule {
     std::string id;
     std::string note;
-    std::string concept_id;  ///< with its narrower ones; empty: any annotation
+    std::string concept_id;  ///< includes narrower concepts; empty: any annotation
     std::vector<Condition> conditions;
     std::string attribute, value;
 };
@@ -86,59 +87,59 @@ struct InferenceRule {
 struct Vocabulary {
     std::string uri;
     Labels title;
-    std::vector<AllowedAttribute> attributes;  ///< that every concept may carry
+    std::vector<AllowedAttribute> attributes;  ///< attributes that every concept may have
     std::vector<Concept> concepts;
     std::vector<InferenceRule> rules;
     std::vector<ForeignStatement> others;
-    std::vector<std::string> notes;  ///< what reading had to say; not written
+    std::vector<std::string> notes;  ///< notes from reading; not written
 };
 
 /// Reads *.vocabulary.json (doc/vocabularies.md). Throws Error (input) that names the file, the JSON pointer and the remedy: a
-/// file that does not fit its schema, two concepts with one id, a broader concept that is missing, a cycle of broader concepts,
-/// an attribute named twice, a range upside down, a rule that speaks of what the vocabulary does not have.
+/// file that does not match its schema, duplicate concept ids, a missing broader concept, a cycle of broader concepts, a
+/// duplicate attribute, a range with min above max, a rule that refers to something not in the vocabulary.
 Vocabulary read_vocabulary(const Path& file);
 Vocabulary vocabulary_from_json(const JsonValue& document, const std::string& where);
 Json vocabulary_to_json(const Vocabulary& vocabulary);
 /// Checks as reading does, then writes. Reading and writing again gives the same bytes.
 void write_vocabulary(const Path& file, const Vocabulary& vocabulary);
-/// The checks of reading, for a vocabulary in memory. Linear in its size.
+/// Performs the checks of reading on a vocabulary in memory. Linear in its size.
 void check_vocabulary(const Vocabulary& vocabulary, const std::string& where);
 
-/// What is allowed in a vocabulary but may be meant otherwise: concepts without labels or with labels that others have too,
-/// languages that only some concepts are labelled in, rules that contradict each other where both apply.
+/// Reports what is allowed in a vocabulary but may be unintended: concepts without labels or with labels shared by others,
+/// languages in which only some concepts have labels, rules that contradict each other if both apply.
 std::vector<Finding> examine(const Vocabulary& vocabulary);
 
-/// Answers questions about a vocabulary, which must have passed check_vocabulary and outlive this. Construction is linear. Keeps
-/// the attribute names of the concepts asked for: not for several threads at once.
+/// Queries on a vocabulary, which must have passed check_vocabulary and must outlive this object. Construction is linear. Not
+/// thread-safe: attribute names of queried concepts are cached.
 class VocabularySearch {
 public:
     explicit VocabularySearch(const Vocabulary& vocabulary);
 
-    /// Concepts a tag may mean (indices): the one whose id it is, to the letter; otherwise those that have it as a label in any
-    /// language, whatever its case and blanks; otherwise the same without a number at the end ("flower 3" is a flower). More
-    /// than one where the tag is ambiguous, none where it is unknown.
+    /// Indices of the concepts that a tag may mean: the concept whose id equals the tag exactly; otherwise those that have it
+    /// as a label in any language, ignoring case and blanks; otherwise the same without a number at the end ("flower 3" means
+    /// "flower"). Several if the tag is ambiguous, none if it is unknown.
     [[nodiscard]] std::vector<std::size_t> concepts_of(const std::string& tag) const;
-    /// The only such concept, or none.
+    /// The concept of a tag; nothing if the tag is unknown or ambiguous.
     [[nodiscard]] std::optional<std::size_t> concept_of(const std::string& tag) const;
-    /// The concept of an id.
+    /// The index of the concept with this id.
     [[nodiscard]] std::optional<std::size_t> find(const std::string& id) const;
-    /// Is the concept the other one, or narrower?
+    /// True if the concept is the other one or narrower.
     [[nodiscard]] bool is_a(std::size_t concept_index, std::size_t other) const;
     /// The concept and all broader ones, nearest first.
     [[nodiscard]] std::vector<std::size_t> lineage(std::size_t concept_index) const;
-    /// The concepts that it is a part of, by its own statement or that of a broader concept, then those that these are parts of;
-    /// by levels, nearest first.
+    /// The concepts that this one is a part of, as stated by it or by a broader concept, followed by the wholes of those; one
+    /// list per level, nearest first.
     [[nodiscard]] std::vector<std::vector<std::size_t>> wholes_of(std::size_t concept_index) const;
-    /// What the concept may carry: its own attributes, those of broader ones, those of every concept; where one name stands
-    /// twice, the nearer.
+    /// The attributes that the concept may have: its own, those of broader concepts, and those of every concept; of equal names
+    /// the nearer wins.
     [[nodiscard]] std::vector<const AllowedAttribute*> attributes_of(std::size_t concept_index) const;
-    /// The allowed attribute of a name or label, or nullptr.
+    /// The allowed attribute with this name or label, or nullptr.
     [[nodiscard]] const AllowedAttribute* attribute_of(std::size_t concept_index, const std::string& name) const;
-    /// The attribute of that name among those every concept may carry, or nullptr.
+    /// The attribute of that name among those that every concept may have, or nullptr.
     [[nodiscard]] const AllowedAttribute* common_attribute(const std::string& name) const;
-    /// Ids and labels close to a text, closest first.
+    /// Ids and labels with similar spelling, closest first.
     [[nodiscard]] std::vector<std::string> suggestions(const std::string& tag) const;
-    /// The concept's label in a language, or in none, or in English, or in any; the id if it has no label.
+    /// The concept's label in this language, else without a language, else in English, else in any; the id if it has no label.
     [[nodiscard]] std::string label(std::size_t concept_index, const std::string& language) const;
 
     [[nodiscard]] const Vocabulary& vocabulary() const { return vocabulary_; }
@@ -147,28 +148,29 @@ private:
     const Vocabulary& vocabulary_;
     std::unordered_map<std::string, std::size_t> ids_;
     std::unordered_map<std::string, std::vector<std::size_t>> labels_;  ///< folded text -> concepts
-    std::unordered_map<std::string, const AllowedAttribute*> common_;   ///< folded names of what every concept may carry
-    /// By concept, the attributes of folded names and labels.
+    std::unordered_map<std::string, const AllowedAttribute*> common_;   ///< by folded name, the attributes that every concept
+                                                                        ///< may have
+    /// For each concept, its attributes by folded names and labels.
     mutable std::unordered_map<std::size_t, std::unordered_map<std::string, const AllowedAttribute*>> attributes_;
     std::vector<std::vector<std::size_t>> broader_, part_of_;
 };
 
-/// The word of an attribute's list that a text means, by name or label; nullptr if none.
+/// The allowed value that a text means, by name or label; nullptr if none.
 const Term* term_of(const AllowedAttribute& attribute, const std::string& text);
 
 struct CheckVocabularyOptions {
-    bool strict = false;  ///< quantities that the vocabulary does not have are defects as well
+    bool strict = false;  ///< treat quantities that are not in the vocabulary as defects
 
     void describe(OptionList& visit);
 };
 
-/// Which tags and attributes of a set do not fit. Defects: a tag that no concept has or that several have, a qualitative
-/// attribute that the concept may not carry, a value outside its list, a word where a number belongs and the reverse, a quantity
-/// outside its range or in a unit that cannot be converted. Names what comes close. Remarks: quantities that the vocabulary
-/// does not have (defects if `strict`), stale quantities and quantities without a unit, whose range was not looked at.
+/// Checks the tags and attributes of a set. Defects: a tag that no concept has or that several have, a qualitative attribute
+/// that the concept may not have, a value outside its list, a word instead of a number or a number instead of a word, a
+/// quantity outside its range or in a unit that cannot be converted. Suggests similar names. Remarks: quantities that are not
+/// in the vocabulary (defects if `strict`), stale quantities, and quantities without a unit, whose range was not checked.
 std::vector<Finding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
                                               const CheckVocabularyOptions& options = {});
-/// Throws Error (input) with the first defect if there is one; `where` names the file of the set.
+/// Throws Error (input) with the first defect, if any; `where` names the file of the set.
 void require_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary, const std::string& where,
                         const CheckVocabularyOptions& options = {});
 
