@@ -19,7 +19,7 @@ inline constexpr std::size_t every = 1000;  ///< number of members: all availabl
 
 /// Variant of learning and classification.
 struct Way {
-    bool shared = true;     ///< deviations of all classes are pooled
+    bool shared = true;     ///< thresholds of the classes are moderated by each other
     bool strangers = true;  ///< out-of-class objects determine the acceptance limits
     bool strict = false;    ///< of ClassifyOptions
     std::size_t members = every;

@@ -243,7 +243,7 @@ public:
     TemplateOptions options;
 };
 
-/// Any other kind of file, read by a function that the caller supplies; `load` reads it once per context.
+/// Any other kind of file, read by a function that the caller supplies; `load` reads it only once.
 class FileInput : public Slot {
 public:
     /// The object in memory if it is a T; otherwise the result of `read`, cached for later calls. `key`: whatever else the
