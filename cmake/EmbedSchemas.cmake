@@ -1,5 +1,5 @@
-# Writes a C++ source that holds the toolkit's version, and each schema's or model's text under its name. Raw strings are cut into pieces, since the
-# language limits their length.
+# Generates a C++ source that holds the toolkit's version, and the text of each schema and model under its name. Raw strings are split,
+# since the language limits their length.
 set(code "#include <map>\n#include <string>\n#include <string_view>\n\nnamespace ostraka {\n\n")
 string(APPEND code "const std::map<std::string, std::string_view>& schema_texts();\n\n")
 string(APPEND code "const std::map<std::string, std::string_view>& schema_texts() {\n    static const std::map<std::string, std::string_view> texts = {\n")

@@ -1,4 +1,4 @@
-# What the library links against; used by the build and by the installed package.
+# Libraries to link; used by the build and by the installed package.
 find_package(CGAL 5.5 REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
@@ -10,7 +10,7 @@ find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)
 find_package(meshoptimizer REQUIRED)
 pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
-# By path: what their packages define for the compiler is of use to one file only.
+# Found by path: the compile definitions of their packages are needed in one file only.
 find_library(CERES_LIBRARY NAMES ceres REQUIRED)
 find_library(GLOG_LIBRARY NAMES glog REQUIRED)
 find_library(EMBREE_LIBRARY NAMES embree3 REQUIRED)

@@ -1,5 +1,5 @@
-# The Python module `ostraka`: the native half, and the package around it. For the distribution's Python, which is the one that
-# the distribution's pybind11 and NumPy are for; -DPython3_EXECUTABLE=... names another.
+# The Python module `ostraka`: the native part, and the package around it. Built for the distribution's Python, to which its pybind11
+# and NumPy belong; -DPython3_EXECUTABLE=... selects another.
 if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)
 endif()
@@ -27,7 +27,7 @@ Python3_add_library(ostraka_python MODULE WITH_SOABI apps/python/module.cpp apps
   apps/python/running.cpp apps/python/saved.cpp)
 target_include_directories(ostraka_python SYSTEM PRIVATE ${PYBIND11_INCLUDE})
 target_link_libraries(ostraka_python PRIVATE ostraka ostraka_flags)
-# Beside the package's own files, so that the folder can be imported from; what the library is made of stays within the module.
+# Placed beside the package's own files, so that the folder can be imported from; symbols of the library stay hidden in the module.
 set(OSTRAKA_PYTHON_BUILT ${CMAKE_BINARY_DIR}/python)
 set_target_properties(ostraka_python PROPERTIES OUTPUT_NAME _ostraka CXX_VISIBILITY_PRESET hidden
   LIBRARY_OUTPUT_DIRECTORY ${OSTRAKA_PYTHON_BUILT}/ostraka)
@@ -40,8 +40,8 @@ foreach(file IN LISTS package_files)
   file(CREATE_LINK ${CMAKE_SOURCE_DIR}/apps/python/${file} ${OSTRAKA_PYTHON_BUILT}/${file} SYMBOLIC)
 endforeach()
 
-# Debian's Python looks into this folder below /usr and below /usr/local, so that a package and `cmake --install` may use the
-# same one; it is that of one version, as the native half is. CMAKE_INSTALL_LIBDIR would be another one below /usr.
+# Debian's Python searches this folder below /usr and /usr/local, so that a package and `cmake --install` can both use it. It is
+# specific to one version, like the native part. CMAKE_INSTALL_LIBDIR would be a different folder below /usr.
 set(OSTRAKA_PYTHON_DIR lib/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/dist-packages CACHE STRING
   "Where the Python module is installed, below the prefix")
 install(TARGETS ostraka_python LIBRARY DESTINATION ${OSTRAKA_PYTHON_DIR}/ostraka COMPONENT python)

@@ -1,17 +1,17 @@
-# Batches of files that are compiled as one: files of one module, in the order of their names, up to a number of bytes, or of several
-# small modules. What a batch saves is reading the same headers and making the same templates again for each file. Files that take
-# long on their own, and those with flags of their own, stay alone.
+# Compiles files in batches: files of one module, sorted by name, up to a number of bytes, or files of several small modules. A batch
+# reads common headers and instantiates common templates only once. Files that take long by themselves, and files with flags of their
+# own, are compiled separately.
 set(OSTRAKA_UNITY_BATCH 250000 CACHE STRING "Bytes of source a batch")
 set(OSTRAKA_UNITY_JOINED 150000 CACHE STRING "Bytes up to which small modules share a batch")
 set(OSTRAKA_UNITY_ALONE src/coords/cage_interior.cpp src/core/dense.cpp src/workbench/server.cpp)
-# The largest algorithms of CGAL, together with those that share most with them.
+# Files with the largest algorithms of CGAL, grouped by the templates they share.
 set(OSTRAKA_UNITY_TOGETHER "src/axis/skeleton.cpp|src/remesh/remesh.cpp|src/io/wrap.cpp"
   "src/point_cloud/point_cloud.cpp|src/point_cloud/point_surface.cpp")
 
 function(ostraka_unity target)
   get_target_property(sources ${target} SOURCES)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP UNITY_BUILD_UNIQUE_ID "")
-  # The sources to join, and the bytes of each module.
+  # The sources to combine, and the number of bytes of each module.
   set(modules "")
   foreach(source IN LISTS sources)
     file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${source})
@@ -57,6 +57,6 @@ function(ostraka_unity target)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group}_${batch})
     endforeach()
   endforeach()
-  # A type of a source file may use its own unnamed namespace, whatever file includes it.
+  # Types of a source file may use its unnamed namespace, whichever file includes it.
   target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
 endfunction()

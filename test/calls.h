@@ -1,4 +1,4 @@
-// Operations called with settings whose names of files are within a folder.
+// Calls operations with settings whose file names are relative to a folder.
 #pragma once
 
 #include "ostraka/core/json.h"
@@ -8,7 +8,7 @@
 
 namespace ostraka::test {
 
-/// `settings`: JSON, as Call::set takes it; names of files are relative to the folder.
+/// `settings`: JSON as for Call::set; file names are relative to the folder.
 inline Call call_in(const Path& folder, const std::string& operation, const std::string& settings) {
     const Json values = parse_json(settings, operation);
     Call call(find_operation(operation));

@@ -1,4 +1,4 @@
-// Small meshes of every topology, made in a few lines.
+// Small meshes of all topologies.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -11,7 +11,7 @@
 
 namespace ostraka::test {
 
-/// A grid of quads cut into triangles, closed in neither, one or both directions.
+/// A triangulated grid of quads, periodic in neither, one or both directions.
 inline TriangleSoup grid(Index columns, Index rows, bool wrap_columns, bool wrap_rows,
                          const std::function<std::array<double, 3>(double, double)>& point) {
     TriangleSoup soup;
@@ -74,7 +74,7 @@ inline TriangleSoup tube(Index columns, Index rows) {
     });
 }
 
-/// A cube with n x n quads a side, welded.
+/// A cube with n x n quads per side, welded.
 inline TriangleSoup box(int n) {
     TriangleSoup soup;
     std::map<std::array<int, 3>, Index> known;
@@ -118,7 +118,7 @@ struct Named {
     TriangleSoup soup;
 };
 
-/// One of each kind, about a thousand vertices.
+/// One mesh of each kind, with about a thousand vertices.
 inline std::vector<Named> group() {
     return {{"sphere", octahedron_sphere(4)},
             {"torus", torus(48, 24)},
@@ -153,7 +153,7 @@ inline std::size_t border_loops(const Mesh& mesh) {
     return loops;
 }
 
-/// Number of sets of chosen faces joined across edges (all faces if no choice is given).
+/// Number of edge-connected components of the selected faces (of all faces by default).
 inline std::size_t components(
     const Mesh& mesh, const std::function<bool(Face)>& chosen = [](Face) { return true; }) {
     std::vector<bool> seen(mesh.number_of_faces(), false);
@@ -177,7 +177,7 @@ inline std::size_t components(
     return count;
 }
 
-/// Signed volume against the box's centre.
+/// Signed volume, computed relative to the box's centre.
 inline double volume(const Mesh& mesh) {
     const CGAL::Bbox_3 box = bounding_box(mesh);
     const Point o((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
@@ -189,7 +189,7 @@ inline double volume(const Mesh& mesh) {
     return sum;
 }
 
-/// The mesh is what its own triangles would give again: manifold, and all its links are sound.
+/// Whether the mesh equals the one rebuilt from its triangles: manifold, with valid connectivity.
 inline bool is_sound(const Mesh& mesh) {
     if (mesh.has_garbage() || !mesh.is_valid(false)) return false;
     Mesh again;

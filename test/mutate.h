@@ -1,4 +1,4 @@
-// Damaged copies of files, the same on every run: what a reader must survive.
+// Reproducibly damaged copies of files, to test the robustness of readers.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ inline std::size_t below(std::mt19937_64& random, std::size_t count) {
     return count == 0 ? 0 : static_cast<std::size_t>(random() % count);
 }
 
-/// Start and end of each piece of `bytes` between separators.
+/// Begin and end of each piece of `bytes` between separators.
 inline std::vector<std::pair<std::size_t, std::size_t>> pieces(const std::string& bytes, const std::string& separators) {
     std::vector<std::pair<std::size_t, std::size_t>> list;
     for (std::size_t i = 0; i < bytes.size();) {
@@ -63,9 +63,9 @@ inline std::string pick_word(std::mt19937_64& random) {
 
 }  // namespace detail
 
-/// Copy number `seed` of `bytes` with one to eight injuries: bytes or bits flipped, the end cut off, a stretch removed,
-/// doubled or zeroed, a word (between blanks or punctuation) or a line removed, doubled, swapped or replaced by a value readers
-/// trip over.
+/// Copy number `seed` of `bytes` with one to eight mutations: flipped bytes or bits, a truncated end, a removed, duplicated or
+/// zeroed range, a word (between blanks or punctuation) or a line removed, duplicated, swapped or replaced by a value that
+/// readers often mishandle.
 inline std::string mutate(const std::string& bytes, std::uint64_t seed) {
     using detail::below;
     std::mt19937_64 random(seed * 0x9E3779B97F4A7C15U + 1);

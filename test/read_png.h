@@ -1,4 +1,4 @@
-// Pictures that were written, read back.
+// Reads pictures back.
 #pragma once
 
 #include "ostraka/core/error.h"
@@ -24,7 +24,7 @@ inline cairo_status_t take_bytes(void* reader, unsigned char* data, unsigned int
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// Throws Error (input) if the file is no PNG.
+/// Throws Error (input) if the file is not a PNG.
 inline Picture read_png(const Path& file) {
     const std::string bytes = read_file(file);
     PngReader reader{bytes};

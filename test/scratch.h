@@ -1,4 +1,4 @@
-// What tests share: a folder that is gone afterwards, and the built command run as people run it.
+// Shared by tests: temporary folders, and running the built command through the shell.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -11,7 +11,7 @@
 
 namespace ostraka::test {
 
-/// A fresh folder, removed with all it holds at the end of the test.
+/// A new folder, removed with its content at the end of the test.
 class Scratch {
 public:
     Scratch() {
@@ -26,7 +26,7 @@ public:
     Scratch& operator=(const Scratch&) = delete;
 
     [[nodiscard]] Path operator/(const std::string& name) const { return folder_ / name; }
-    /// Writes a file of the folder.
+    /// Writes a file into the folder.
     [[nodiscard]] Path file(const std::string& name, std::string_view bytes) const {
         write_file(folder_ / name, bytes);
         return folder_ / name;
@@ -55,7 +55,7 @@ inline CommandResult run_command(const std::string& arguments, const std::string
     return result;
 }
 
-/// Every name in a folder, so that a test can see that nothing was left behind.
+/// All names in a folder, to test that no files were left behind.
 inline std::size_t count_files(const Path& folder) {
     std::size_t count = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;

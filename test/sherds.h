@@ -12,7 +12,7 @@ namespace ostraka::test {
 
 struct SyntheticSherd {
     Mesh mesh;
-    std::vector<Facet> facets;  ///< of each face
+    std::vector<Facet> facets;  ///< per face
 };
 
 /// The surface of a grid of boxes, welded; `side` of each triangle: 0, 1 across u, 2, 3 across v, 4 (low), 5 (high) across w.
@@ -43,15 +43,15 @@ inline TriangleSoup box_grid(const std::array<int, 3>& count,
     return soup;
 }
 
-/// Where a break runs: waves along it and through the wall; `which` tells one break from another.
+/// Shape of a fracture: waves along it and through the wall; `which` selects the fracture.
 inline double broken(int which, double along, double through) {
     const double a = 1.7 * which;
     return 0.35 * std::sin(2.3 * along + a) + 0.2 * std::sin(5.1 * along + 2 * a + 0.5) + 0.06 * std::sin(11 * along + 3 * a) +
            0.08 * std::sin(9 * along + 4 * a) * std::sin(5 * through + a) + 0.06 * through;
 }
 
-/// A piece of a pot of the radius 6 and walls 0.7 thick between two breaks that run up and two that run around; the break
-/// `right` of one piece is the `left` of its neighbour.
+/// A piece of a pot of radius 6 with walls of thickness 0.7, between two vertical and two horizontal fractures; the fracture
+/// `right` of a piece is the `left` of its neighbour.
 inline SyntheticSherd synthetic_sherd(int left, int right, double from, double to, int fineness = 1) {
     constexpr double wall = 0.7, low = 0, high = 6, around = 6;
     const auto at = [&](double u, double v, double w) -> std::array<double, 3> {
@@ -71,10 +71,10 @@ inline SyntheticSherd synthetic_sherd(int left, int right, double from, double t
     return sherd;
 }
 
-/// A round bar whose upper end is broken; or the bar above it, whose lower end is.
+/// A round bar whose upper end is broken, or the bar above it, whose lower end is broken.
 inline SyntheticSherd synthetic_bar(int fineness = 1, bool above = false) {
     const auto at = [above](double u, double v, double w) -> std::array<double, 3> {
-        // The square onto the disc (Shirley and Chiu 1997).
+        // Maps the square to the disc (Shirley and Chiu 1997).
         const double a = 2 * u - 1, b = 2 * v - 1, r = std::max(std::abs(a), std::abs(b));
         const double angle = r == 0                       ? 0
                              : std::abs(a) >= std::abs(b) ? (a > 0 ? 0 : M_PI) + M_PI / 4 * b / a

@@ -1,4 +1,4 @@
-// What memory delivers at best, and what loops over a mesh get of it.
+// Memory bandwidth: the maximum, and the share that loops over a mesh achieve.
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
 
@@ -12,7 +12,7 @@ namespace ostraka::bench {
 
 namespace {
 
-constexpr std::size_t array_bytes = std::size_t{512} << 20;  // far above any cache
+constexpr std::size_t array_bytes = std::size_t{512} << 20;  // much larger than any cache
 constexpr std::size_t block_words = std::size_t{1} << 15;
 constexpr std::size_t mesh_vertices = 1'000'000;
 
@@ -25,7 +25,7 @@ void measure(benchmark::State& state, int thread_count, std::size_t count, std::
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * bytes));
 }
 
-/// Sums words through eight independent accumulators, so that no chain of additions holds up the loads.
+/// Sums words with eight independent accumulators, so that loads do not wait for additions.
 std::uint64_t sum_of(const std::vector<std::uint64_t>& words) {
     std::vector<std::uint64_t> sums(words.size() / block_words);
     parallel_blocks(words.size(), block_words, [&](std::size_t begin, std::size_t end) {
@@ -61,7 +61,7 @@ void copy_memory(benchmark::State& state, int thread_count) {
     if (to != from) state.SkipWithError("wrong copy");
 }
 
-/// Bytes that a loop over all vertices and their rings must move at least once: points and halfedges in, normals out.
+/// Minimal traffic of a loop over all vertices and their one-rings: reads points and halfedges, writes normals.
 void vertex_normals(benchmark::State& state, int thread_count) {
     const Mesh& mesh = target(mesh_vertices);
     std::vector<Vector> normals(mesh.number_of_vertices(), Vector(0, 0, 0));
@@ -74,7 +74,7 @@ void vertex_normals(benchmark::State& state, int thread_count) {
         if (std::abs(normal.squared_length() - 1) > 1e-12) state.SkipWithError("a normal is not a unit vector");
 }
 
-/// The same for area vectors: faces, their halfedges and points in, vectors out.
+/// The same for area vectors: reads faces, their halfedges and points, writes vectors.
 void area_vectors(benchmark::State& state, int thread_count) {
     const Mesh& mesh = target(mesh_vertices);
     std::vector<Vector> areas(mesh.number_of_faces(), Vector(0, 0, 0));

@@ -14,10 +14,10 @@ namespace ostraka::bench {
 
 namespace {
 
-/// An operation with its settings; names of files are within a folder. What it makes later ones use.
+/// An operation with its settings; file names are relative to a folder. Later steps use its outputs.
 struct Step {
     const char* operation;
-    const char* what;  ///< distinguishes runs of one operation
+    const char* what;  ///< distinguishes runs of the same operation
     const char* settings;
 };
 
@@ -95,7 +95,8 @@ const Step steps[]{
      R"({"template": "statuette.template.json", "members": ["statuette.ply"], "output": "propagated"})"},
 };
 
-/// Seconds from the wish to stop to the end; none where the work was done before. Throws where it ends with another error.
+/// Seconds from the cancellation to the end of the operation; empty if it finished before. Throws if it ends with another
+/// error.
 std::optional<double> seconds_to_stop(const Step& step, const Path& folder, double after) {
     Context context;
     std::atomic<bool> is_done = false;

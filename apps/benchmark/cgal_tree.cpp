@@ -1,4 +1,4 @@
-// The tree that others are measured by.
+// CGAL's tree, the reference for other measurements.
 #include "benchmarks.h"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>

@@ -24,7 +24,7 @@ struct CommandResult {
 
 double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
 
-/// A child's peak counts from the moment it splits from this process, so this process must be smaller than what is measured.
+/// The peak memory of a child counts from the fork, so this process must be smaller than the measured one.
 CommandResult run_program(const std::string& program, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), program);
     std::vector<char*> pointers;
@@ -53,7 +53,7 @@ CommandResult run_command(std::vector<std::string> arguments) { return run_progr
 
 std::string path_of(const std::string& name) { return (scratch_folder() / name).string(); }
 
-/// The teapot as the command makes it: binary PLY with labels (and, where it is not refined, colours).
+/// The teapot made by the command: binary PLY with labels (and, unless refined, colours).
 bool make_teapot(const std::string& name, std::size_t vertices, int seed) {
     static std::map<std::string, bool> made;
     const auto [known, is_new] = made.try_emplace(name, false);
@@ -105,7 +105,7 @@ bool make_transfer_files(std::size_t vertices) {
     return known->second;
 }
 
-/// Wall time of reading a transfer's input and of building CGAL's tree over the target, by target vertices.
+/// Minimal wall time of reading a transfer's input and building CGAL's tree over the target, by number of target vertices.
 std::map<std::size_t, double> least_seconds;
 
 void read_and_build(benchmark::State& state, std::size_t vertices) {
@@ -137,7 +137,7 @@ void transfer_command(benchmark::State& state, std::size_t vertices, const std::
         state.counters["of_reading_and_cgal_tree"] = run.seconds / least->second;
 }
 
-/// A command on the target alone; 'more' follows the mesh file.
+/// Runs a command on the target only; 'more': arguments after the mesh file.
 void mesh_command(benchmark::State& state, std::size_t vertices, std::vector<std::string> arguments,
                   const std::vector<std::string>& more, const std::string& program = OSTRAKA_COMMAND) {
     if (!make_teapot(target_file(vertices), vertices, 2)) {
@@ -149,7 +149,7 @@ void mesh_command(benchmark::State& state, std::size_t vertices, std::vector<std
     measure_command(state, arguments, vertices, program);
 }
 
-/// Five operations on one mesh as a study, against the same five commands one after the other.
+/// Five operations on one mesh as a study, compared with five separate commands.
 void study_command(benchmark::State& state, std::size_t vertices) {
     const std::string mesh = path_of(target_file(vertices)), study = path_of("five.study.json");
     if (!make_teapot(target_file(vertices), vertices, 2)) {

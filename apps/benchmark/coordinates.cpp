@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t point_count = 100'000;
 
-/// A bent ring of 20 x 10 vertices and 400 faces.
+/// A point on a torus; the cage has 20 x 10 vertices and 400 faces.
 Point on_ring(double a, double b, double radius) {
     const double r = 2 + radius * std::cos(b);
     return {r * std::cos(a) * (1 + 0.2 * std::sin(3 * a)), r * std::sin(a), radius * std::sin(b) + 0.3 * std::sin(2 * a)};
@@ -40,7 +40,7 @@ const std::vector<Point>& points() {
     static const std::vector<Point> made = [] {
         std::vector<Point> list;
         for (std::size_t i = 0; i < point_count; ++i) {
-            // Evenly over a ring inside: the golden ratio along, many turns around.
+            // Evenly distributed inside the torus, by the golden ratio.
             const double share = static_cast<double>(i) / point_count;
             list.push_back(on_ring(2 * M_PI * share, 2 * M_PI * std::fmod(0.6180339887498949 * static_cast<double>(i), 1), 0.6));
         }
@@ -49,7 +49,7 @@ const std::vector<Point>& points() {
     return made;
 }
 
-/// Additions, multiplications, divisions and square roots of the loops over edges and faces (src/coords), counted by hand.
+/// Number of additions, multiplications, divisions and square roots in the loops over edges and faces (src/coords).
 double operations(const std::string& kind) {
     const auto edges = static_cast<double>(cage().number_of_edges()), faces = static_cast<double>(cage().number_of_faces());
     return static_cast<double>(point_count) * (kind == "green" ? edges * 70 + faces * 240 : edges * 62 + faces * 53);

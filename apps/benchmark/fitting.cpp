@@ -1,4 +1,4 @@
-// A template of 25,000 vertices fitted to fragments: placement, refinement, fit, completion, by phase.
+// Fits a template of 25,000 vertices to fragments: time of placement, refinement, fit, completion.
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
@@ -45,7 +45,7 @@ const Class& template_of_class() {
     return made;
 }
 
-/// A share of another member of the class around a landmark, meshed by itself, as a scan of about the number of vertices.
+/// A share of another member of the class around a landmark, meshed independently like a scan, with about `vertices` vertices.
 const Fragment& fragment_of(std::uint64_t vertices, const std::string& landmark = "head joint", double share = 0.5) {
     static std::map<std::pair<std::uint64_t, std::string>, Fragment> made;
     const auto [entry, fresh] = made.try_emplace({vertices, landmark});
@@ -97,8 +97,8 @@ void run(benchmark::State& state, std::uint64_t vertices, int thread_count) {
     state.counters["fragment"] = static_cast<double>(fragment.mesh.number_of_vertices());
 }
 
-/// Two fragments: both from scratch, or the second added to the first, or one from scratch, or left after the second was removed.
-/// `bare`: without landmarks, so that poses are searched.
+/// Two fragments: both new, the second added to the first, only one, or one left after the second was removed. `bare`: without
+/// landmarks, so that poses are searched.
 void change(benchmark::State& state, const std::string& what, bool bare) {
     const Class& ours = template_of_class();
     const std::array<const Fragment*, 2> fragments{&fragment_of(10'000, "head joint", 0.4),

@@ -6,7 +6,7 @@
 
 namespace {
 
-/// Takes "--name=value" out of the arguments.
+/// Removes "--name=value" from the arguments and returns the value.
 std::string taken(int& argc, char** argv, const std::string& name) {
     const std::string start = "--" + name + "=";
     for (int i = 1; i < argc; ++i) {

@@ -1,4 +1,4 @@
-// Figures into the page that shows them, with the machine and the date.
+// Inserts the results into the page that shows them, with the machine and the date.
 #include "benchmarks.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
@@ -35,7 +35,7 @@ std::string today() {
     return text;
 }
 
-/// A figure with its aim, in bold where it is missed.
+/// A figure with its target, in bold if the target is missed.
 std::string with_aim(const std::string& benchmark, const std::string& figure, double value, const std::string& text) {
     const auto aim = aims().find({benchmark, figure});
     if (aim == aims().end()) return text;

@@ -1,4 +1,4 @@
-// A picture of a million vertices.
+// Renders a million vertices.
 #include "benchmarks.h"
 #include "ostraka/render/render.h"
 

@@ -1,4 +1,4 @@
-// Queries on a target of a million vertices, asked from every vertex of the source.
+// Queries on a target of a million vertices, from every vertex of the source.
 #include "benchmarks.h"
 #include "ostraka/core/parallel.h"
 
@@ -12,9 +12,9 @@ namespace {
 constexpr std::size_t target_vertices = 1'000'000;
 
 enum class Query {
-    near_line,     ///< along the normal, two target edges both ways: what a transfer asks first
-    far_line,      ///< along the normal, 2 % of the diagonal both ways: what it asks where nothing is near
-    closest_point  ///< a single one
+    near_line,     ///< along the normal, two target edges in both directions: the first query of a transfer
+    far_line,      ///< along the normal, 2 % of the diagonal in both directions: the query if nothing is near
+    closest_point  ///< a single closest point
 };
 
 struct QuerySet {

@@ -1,4 +1,4 @@
-// A binary PLY of a million vertices: reading against checking ('mesh info'), and on to a halfedge mesh.
+// Reads a binary PLY of a million vertices: reading compared with checking ('mesh info'), and conversion to a halfedge mesh.
 #include "benchmarks.h"
 #include "ostraka/io/diagnose.h"
 #include "ostraka/io/mesh_file.h"
@@ -47,11 +47,12 @@ void build(benchmark::State& state) {
         mesh = Mesh();
         state.ResumeTiming();
     }
-    // What must pass at least once: points and triangles in; points, halfedges, faces and edges out.
+    // Minimal traffic: reads points and triangles; writes points, halfedges, faces and edges.
     add_rate(state, soup.points.size() * (24 + 28) + soup.triangles.size() * (12 + 3 * 16 + 4));
 }
 
-/// What 'mesh info' does between opening the file and printing. Counters: seconds a part, and reading by checks.
+/// The work of 'mesh info' between opening the file and printing. Counters: seconds per part, and the ratio of reading to
+/// checks.
 void mesh_info(benchmark::State& state, bool intersections) {
     for ([[maybe_unused]] const auto lap : state) {
         const auto start = std::chrono::steady_clock::now();

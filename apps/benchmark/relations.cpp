@@ -7,7 +7,7 @@ namespace ostraka::bench {
 
 namespace {
 
-/// Balls around 200 vertices, of radii that nest and overlap: at most 10 million faces in all of them together.
+/// Balls around 200 vertices, with nested and overlapping radii: at most 10 million faces in total.
 AnnotationSet overlapping_regions(const Mesh& mesh) {
     constexpr int count = 200;
     constexpr std::size_t max_faces = 10'000'000;
@@ -24,7 +24,7 @@ AnnotationSet overlapping_regions(const Mesh& mesh) {
         faces += annotation.faces.size();
         set.annotations.push_back(std::move(annotation));
     }
-    if (faces > max_faces)  // the largest give some up
+    if (faces > max_faces)  // shrink them in proportion
         for (auto& annotation : set.annotations) annotation.faces.resize(annotation.faces.size() * max_faces / faces);
     return set;
 }

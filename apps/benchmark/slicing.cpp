@@ -13,7 +13,7 @@ namespace {
 
 constexpr int planes = 200;
 
-/// A hollow vase, so that walls have a thickness: a synthetic mesh with each triangle cut into sixteen.
+/// A hollow vase, so that walls have a thickness: a synthetic mesh with each triangle subdivided into sixteen.
 const Mesh& vase() {
     static const Mesh made = [] {
         MakeOptions options;

@@ -1,4 +1,4 @@
-// The local/global solver: set-up and iterations over the points of a mesh, and through a cage.
+// The local/global solver: set-up and iterations, over mesh vertices and through a cage.
 #include "benchmarks.h"
 
 #include "ostraka/cage/cage.h"
@@ -28,7 +28,7 @@ Points points_of_mesh(const Mesh& mesh) {
     return points;
 }
 
-/// The `count` points nearest to the one with the greatest x.
+/// The `count` points nearest to the point with the greatest x.
 std::vector<int> patch(const Points& points, std::size_t count) {
     Eigen::Index seed = 0;
     points.row(0).maxCoeff(&seed);
@@ -63,7 +63,7 @@ SolveOptions plain(int count) {
     return options;
 }
 
-/// Resident memory of this process in bytes: now ("VmRSS") or the most since forget_peak() ("VmHWM"); 0 where it cannot be known.
+/// Resident memory of this process in bytes: current ("VmRSS") or peak since forget_peak() ("VmHWM"); 0 if unknown.
 double resident(const std::string& which) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -71,7 +71,7 @@ double resident(const std::string& which) {
     return 0;
 }
 
-/// What is free goes back to the system first, so that growth from here on is seen.
+/// Resets the peak; returns free memory to the system first, so that later growth is visible.
 void forget_peak() {
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs") << 5;
@@ -79,7 +79,7 @@ void forget_peak() {
 
 void report(benchmark::State& state, const SolveSummary& summary) {
     if (!summary.usable) state.SkipWithError("not solved");
-    state.counters["iterations"] = summary.iterations;  // fewer where nothing moves any more, to the bit
+    state.counters["iterations"] = summary.iterations;  // fewer if the result no longer changes, to the bit
     state.counters["factor_MB"] = summary.factor_entries * sizeof(double) / 1e6;
     state.counters["symbolic_s"] = summary.times.symbolic;
     state.counters["factor_s"] = summary.times.factor;
@@ -107,10 +107,10 @@ void laplacian_and_plane(benchmark::State& state, std::size_t vertices) {
     }
     report(state, summary);
     state.counters["constraints_MB"] = (constraints - before) / 1e6;
-    state.counters["peak_MB"] = (peak - before) / 1e6;  // growth, constraints and factor included
+    state.counters["peak_MB"] = (peak - before) / 1e6;  // growth, including constraints and factor
 }
 
-/// Closeness of every vertex to rest and the plane: a diagonal matrix but for rank one.
+/// Closeness of every vertex to its rest position, and the plane: a diagonal matrix plus a matrix of rank one.
 void closeness_and_plane(benchmark::State& state, std::size_t vertices) {
     const Points rest = points_of_mesh(target(vertices));
     SolveSummary summary;
@@ -141,8 +141,8 @@ std::vector<std::vector<int>> flowers_of(const SyntheticMesh& made) {
     return flowers;
 }
 
-/// The stretched teapot whose flowers stay as they were, their centres on one level (the thesis, figure 5.3): iterations until
-/// phi - best has fallen to a thousandth of what it was at the start, and of what it was after the first step.
+/// The stretched teapot with rigid flowers whose centres are on one level (the thesis, figure 5.3): iterations until phi - best
+/// has fallen to a thousandth of its value at the start, and of its value after the first step.
 void same_level(benchmark::State& state, int window) {
     MakeOptions making;
     making.vertices = 20'000;
@@ -195,7 +195,7 @@ void same_level(benchmark::State& state, int window) {
     state.counters["best"] = minimum / start;
 }
 
-/// Smooth weights of a cage: a made-up, well-conditioned stand-in, since the time does not depend on their values.
+/// Smooth, synthetic, well-conditioned cage weights; the time does not depend on their values.
 CageWeights some_weights(const Points& rest, Points& cage) {
     Random random(3);
     const Eigen::Vector3d low = rest.rowwise().minCoeff(), size = rest.rowwise().maxCoeff() - low;
@@ -213,7 +213,7 @@ CageWeights some_weights(const Points& rest, Points& cage) {
 
 enum class Kind { edges, planes, rigid_groups };
 
-/// One iteration through a cage of 200 vertices, half of 100,000 vertices constrained.
+/// One iteration through a cage of 200 vertices, with half of 100,000 vertices constrained.
 void through_cage(benchmark::State& state, Kind kind) {
     const Points rest = points_of_mesh(target(100'000));
     Points cage;
@@ -247,20 +247,20 @@ void through_cage(benchmark::State& state, Kind kind) {
     state.counters["iteration_ms"] = 1e3 * time / count;
     state.counters["iterations"] = count / static_cast<double>(state.iterations());
     state.counters["factor_s"] = first.times.factor;
-    // The rows of M are read once.
+    // The rows of M are read once per iteration.
     state.SetBytesProcessed(static_cast<std::int64_t>(count * static_cast<double>(rows * cage_size * sizeof(double))));
 }
 
-/// An edit as one makes it by hand: a teapot of 60,000 vertices in a cage of 200, its flowers rigid and on one level. All handles
-/// get new targets, 20 iterations follow, and all points of the mesh are moved along. What does not change from one edit to the
-/// next (cage, weights, factorisation) is made before.
+/// An interactive edit: a teapot of 60,000 vertices in a cage of 200, its flowers rigid and on one level. All handles get new
+/// targets, followed by 20 iterations and the update of all mesh vertices. Cage, weights and factorisation do not change
+/// between edits and are computed before.
 void interactive_edit(benchmark::State& state) {
     MakeOptions making;
     making.vertices = 60'000;
     const SyntheticMesh made = make_mesh(synthetic_object("teapot"), making);
     const Mesh cage_mesh = make_cage(made.mesh).cage;
     const Points mesh_points = points_of_mesh(made.mesh), cage = points_of_mesh(cage_mesh);
-    // Rows for the handles themselves below those of the mesh, so that they have targets.
+    // Additional rows for the handles, below those of the mesh, so that the handles have targets.
     const Eigen::Index n = mesh_points.cols(), handles = cage.cols();
     CageWeights weights(n + handles, handles);
     weights.topRows(n) = compute_coordinates("mean-value", cage_mesh, made.mesh).vertex;
@@ -291,7 +291,7 @@ void interactive_edit(benchmark::State& state) {
     for ([[maybe_unused]] const auto lap : state) {
         const auto now = std::chrono::steady_clock::now;
         const auto begin = now();
-        Points edited = cage;  // stretched, and each time a little more
+        Points edited = cage;  // stretched a little more in each lap
         edited.row(2) *= 1.4 + 0.01 * laps;
         solver.set_target(0, edited);
         const auto set = now();
@@ -308,7 +308,7 @@ void interactive_edit(benchmark::State& state) {
         if (!summary.usable) state.SkipWithError("not solved");
     }
     state.counters["iterations"] = done / laps;
-    state.counters["targets_ms"] = 1e3 * targets / laps;  // and their part of the right-hand side
+    state.counters["targets_ms"] = 1e3 * targets / laps;  // including their part of the right-hand side
     state.counters["project_ms"] = 1e3 * times.project / laps;
     state.counters["solve_ms"] = 1e3 * times.solve / laps;
     state.counters["accelerate_ms"] = 1e3 * times.accelerate / laps;

@@ -1,5 +1,5 @@
-// Ten regions from 50,000 vertices to 100,000 ... 27 million: the search tree, the transfer once it stands, and both together,
-// beside CGAL's own tree over the same target.
+// Transfers ten regions from 50,000 vertices to 100,000 ... 27 million: the search tree, the transfer with a given tree, and
+// both, compared with CGAL's own tree over the same target.
 #include "ostraka/transfer/transfer.h"
 
 #include "benchmarks.h"
@@ -14,7 +14,7 @@ namespace ostraka::bench {
 
 namespace {
 
-/// Fastest building of CGAL's tree so far, in seconds, by target vertices.
+/// Fastest construction of CGAL's tree so far, in seconds, by number of target vertices.
 std::map<std::size_t, double> cgal_seconds;
 
 void measure_cgal_tree(std::size_t vertices) {
@@ -23,7 +23,7 @@ void measure_cgal_tree(std::size_t vertices) {
     if (!is_new) known->second = std::min(known->second, seconds);
 }
 
-/// Laps timed one by one, so that freeing what they built is not counted.
+/// Times laps one by one, excluding the time to free their results.
 class LapTimer {
 public:
     LapTimer(benchmark::State& state, std::size_t vertices) : state_(state), vertices_(vertices) {}
@@ -37,7 +37,7 @@ public:
         fastest_ = std::min(fastest_, seconds);
     }
 
-    /// The fastest lap as a share of CGAL's tree, and the time a target vertex.
+    /// Reports the fastest lap relative to CGAL's tree, and the time per target vertex.
     void report() const {
         if (cgal_seconds.count(vertices_) == 0) measure_cgal_tree(vertices_);
         state_.counters["of_cgal_tree"] = fastest_ / cgal_seconds.at(vertices_);
@@ -66,7 +66,7 @@ void build_search(benchmark::State& state, std::size_t vertices) {
     timer.report();
 }
 
-/// Empty if every region arrived; on a target at least as fine as the source, in its place and size as well.
+/// Empty if every region was transferred; on a target at least as fine as the source, its position and size are checked too.
 std::string what_is_wrong(const TransferResult& result, bool overlap) {
     for (const TransferScore& score : result.scores) {
         const std::string region = "region " + std::to_string(score.id);
@@ -123,7 +123,7 @@ void register_transfer_benchmarks() {
         add("transfer/with_overlap", transferring(false, true));
         const std::string both = add("transfer/and_tree_without_overlap", transferring(true, false)),
                           all = add("transfer/and_tree_with_overlap", transferring(true, true));
-        if (vertices < 1'000'000) continue;  // below, the source is most of the work
+        if (vertices < 1'000'000) continue;  // below, the source dominates the work
         set_aim(both, "of_cgal_tree", 1);
         set_aim(all, "of_cgal_tree", 1.3);
     }

@@ -100,7 +100,7 @@ def main():
     make("large.ply", "statuette", n)
     make("middle.ply", "statuette", max(300, n // 10), 2)
     make("small.ply", "statuette", max(300, n // 20), 3)
-    # Others read plain geometry.
+    # The other programs read plain geometry only.
     for name in ("large", "middle", "small"):
         subprocess.run([peers, "convert", "cgal", f"{name}.ply", f"{name}-plain.ply"], check=True, stdout=subprocess.DEVNULL)
     subprocess.run([ostraka, "cage", "make", "small-plain.ply", "cage.ply", "--vertices", "200", "--quiet"], check=True,

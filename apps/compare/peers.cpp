@@ -1,5 +1,5 @@
-// The same work by CGAL's own functions, by OpenMesh and by this library, one task a process: prints what it took and what came
-// out.
+// Performs one task with CGAL's own functions, with OpenMesh or with this library, one task per process, and prints its cost
+// and result.
 //     ostraka_peers TASK PEER ARGUMENTS...
 #include "ostraka/core/mesh.h"
 #include "ostraka/core/parallel.h"
@@ -69,7 +69,7 @@ OpenMeshMesh read_by_openmesh(const std::string& file) {
     return mesh;
 }
 
-/// Reads and writes: "work" is both.
+/// Reads and writes a mesh; "work" covers both.
 void convert_by_cgal(const Words& words) {
     write_by_cgal(words.at(1), read_by_cgal(words.at(0)));
     std::printf("{\"work\": %.4f}\n", lap());
@@ -130,7 +130,7 @@ void told(double read, double build, double work, const std::vector<double>& dis
                 sum / static_cast<double>(distances.size()), most);
 }
 
-/// Nearest places on the first mesh to the vertices of the second: the tree, then the queries.
+/// Closest points on the first mesh to the vertices of the second: builds the tree, then queries it.
 void closest_by_cgal(const Words& words) {
     const Mesh mesh = read_by_cgal(words.at(0)), other = read_by_cgal(words.at(1));
     const double read = lap();
@@ -156,7 +156,7 @@ void closest_by_us(const Words& words) {
     told(read, build, lap(), distances);
 }
 
-/// Farthest any point of the first surface is from the second, within 0.1 % of the diagonal.
+/// One-sided Hausdorff distance from the first surface to the second, within 0.1 % of the diagonal.
 void hausdorff_by_cgal(const Words& words) {
     const Mesh a = read_by_cgal(words.at(0)), b = read_by_cgal(words.at(1));
     const double read = lap(), bound = 0.001 * box_diagonal(a);
@@ -164,7 +164,7 @@ void hausdorff_by_cgal(const Words& words) {
     std::printf("{\"read\": %.4f, \"work\": %.4f, \"maximum\": %.9g}\n", read, lap(), distance);
 }
 
-/// The highest 15 per cent raised by a tenth of the height, the lowest tenth held, the rest as rigid as possible, ten iterations.
+/// ARAP deformation: the highest 15 % are raised by a tenth of the height, the lowest tenth is fixed; ten iterations.
 void raise_by_cgal(const Words& words) {
     Mesh mesh = read_by_cgal(words.at(0));
     const double read = lap();

@@ -1,4 +1,4 @@
-// Boxes in which the fragments of one object lie among strangers, put together: what is placed, what is joined wrongly.
+// Reassembles boxes that mix the fragments of one object with unrelated fragments: placed fragments, wrong joins.
 #include "boxes.h"
 #include "breaks.h"
 #include "experiments.h"
@@ -17,11 +17,11 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// What became of a box, or of several.
+/// Results of one box, or of several.
 struct Outcome {
     std::size_t own = 0, placed = 0, strangers = 0, strangers_joined = 0;
     std::size_t joins = 0, wrong = 0, sure = 0, sure_right = 0, even = 0, even_right = 0, pairs = 0;
-    double degrees = 0, off = 0;  ///< root mean square over the object's fragments that are in its main group; share of diagonal
+    double degrees = 0, off = 0;  ///< root mean square over the object's fragments in its main group; off: share of the diagonal
     Seconds seconds;
 
     Outcome& operator+=(const Outcome& o) {
@@ -32,13 +32,13 @@ struct Outcome {
     }
 };
 
-/// A fragment of the mixture: whether it is of the box's object, and the motion before it was given.
+/// A fragment of the mixture: whether it belongs to the box's object, and the motion applied to it.
 struct Given {
     bool own = false;
     Motion motion;
 };
 
-/// How far a fragment, given after its motion, is from where it belongs: `way` is its deviation in the object's frame.
+/// Deviation of a fragment from its true position: `way` is its motion error in the object's frame.
 std::pair<double, double> deviation(const Mesh& mesh, const Given& given, const Motion& way) {
     return {degrees_of(way), off_of(mesh, given.motion.after(way).after(given.motion.inverse()))};
 }
@@ -47,9 +47,9 @@ Outcome judge(const std::vector<Fragment>& fragments, const std::vector<Given>& 
               const std::string& name, std::ostream& joins) {
     constexpr double near_degrees = 2, near_share = 0.01;
     Outcome outcome;
-    std::vector<Motion> home(given.size());  // from where it belongs in its object into its group's frame
+    std::vector<Motion> home(given.size());  // from the true position in the object to the group's frame
     for (std::size_t k = 0; k < given.size(); ++k) home[k] = result.poses[k].after(given[k].motion);
-    // The frame of that fragment by which most are right.
+    // The reference fragment for which most fragments are correct.
     for (std::size_t r = 0; r < given.size(); ++r) {
         if (!given[r].own || result.group[r] < 0) continue;
         std::size_t right = 0, members = 0;

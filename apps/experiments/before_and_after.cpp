@@ -1,4 +1,4 @@
-// Figures 5.18 and 5.19 of the thesis: what went wrong there, and how it goes now.
+// Figures 5.18 and 5.19 of the thesis: failures shown there, and the results of this library.
 #include "chair.h"
 #include "experiments.h"
 #include "proportion.h"
@@ -76,12 +76,12 @@ std::vector<Problem> hand(const Path& folder, const Path& data, std::uint64_t ve
          }}};
 }
 
-/// Figure 5.18: the axis of a slanting patch of the support's surface is no axis of the support.
+/// Figure 5.18: the axis of a slanted patch of the support's surface is not the axis of the support.
 std::vector<Problem> patch(const Path& folder, const Path& data, std::uint64_t vertices) {
     const auto chair = std::make_shared<Chair>(make_chair(data, vertices));
     const Subject& subject = chair->subject;
     const std::vector<Point> rest = points_of(subject.mesh);
-    // A strip of the segment that winds about the leg's axis by half a turn from its foot to its head.
+    // A strip of the segment that winds half a turn around the leg's axis, from its foot to its head.
     const Vector3d x = chair->direction.unitOrthogonal(), y = chair->direction.cross(x);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Index v : chair->segment) {

@@ -34,7 +34,7 @@ Mesh whole_of(const std::string& source) {
         return make_pot(options);
     }
     if (kind == "plate" || kind == "stone") {
-        // A plate or bar, a block or boulder.
+        // A plate or bar, or a block or boulder.
         Random random(std::stoull(rest), 79);
         MakeOptions options;
         options.vertices = 8000;
@@ -57,7 +57,7 @@ Mesh whole_of(const std::string& source) {
     return read_mesh(source).mesh;
 }
 
-/// Faces of one fragment that face another's surface within `reach`.
+/// Whether each face of a fragment faces another's surface within the distance `reach`.
 std::vector<bool> facing(const Mesh& mesh, const std::vector<const SurfaceSearch*>& others, double reach) {
     std::vector<bool> result(mesh.number_of_faces(), false);
     for (const Face f : mesh.faces()) {
@@ -76,7 +76,7 @@ std::vector<Path> fragment_files(const std::string& folder) {
     std::vector<Path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const std::string ending = entry.path().extension().string(), stem = entry.path().stem().string();
-        // The vessel's folder holds two clouds of other vessels too.
+        // The vessel's folder also holds two point clouds of other vessels.
         if ((ending == ".obj" || ending == ".ply") && stem.rfind("AL_", 0) != 0 && stem.rfind("CC_", 0) != 0)
             files.push_back(entry.path());
     }
@@ -124,11 +124,11 @@ Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetCho
         breaking.seed = seed;
         Random random(seed, 78);
         breaking.roughness = random.uniform(0.008, 0.04);
-        const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // share of the diagonal
+        const double piece = std::sqrt(surface_area(whole) / pieces) / box_diagonal(whole);  // as a share of the diagonal
         breaking.noise = 0.002 * static_cast<double>(seed % 3) * piece;
-        breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // of each side: up to 3 % between two pieces
-        // Mating faces have vertices and edges of their own, and of one box in four scans are simplified; seeds from 300 to 399
-        // leave pieces as they are cut, as simulated breaks are published.
+        breaking.erosion = 0.0075 * static_cast<double>(seed / 3 % 3) * piece;  // on each side: up to 3 % between two pieces
+        // Mating faces have separate vertices and edges, and in one box of four the scans are simplified. With seeds 300 to 399
+        // the pieces stay as cut, like published simulated fractures.
         const bool as_cut = seed / 100 == 3;
         const double own_edge = 0.01 * std::pow(2, random.uniform()) * piece;
         const std::uint64_t few = seed % 4 == 3 && !as_cut ? 500 + random.below(1000) : 0;
@@ -145,7 +145,7 @@ Box read_box(const std::string& source, int pieces, std::uint64_t seed, FacetCho
             Fragment fragment;
             fragment.name = std::to_string(box.fragments.size());
             if (facets == FacetChoice::known) {
-                // Which side a face was of follows from the whole's own outside, where it has one: the hull would; here all is
+                // The original side of a face would require a classification of the whole's outside; here all intact faces are
                 // outer.
                 for (const bool broken : sherd.broken) fragment.facets.push_back(broken ? Facet::fracture : Facet::outer);
                 const Facets found = find_facets(sherd.mesh);

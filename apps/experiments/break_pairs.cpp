@@ -1,4 +1,4 @@
-// Two halves of a bottle, and neighbours among scanned sherds, fitted together by their breaks.
+// Registers two halves of a bottle, and neighbouring scanned sherds, by their fracture surfaces.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"
@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// One point, the mean, for each cell of a grid that begins half a cell below the lowest corner.
+/// Thins points to their mean in each cell of a grid that starts half a cell below the lowest corner.
 std::vector<Point> thinned(const std::vector<Point>& points, double cell) {
     Vector3d low = eigen(points.front());
     for (const Point& p : points) low = low.cwiseMin(eigen(p));
@@ -48,7 +48,7 @@ std::vector<double> distances(const std::vector<Point>& from, const std::vector<
     return result;
 }
 
-/// Root mean square distance from the second cloud, moved, to the first; mean of the two mean distances.
+/// Root mean square distance from the moved second cloud to the first, and the mean of the two mean distances (Chamfer).
 std::pair<double, double> rmse_and_chamfer(const std::vector<Point>& first, const std::vector<Point>& second,
                                            const Motion& pose) {
     std::vector<Point> there;
@@ -60,7 +60,7 @@ std::pair<double, double> rmse_and_chamfer(const std::vector<Point>& first, cons
     return {std::sqrt(square / n), 0.5 * (to / n + from / m)};
 }
 
-/// The second matrix of the best published registration (transf_icp): of the second cloud onto the first.
+/// The second matrix of the best published registration (transf_icp), which maps the second cloud to the first.
 Motion published_pose(const Path& file) {
     const std::string text = read_file(file);
     std::size_t at = text.find("[[");
@@ -136,7 +136,7 @@ void sherds(const BreakExperiment& options, std::ostream& csv) {
     }
     std::cout << "\n| sherds | right pose is first | decided | confidence | degrees | % of the diagonal | s of processor "
                  "|\n|---|---|---|---|---|---|---|\n";
-    // Those that touch, and two that do not.
+    // Pairs in contact, and two that are not.
     const std::vector<std::pair<std::size_t, std::size_t>> pairs{{5, 2}, {3, 4}, {1, 4}, {2, 3}, {1, 2},
                                                                  {4, 5}, {3, 5}, {1, 5}, {2, 4}};
     for (const auto& [i, j] : pairs) {

@@ -1,4 +1,4 @@
-// What experiments on breaks share.
+// Shared by the experiments on fracture surfaces.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -13,15 +13,15 @@ namespace ostraka::experiments {
 
 struct BreakExperiment;
 
-/// Two halves of a bottle, and the neighbours among five sherds.
+/// Registers two halves of a bottle, and neighbouring sherds of five.
 void break_pairs(const BreakExperiment& options);
 
-/// Turned evenly at random, shifted by about `far`.
+/// A uniformly random rotation, and a shift of about `far`.
 Motion random_motion(Random& random, double far);
 double degrees_of(const Motion& motion);
-/// Root mean square way of the vertices.
+/// Root mean square displacement of the vertices.
 double off_of(const Mesh& mesh, const Motion& motion);
-/// The five sherds of the folder `data` with their numbers; none, and a loud word, where they are not there.
+/// The five sherds in the folder `data` with their numbers; if the files are missing, none, with a message.
 std::vector<std::pair<std::string, Mesh>> scanned_sherds(const std::string& data);
 
 }  // namespace ostraka::experiments

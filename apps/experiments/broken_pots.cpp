@@ -1,4 +1,4 @@
-// Synthetic vessels, broken into sherds of known place, on the whole vessel: rotations found again by the breaks.
+// Places the sherds of synthetic vessels on the whole vessel, and recovers their rotations from the fractures.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"
@@ -68,7 +68,7 @@ void broken_pots(const BreakExperiment& options) {
             if (kind.missing) sherds.erase(sherds.begin() + 1);
             const std::size_t belong = sherds.size();
             if (kind.stranger) {
-                // Of a vessel of the same shape, so that the template does not refuse it.
+                // From a vessel of the same shape, so that the template does not reject it.
                 breaking.seed += 1000;
                 std::vector<Sherd> others = shatter(whole, breaking);
                 sherds.push_back(std::move(others[1]));
@@ -84,7 +84,7 @@ void broken_pots(const BreakExperiment& options) {
             }
             for (const Fragment& one : fragments) pointers.push_back(&one);
             const Stopwatch watch;
-            // As in reconstruct, without what follows.
+            // As in reconstruct, without the later stages.
             CommonPlacement placement;
             for (std::size_t k = 0; k < fragments.size(); ++k) {
                 placement.fragments.emplace_back();
@@ -105,7 +105,7 @@ void broken_pots(const BreakExperiment& options) {
             for (std::size_t k = 0; k < fragments.size(); ++k) {
                 if (!placement.fragments[k].problem.empty()) continue;
                 ++placed;
-                // But for the rotation about the axis.
+                // Without the rotation about the axis.
                 const Motion back = placement.fragments[k].pose.after(motions[k]);
                 Motion about_axis;
                 about_axis.rotation = Eigen::AngleAxisd(std::atan2(back.rotation(0, 1) - back.rotation(1, 0),

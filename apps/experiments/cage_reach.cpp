@@ -1,4 +1,4 @@
-// Figures 6.1 and 6.2 of the thesis: edits through cages, and how near a cage comes to what constraints ask for.
+// Figures 6.1 and 6.2 of the thesis: edits through cages, and how well cages can satisfy constraints.
 #include "experiments.h"
 
 #include "coloured_mesh.h"
@@ -19,7 +19,7 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// What a file is called in tables: its name up to the first dot.
+/// Name of a file in tables: up to the first dot.
 std::pair<std::string, std::string> named(const std::string& file) {
     const std::string name = Path(file).filename().string();
     return {name.substr(0, name.find('.')), file};
@@ -39,7 +39,7 @@ struct SpaceVariant {
     std::string space;
     double spread;
 };
-/// A short spread holds a cage where no constraint is.
+/// With a short spread, regions of the cage without constraints stay fixed.
 const std::vector<SpaceVariant> variants{{"by-mesh", "mesh", "mesh", DeformOptions().spread},
                                          {"by-cage", "cage", "cage", DeformOptions().spread},
                                          {"by-held-cage", "cage, spread 0.03", "cage", 0.03}};

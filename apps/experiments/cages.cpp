@@ -1,4 +1,4 @@
-// Cages of many meshes: how many are sound, how fine, how long it takes.
+// Cages of many meshes: how many are valid, their resolution, and the time.
 #include "experiments.h"
 
 #include "ostraka/cage/cage.h"

@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double bend = 45;  ///< mm, how far the supports' heads stand behind the legs' axes
+constexpr double bend = 45;  ///< mm; distance of the supports' heads behind the legs' axes
 constexpr double bend_from = 540, bend_to = 655;
-constexpr double arm_from = -200;   ///< the arms change in front of this x
-constexpr double longer = 0.18;     ///< share by which the arm becomes longer
-constexpr double held = 0.01;       ///< weight of closeness in the thesis's way: it does not tell what holds the rest
+constexpr double arm_from = -200;  ///< the arms change in front of this x
+constexpr double longer = 0.18;    ///< relative elongation of the arm
+constexpr double held = 0.01;  ///< weight of closeness in the thesis's method, which does not state what fixes the other vertices
 constexpr double angle_limit = 10;  ///< degrees (section 5.2.2)
 constexpr double our_weight = 200;
 
@@ -35,7 +35,8 @@ Point bent(const Point& p) {
     return {p.x() - back, p.y(), p.z()};
 }
 
-/// Vertices of the part beside the skeleton from the reference on, as long as its direction is that of the axis (section 5.2.2).
+/// Finds the vertices of the part beside the skeleton from the reference on, as long as its direction is that of the axis
+/// (section 5.2.2).
 void find_segment(Chair& chair) {
     const Mesh& mesh = chair.subject.mesh;
     const Annotation& support = chair.subject.part("left support");
@@ -95,7 +96,7 @@ void stretch_arm(Chair& chair) {
         const double along = from_foot.dot(was.normalized()), share = along / was.norm();
         const Vector3d longer_too = (is.norm() / was.norm() - 1) * along * is.normalized();
         const Vector3d turned = foot + rotation * from_foot + longer_too - p;
-        // At its ends it goes over into what it stands on.
+        // Blends at its ends into the adjacent parts.
         const double at_head = smooth_step(0.85, 1, share), at_foot = smooth_step(0, 0.05, share);
         chair.edited[v] = point_of(p + at_foot * ((1 - at_head) * turned + at_head * moved(rest[v])));
     }
@@ -157,7 +158,7 @@ RelationGraph continuity_graph(const Chair& chair, bool hard, bool shape) {
 DeformOptions continuity_options(const SolveOptions& solve) {
     DeformOptions options;
     options.solve = solve;
-    options.handles = 0.001;  // the edit says where the support is to go, not that it must
+    options.handles = 0.001;  // the edit is a soft target for the support
     return options;
 }
 

@@ -1,4 +1,4 @@
-// Modes of faces and bodies whose correspondence is known, and how well the fit of one to another finds it again.
+// Shape modes of faces and bodies in known correspondence, and how well fits recover the correspondence.
 #include "classes.h"
 #include "report.h"
 
@@ -18,8 +18,8 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// The largest connected part of the faces on vertices below `maximum`: what is not skin is left out. `vertices` are the old
-/// ones.
+/// The largest connected component of the faces on vertices below `maximum`; other parts than skin are dropped. `vertices` are
+/// the original indices.
 SubMesh shell(const Mesh& mesh, std::size_t maximum) {
     std::vector<bool> keep(mesh.number_of_faces());
     for (const Face face : mesh.faces()) {
@@ -50,7 +50,7 @@ AnnotationSet landmarks_on(const std::vector<Index>& vertices) {
     return set;
 }
 
-/// Of a fit whose truth is known: how far each vertex is from its own place, and from the tangent of it.
+/// Reports a fit with known truth: the distance of each vertex from its true position, and from the tangent plane there.
 void report_fit(const std::string& name, const Mesh& from, const AnnotationSet& set, const WholeObject& to, bool guides) {
     const WholeObject bare{to.name, to.mesh, {}};
     const WholeObject& object = guides ? to : bare;
@@ -109,7 +109,8 @@ void class_correspondence(const ClassCorrespondenceOptions& options) {
     const AnnotationSet set = landmarks_on(marks);
     for (WholeObject& face : faces) face.annotations = landmarks_on(marks);
 
-    // Members neutral + sum a_i (identity_i - neutral): the span of the modes is that of the identities, but for turns and sizes.
+    // Members neutral + sum a_i (identity_i - neutral): the span of the modes is that of the identities, up to rotation and
+    // scale.
     std::vector<Landmarks> basis, members;
     const auto points = [](const Mesh& mesh) { return landmarks_of({mesh.points().begin(), mesh.points().end()}); };
     const Landmarks neutral = points(faces[0].mesh);
@@ -129,7 +130,7 @@ void class_correspondence(const ClassCorrespondenceOptions& options) {
         std::cout << format(" %.4f", 100 * modes.variances[k] / modes.total);
     std::cout << "\n\n| identity | share of its field given by the modes |\n|---|--:|\n";
     for (std::size_t i = 0; i < basis.size(); ++i) {
-        // Of the face that has this identity in full, what the first modes leave.
+        // Residual of the first modes for the face with this identity at full strength.
         ShapeModes first = modes;
         const auto count = std::min<std::size_t>(basis.size(), modes.variances.size());
         first.modes = modes.modes.topRows(static_cast<Eigen::Index>(count));
@@ -145,12 +146,12 @@ void class_correspondence(const ClassCorrespondenceOptions& options) {
             report_fit(faces[0].name + ", " + faces[i].name, faces[0].mesh, set, faces[i], guides);
     if (options.body.empty()) return;
 
-    // The skin of the base, moved by targets: "vertex dx dy dz".
+    // The skin of the base, deformed by targets: "vertex dx dy dz".
     const MeshFile base = read_mesh(options.body);
     const SubMesh skin = shell(base.mesh, options.body_vertices);
     std::vector<Index> place(base.mesh.number_of_vertices(), no_index);
     for (std::size_t v = 0; v < skin.vertices.size(); ++v) place[skin.vertices[v]] = static_cast<Index>(v);
-    // Landmarks: vertices spread over the skin, each the farthest from those before.
+    // Landmarks: vertices chosen by farthest-point sampling of the skin.
     std::vector<Index> spread;
     std::vector<double> nearest(skin.mesh.number_of_vertices(), 1e300);
     for (Index next = 0; spread.size() < 40;) {

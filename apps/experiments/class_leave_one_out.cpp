@@ -36,7 +36,7 @@ void print(const Counts& table, const std::vector<std::string>& columns) {
     }
 }
 
-/// An object asked of a class: how unlike it is, infinite where anything else speaks against it.
+/// An object compared with a class: its dissimilarity, infinite if it fails another criterion.
 struct Asked {
     std::string object_class;
     std::size_t object;
@@ -49,7 +49,7 @@ double unlike_where_nothing_else_speaks(const ClassAnswer& answer) {
     return against || !answer.off.empty() || !answer.unlike ? std::numeric_limits<double>::infinity() : *answer.unlike;
 }
 
-/// Accepted strangers against recognised members, as the limit of unlikeness, one for all classes, rises.
+/// Prints the accepted out-of-class objects against the recognised members for an increasing common limit of dissimilarity.
 void print_curve(const std::vector<Asked>& points, const char* title, const std::set<std::string>& only) {
     std::vector<double> own, others;
     std::map<std::size_t, double> nearest;
@@ -124,7 +124,7 @@ void LeaveOneOut::fit(const ClassMembershipOptions& options) {
     std::ofstream csv(Path(options.output) / "quantities.csv");
     csv << "template,object,annotations,kind,id,name,value\n";
     std::vector<double> seconds;
-    constexpr std::size_t most_strangers = 6;  // of each class, where it has more
+    constexpr std::size_t most_strangers = 6;  // max number per class
     for (const auto& [class_name, list] : objects_of_class_)
         for (std::size_t first = 0; first < std::min<std::size_t>(2, list.size()); ++first) {
             if (first > 0 && !objects_[list.front()].asked) break;
@@ -135,7 +135,7 @@ void LeaveOneOut::fit(const ClassMembershipOptions& options) {
             source.mesh = of_vertices(from.member.mesh, options.template_vertices);
             if (!from.labels.empty()) source.parts = parts_on(source.mesh, from.original, from.labels);
             for (std::size_t i = 0; i < objects_.size(); ++i) {
-                // The second one needs strangers for its limits, and a third of them says enough.
+                // The second source needs out-of-class objects only for its limits; a third of them is enough.
                 const bool own = objects_[i].class_name == class_name;
                 if (i == source.object || (first > 0 && !own && i % 3 != 0)) continue;
                 if (!own && !objects_[i].asked && i - objects_of_class_.at(objects_[i].class_name).front() >= most_strangers)
@@ -345,7 +345,7 @@ void LeaveOneOut::ask_made(const std::vector<ClassObject>& made, std::size_t arm
     }
 }
 
-/// Every other class, in the order of their names.
+/// Every second class, sorted by name.
 std::set<std::string> LeaveOneOut::first_half() const {
     std::set<std::string> half;
     bool take = true;

@@ -1,4 +1,4 @@
-// Classes made by rule: forms and figures whose members differ as hand-made things do.
+// Synthetic classes: vessels and figures whose members vary like hand-made objects.
 #include "class_objects.h"
 
 #include "ostraka/geom/eigen.h"
@@ -13,13 +13,13 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// Sides, taper and bend along each object's height drawn anew, each with a deviation of a tenth.
+/// Random side lengths, taper and bend along the height, each with a deviation of 0.1.
 void vary(Mesh& mesh, Random& random) {
     constexpr double deviation = 0.1;
     Eigen::AlignedBox3d box;
     for (const Point& p : mesh.points()) box.extend(eigen(p));
     const Eigen::Vector3d sides{std::exp(random.normal(0, deviation)), std::exp(random.normal(0, deviation)),
-                                std::exp(random.normal(0, deviation))};  // in this order
+                                std::exp(random.normal(0, deviation))};  // evaluated in this order
     const double taper = random.normal(0, deviation), bend_x = random.normal(0, deviation), bend_y = random.normal(0, deviation);
     const double height = box.sizes().z();
     for (const Vertex v : mesh.vertices()) {

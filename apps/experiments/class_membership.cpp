@@ -1,4 +1,4 @@
-// Which class an object of a benchmark belongs to.
+// Classification of the objects of a benchmark.
 #include "class_leave_one_out.h"
 
 #include <filesystem>

@@ -34,7 +34,8 @@ std::vector<std::int32_t> typical_labels(const Path& folder, const Mesh& mesh) {
 
 namespace {
 
-/// A region for each connected part of a label that has half a per cent of the surface; less is not seen on a simplified mesh.
+/// One region per connected component of a label with at least 0.5 % of the surface; smaller ones are lost on a simplified
+/// mesh.
 AnnotationSet parts_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels) {
     constexpr double minimum = 0.005;
     AnnotationSet set;

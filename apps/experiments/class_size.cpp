@@ -1,4 +1,4 @@
-// How many members a class needs: made classes learnt from more and more of them.
+// Number of members a class needs: synthetic classes learnt from increasing numbers.
 #include "class_leave_one_out.h"
 
 #include <filesystem>

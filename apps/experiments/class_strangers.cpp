@@ -9,8 +9,8 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// A closed surface of a grid of `rings` x `sides` points; both ways around it closes (a torus), or only one, and its first and
-/// last ring are points (a ball).
+/// A closed surface from a grid of `rings` x `sides` points: periodic in both directions (a torus), or only around the rings,
+/// whose first and last one are poles (a ball).
 template <class At>
 ClassObject made_of_grid(const char* name, Index rings, Index sides, bool torus, At&& at) {
     TriangleSoup soup;
@@ -45,7 +45,7 @@ ClassObject made_of_grid(const char* name, Index rings, Index sides, bool torus,
     return object;
 }
 
-/// Of a round section about a closed curve, given with its parameter from 0 to 1.
+/// A tube of circular section around a closed curve with parameter from 0 to 1.
 template <class Curve>
 ClassObject tube(const char* name, double radius, Curve&& curve) {
     return made_of_grid(name, 150, 16, true, [&](double u, double v) {
@@ -56,12 +56,12 @@ ClassObject tube(const char* name, double radius, Curve&& curve) {
                 .cross(curve(u).squaredNorm() > 1e-12 && std::abs(along.z()) > 0.99 ? Eigen::Vector3d::UnitX()
                                                                                     : Eigen::Vector3d::UnitZ())
                 .normalized();
-        const double angle = -2 * pi * v;  // faces look outward
+        const double angle = -2 * pi * v;  // outward orientation
         return Eigen::Vector3d(curve(u) + radius * (std::cos(angle) * across + std::sin(angle) * along.cross(across)));
     });
 }
 
-/// A distance from the middle in every direction.
+/// A star-shaped surface: radius as a function of direction.
 template <class Radius>
 ClassObject star_shaped(const char* name, Radius&& radius) {
     return made_of_grid(name, 50, 60, false, [&](double u, double v) {

@@ -7,30 +7,30 @@
 
 namespace ostraka::experiments {
 
-/// Which class an object belongs to: templates fitted to a benchmark's models, each left out of what its class learns.
+/// Classification of a benchmark's models: templates are fitted to them, and each model is left out when its class is learnt.
 struct ClassMembershipOptions {
     std::string models, labels, output = "experiments-output/classes";
-    std::size_t members = 1000;  ///< of each class, at most
+    std::size_t members = 1000;  ///< max number per class
     std::uint64_t template_vertices = 1000, object_vertices = 3000;
     int tries = 1;
     double search_radius = 0.1;
 };
 void class_membership(const ClassMembershipOptions& options);
 
-/// How many members it takes: eight classes made by rule, whose members differ in proportions, taper and bend.
+/// Required number of members: eight synthetic classes whose members differ in proportions, taper and bend.
 struct ClassSizeOptions {
     std::string output = "experiments-output/class-size";
-    std::uint64_t vertices = 4000, seed = 1;  ///< fewer do not hold the handles
+    std::uint64_t vertices = 4000, seed = 1;  ///< min for the handles
 };
 void class_size(const ClassSizeOptions& options);
 
-/// Objects whose correspondence is known: modes learnt from it, and what a fit finds of it.
+/// Objects in known correspondence: shape modes learnt from it, and the accuracy of fits.
 struct ClassCorrespondenceOptions {
     std::vector<std::string> faces;  ///< the neutral one first
-    std::string landmarks;           ///< vertex indices, one a line
+    std::string landmarks;           ///< file of vertex indices, one per line
     std::string body;
-    std::vector<std::string> targets;                          ///< "vertex dx dy dz" a line
-    std::size_t face_vertices = 11248, body_vertices = 13380;  ///< the first ones are skin
+    std::vector<std::string> targets;                          ///< files with lines "vertex dx dy dz"
+    std::size_t face_vertices = 11248, body_vertices = 13380;  ///< number of leading vertices that are skin
     int made = 30;
     std::uint64_t seed = 1;
 };

@@ -1,4 +1,4 @@
-// Figure 3.7 of the thesis: clusters of any form, as DBSCAN finds them.
+// Figure 3.7 of the thesis: clusters of arbitrary form, as found by DBSCAN.
 #include "experiments.h"
 
 #include "ostraka/report/plot.h"

@@ -1,4 +1,4 @@
-// Meshes coloured by numbers, for a look at where things moved.
+// Meshes coloured by values, to visualise displacements.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -10,11 +10,11 @@
 
 namespace ostraka::experiments {
 
-/// Length of each vertex's way from one shape to the other.
+/// Length of each vertex's displacement between two shapes.
 std::vector<double> displacements(const std::vector<Point>& from, const std::vector<Point>& to);
 
-/// Writes a PLY whose vertices are coloured by one number each, which also are the property "quality". Colours go from 0 to
-/// `maximum`, so that several meshes can have one scale; without it, over the numbers there are.
+/// Writes a PLY whose vertices are coloured by one value each, also stored as the property "quality". The colour scale runs
+/// from 0 to `maximum`, so that several meshes can share it; without `maximum`, over the given values.
 void write_coloured(const Path& file, const Mesh& mesh, const std::vector<double>& values, std::optional<double> maximum = {});
 
 }  // namespace ostraka::experiments

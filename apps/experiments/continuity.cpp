@@ -1,4 +1,4 @@
-// Figure 5.7 of the thesis: the arm of a chair becomes longer, and the foot of its support continues the leg.
+// Figure 5.7 of the thesis: the arm of a chair is lengthened, and the foot of its support continues the leg.
 #include "chair.h"
 #include "coloured_mesh.h"
 #include "experiments.h"

@@ -1,4 +1,4 @@
-// Figure 5.11 of the thesis: which vertices of a cage are the control points of which annotation, level by level.
+// Figure 5.11 of the thesis: the cage vertices that are control points of each annotation, by level.
 #include "experiments.h"
 
 #include "report.h"
@@ -26,8 +26,8 @@ struct Rule {
     double threshold;
 };
 
-/// How many annotations of one level each cage vertex is a control point of, and its colour: the annotation's, black for none,
-/// white for several.
+/// For each cage vertex, the number of annotations of one level of which it is a control point, and its colour: that of the
+/// annotation, black for none, white for several.
 struct Owners {
     std::vector<int> count;
     std::vector<Colour> colours;

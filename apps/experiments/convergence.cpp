@@ -9,10 +9,10 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// Below this share of the start, what is left of the objective is rounding.
+/// Below this share of the initial value, the remaining objective is rounding error.
 constexpr double rounding = 1e-12;
 
-/// Where what is left is a share of what it was at `from`, or no more than rounding.
+/// When the remaining objective falls to `share` of its value at iteration `from`, or to rounding error.
 std::optional<IterationReached> reached(const SolveSummary& summary, std::size_t from, double best, double share) {
     const double enough = std::max(share * (summary.objective[from] - best), rounding * (summary.objective.front() - best));
     for (std::size_t i = from; i < summary.objective.size(); ++i)

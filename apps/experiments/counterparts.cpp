@@ -1,5 +1,5 @@
-// Templates fitted to other members of their class whose correspondence is known: how far each rule for the counterparts of
-// vertices leaves them from their true places.
+// Fits templates to other members of their class with known correspondence: errors of the vertices for each rule of finding
+// their counterparts.
 #include "experiments.h"
 
 #include "report.h"
@@ -33,11 +33,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Two members of a class: the template with the true place of each vertex on the other, and a mesh of the other.
+/// Two members of a class: the template with the true position of each vertex on the other, and a mesh of the other.
 struct Members {
     std::string name;
     Mesh shape;
-    std::vector<int> labels;  ///< of its faces
+    std::vector<int> labels;  ///< per face
     std::vector<Point> truth;
     Mesh other;
     std::vector<int> other_labels;
@@ -48,7 +48,7 @@ Mesh moved_by(Mesh mesh, const std::function<Point(const Point&)>& warp) {
     return mesh;
 }
 
-/// Edges whose faces turn by more than 120 degrees.
+/// Number of edges whose faces form an angle of more than 120 degrees.
 std::size_t count_folds(const Mesh& mesh) {
     std::size_t folds = 0;
     for (const Edge e : mesh.edges()) {
@@ -64,7 +64,8 @@ bool sound(const Mesh& mesh, const Mesh& before) {
     return count_folds(mesh) <= count_folds(before) && self_intersections(to_soup(mesh)).pairs.empty();
 }
 
-/// Sides, taper and bend of the whole, and size and place of each part, drawn anew; it fades out around each part.
+/// Random side lengths, taper and bend of the whole, and size and position of each part; each part's change fades out around
+/// it.
 class MemberWarp {
 public:
     MemberWarp(const SyntheticMesh& made, std::size_t parts, double strength, Random& random)
@@ -106,7 +107,7 @@ public:
     }
 
 private:
-    static constexpr double fade = 0.1;  // of the diagonal
+    static constexpr double fade = 0.1;  // as a share of the diagonal
     struct Part {
         Vector3d centre = Vector3d::Zero(), shift;
         PointTree tree;
@@ -146,7 +147,7 @@ Members make_members(const std::string& name, const CounterpartExperiment& optio
     throw Error(ErrorKind::failure, name, "no sound member was drawn", "take a smaller --strength");
 }
 
-/// Regions around places far from each other.
+/// Face labels by the nearest of the given centres.
 std::vector<int> cells(const Mesh& mesh, const std::vector<Point>& centres) {
     const PointTree tree(centres);
     std::vector<int> labels;
@@ -154,7 +155,7 @@ std::vector<int> cells(const Mesh& mesh, const std::vector<Point>& centres) {
     return labels;
 }
 
-/// Vertices far from each other, the first one farthest from the middle.
+/// Farthest-point sampling of vertices, starting with the one farthest from the centre.
 std::vector<Index> spread_out(const Mesh& mesh, const std::vector<Index>& among, std::size_t count) {
     std::vector<double> off(among.size(), std::numeric_limits<double>::infinity());
     Vector3d middle = Vector3d::Zero();
@@ -175,7 +176,7 @@ std::vector<Index> spread_out(const Mesh& mesh, const std::vector<Index>& among,
     return chosen;
 }
 
-/// Of meshes in correspondence: the template is the first, simplified, the other the second.
+/// Reads meshes in correspondence: the template is the first, simplified; the other is the second.
 Members read_members(const std::string& pair, const CounterpartExperiment& options) {
     const auto split = pair.find('=');
     if (split == std::string::npos) fail_usage("'" + pair + "' is no pair of mesh files", "write TEMPLATE=MEMBER");
@@ -212,7 +213,7 @@ struct Case {
     std::string name;
     bool same_mesh = false;
     double share = 1, noise = 0, holes = 0, scale = 1;
-    double annotated = 1;  ///< share of the annotations
+    double annotated = 1;  ///< share of the annotations used
 };
 
 const std::vector<Case>& cases() {
@@ -233,7 +234,7 @@ const std::vector<Case>& cases() {
     return list;
 }
 
-/// Regions by labels and landmarks, of them the first share.
+/// Regions by label and landmarks, with only the first share of them.
 AnnotationSet annotate(const std::vector<int>& labels, const std::vector<Index>& landmarks, double share) {
     AnnotationSet set;
     const int parts = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
@@ -260,7 +261,7 @@ AnnotationSet annotate(const std::vector<int>& labels, const std::vector<Index>&
     return set;
 }
 
-/// Vertices where parts meet.
+/// Vertices between parts.
 std::vector<Index> joints(const Mesh& mesh, const std::vector<int>& labels) {
     std::vector<Index> found;
     for (const Vertex v : mesh.vertices()) {
@@ -279,8 +280,8 @@ std::vector<Index> joints(const Mesh& mesh, const std::vector<int>& labels) {
 struct Scene {
     AnnotationSet set;
     Fragment fragment;
-    Motion to_piece;         ///< from the truth's frame
-    std::vector<bool> seen;  ///< of each template vertex
+    Motion to_piece;         ///< from the frame of the truth
+    std::vector<bool> seen;  ///< per template vertex
 };
 
 Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
@@ -330,7 +331,7 @@ Scene make_scene(const Members& members, const Case& what, std::uint64_t seed) {
 
 struct Result {
     bool placed = false;
-    double all = 0, seen = 0, missing = 0;  ///< mean distance from the true places, share of the diagonal
+    double all = 0, seen = 0, missing = 0;  ///< mean distance from the true positions, share of the diagonal
     double seconds = 0;
     std::size_t folds = 0, crossings = 0;
     double rigid = 0;
@@ -341,7 +342,7 @@ Result run(const Members& members, const Scene& scene, const std::string& way) {
     how.completion.join = false;
     set_option(how.fit, "counterparts", way == "nearest" ? "surface" : way);
     if (way == "nearest") {
-        how.annotations.min_score = 1;  // no annotation agrees so well but a landmark
+        how.annotations.min_score = 1;  // no annotation reaches this score except landmarks
         how.fit.outlines = false;
     }
     const Stopwatch watch;
@@ -377,7 +378,7 @@ Result run(const Members& members, const Scene& scene, const std::string& way) {
     return row;
 }
 
-/// A row of the table, and of the file.
+/// A row of the table and of the file.
 std::string judge(const Members& members, const Case& what, const CounterpartExperiment& options) {
     const Scene scene = make_scene(members, what, options.seed);
     std::cout << "| " << members.name << " | " << what.name << " |";

@@ -23,7 +23,8 @@ struct TableOptions {
 };
 void transfer_table(const TableOptions& options);
 
-/// Free outlines drawn, carried to other resolutions and meshes and back, against the same curves laid there place by place.
+/// Transfers free outlines to other resolutions and meshes and back, and compares them with pointwise projections of the
+/// curves.
 struct FreeOutlineOptions {
     std::vector<std::string> objects{"made:teapot", "made:statuette", "made:hand"};  ///< made:NAME or mesh files
     std::vector<std::size_t> sizes{5000, 50000, 100000, 1000000};                    ///< ascending
@@ -33,19 +34,19 @@ struct FreeOutlineOptions {
 };
 void free_outlines(const FreeOutlineOptions& options);
 
-/// Table 4.1: time and memory of a region made plane, over the mesh and through a cage.
+/// Table 4.1: time and memory of flattening a region, over the mesh and through a cage.
 struct Table41Options {
     std::string made = "teapot", scan, output = "experiments-output/table-4-1";
     std::vector<std::uint64_t> sizes{20000, 50000, 70000, 100000, 150000, 200000, 280000, 500000};
-    std::vector<double> direction{0, -1, 0};  ///< the region is around the vertex that is farthest along it
-    double share = 0.025;                     ///< of the surface
+    std::vector<double> direction{0, -1, 0};  ///< the region surrounds the vertex that is farthest in this direction
+    double share = 0.025;                     ///< area share of the region
     std::uint64_t cage_vertices = 200;
     int iterations = 50;
-    int convergence = 0;  ///< iterations, plain and accelerated, that are compared; 0: none
+    int convergence = 0;  ///< number of iterations for comparing plain and accelerated runs; 0: no comparison
 };
 void table_4_1(const Table41Options& options);
 
-/// Figure 4.6: a region made plane, and what else moves.
+/// Figure 4.6: a region is flattened; displacements of the other vertices.
 struct Figure46Options {
     std::string mesh, annotations, cage, region, output = "experiments-output/figure-4-6";
     std::vector<std::string> kinds{"mean-value"};
@@ -60,17 +61,17 @@ struct ControlPointOptions {
 };
 void control_points(const ControlPointOptions& options);
 
-/// How far each annotation moves from one shape to others.
+/// Displacement of each annotation between shapes.
 struct MovedOptions {
     std::string mesh, annotations, output;
-    std::string fit;       ///< folder of a fit of a fragment of `mesh`, in place of shapes
-    std::string pose;      ///< of 'ostraka mesh break --pose-out', where the fragment is not in the frame of `mesh`
-    std::string fragment;  ///< mesh file of the fragment, for the picture of where it was laid
+    std::string fit;       ///< folder of a fit of a fragment of `mesh`, instead of shapes
+    std::string pose;      ///< from 'ostraka mesh break --pose-out', if the fragment is not in the frame of `mesh`
+    std::string fragment;  ///< mesh file of the fragment, for the picture of its fitted position
     std::vector<std::string> shapes;
 };
 void moved(const MovedOptions& options);
 
-/// Figure 3.7: points of several forms and the clusters that DBSCAN finds among them.
+/// Figure 3.7: point clusters of several forms, and the clusters found by DBSCAN.
 struct ClusterPictureOptions {
     std::string output;  ///< folder
 };
@@ -97,29 +98,29 @@ struct CageTableOptions {
 };
 void cages(const CageTableOptions& options);
 
-/// Combinations of defects made on closed meshes, and how many repair undoes.
+/// Combinations of defects introduced into closed meshes, and the number that repair removes.
 struct RepairExperiment {
     std::vector<std::string> meshes;
-    int combinations = 20;  ///< a mesh
+    int combinations = 20;  ///< per mesh
     std::uint64_t seed = 1;
     std::string csv;
 };
 void repairs(const RepairExperiment& options);
 
-/// Of the experiments on semantic constraints.
+/// Options of the experiments on semantic constraints.
 struct SemanticOptions {
     std::string output;          ///< folder
     std::string data;            ///< folder of the recipes of synthetic objects
-    std::string mesh, recipe;    ///< of the face
+    std::string mesh, recipe;    ///< files of the face
     std::uint64_t vertices = 0;  ///< 0: as in the thesis
-    int convergence = 0;         ///< iterations of the comparison of plain and accelerated ones; 0: none
+    int convergence = 0;         ///< number of iterations for comparing plain and accelerated runs; 0: no comparison
 };
 void same_level(const SemanticOptions& options);
 void structural_continuity(const SemanticOptions& options);
 void face_proportions(const SemanticOptions& options);
 void before_and_after(const SemanticOptions& options);
 
-/// Technique of generated statuettes, by level and by what scanners do.
+/// Classification of the technique of synthetic statuettes, by level and by simulated scanner effects.
 struct TechniqueExperiment {
     std::string output;  ///< folder
     int objects = 100, seeds = 2;
@@ -131,38 +132,37 @@ void technique(const TechniqueExperiment& options);
 /// The faces nearest to a seed vertex (by edge paths), up to a share of the mesh's area.
 std::vector<Index> disc(const Mesh& mesh, Vertex seed, double share);
 
-/// Planted proportions found in many synthetic populations, and false ones.
+/// Planted proportions in many synthetic populations: detections and false detections.
 struct FixedProportionsOptions {
     std::string output = "experiments-output/proportions";
     int seeds = 100;
 };
 void fixed_proportions(const FixedProportionsOptions& options);
 
-/// Fragments of deformed copies of a synthetic template, fitted: pose, observed part, missing part, constraints.
+/// Fits fragments of deformed copies of a synthetic template: errors of pose, observed and missing part, constraints.
 struct FragmentExperiment {
     std::string output = "experiments-output/fragments";
     std::vector<double> shares{0.1, 0.25, 0.5};
     int seeds = 4;
     std::uint64_t vertices = 12000, seed = 1;
     int pairs = 200;
-    std::string space = "mesh";  ///< of the fit: mesh, cage or both
+    std::string space = "mesh";  ///< space of the fit: mesh, cage or both
 };
 void fragments(const FragmentExperiment& options);
-/// Pairs of fragments of one object, of two sizes, of another canon: which are called compatible, and what is said against
-/// others.
+/// Pairs of fragments of one object, of two sizes, or of another canon: verdicts on their compatibility, and the objections.
 void verdicts(const FragmentExperiment& options);
 
-/// Which similarity and epsilon find the moulds of synthetic heads and of mixes of scanned faces.
+/// Compares similarities and choices of epsilon for grouping synthetic heads, and mixes of scanned faces, by mould.
 struct MouldExperimentOptions {
     std::string output = "experiments-output/moulds";
-    std::vector<std::string> parts;  ///< of choices, wear, runs, scans; empty: all
+    std::vector<std::string> parts;  ///< among choices, wear, runs, scans; empty: all
     std::vector<std::string> faces;  ///< meshes of faces in correspondence
     int objects = 40, casts = 43, seeds = 3;
     std::uint64_t vertices = 10000;
 };
 void moulds(const MouldExperimentOptions& options);
 
-/// Templates fitted to other members whose correspondence is known, by each rule for the counterparts of vertices.
+/// Fits templates to other members with known correspondence, with each rule for the counterparts of vertices.
 struct CounterpartExperiment {
     std::string output = "experiments-output/counterparts";
     std::vector<std::string> objects{"statuette", "hand", "teapot", "vase", "chair"};
@@ -174,11 +174,11 @@ struct CounterpartExperiment {
 };
 void counterparts(const CounterpartExperiment& options);
 
-/// Pieces broken off objects, and where a search lays them.
+/// Registers broken pieces to whole objects by pose search.
 struct PoseSearchExperiment {
-    std::vector<std::string> wholes;     ///< mesh files, or made:NAME; pieces of the object itself
-    std::vector<std::string> members;    ///< TEMPLATE=MEMBER: pieces of another member of the class, both in one frame
-    std::vector<std::string> strangers;  ///< TEMPLATE=OTHER: pieces that are of no such object
+    std::vector<std::string> wholes;     ///< mesh files, or made:NAME; pieces of the same object
+    std::vector<std::string> members;    ///< TEMPLATE=MEMBER: pieces of another member of the class, in the same frame
+    std::vector<std::string> strangers;  ///< TEMPLATE=OTHER: pieces of unrelated objects
     std::vector<double> shares{0.1, 0.25, 0.5}, noises{0.001, 0.005};
     double erosion = 0.005;
     int pieces = 10;
@@ -189,60 +189,60 @@ struct PoseSearchExperiment {
 };
 void pose_search(const PoseSearchExperiment& options);
 
-/// Fragments fitted together by their breaks.
+/// Joins fragments by their fracture surfaces.
 struct BreakExperiment {
     std::string output = "experiments-output/breaks";
     std::string data = "../shared/data";  ///< folder with fragments-bottle-pair and fragments-vessel-sherds
-    int motions = 3;                      ///< random ones of all sherds
-    int pots = 4;                         ///< synthetic vessels of each kind
-    int first = 0;                        ///< vessels before the first one
-    bool write = false;                   ///< also the sherds
+    int motions = 3;                      ///< number of random motions of all sherds
+    int pots = 4;                         ///< number of synthetic vessels of each kind
+    int first = 0;                        ///< number of vessels to skip
+    bool write = false;                   ///< whether to write the sherds too
 };
 struct JoinExperiment {
     std::vector<std::string> boxes;  ///< see read_box
     std::string output = "experiments-output/joins";
-    std::vector<std::string> rows;  ///< joins.csv of earlier runs, to learn from too
-    std::string model;              ///< to train and write
-    std::string recipe;             ///< what is written into it on how it was made
+    std::vector<std::string> rows;  ///< joins.csv of earlier runs, as additional training data
+    std::string model;              ///< model file to train and write
+    std::string recipe;             ///< description of the training, stored in the model
     int pieces = 8;
     std::uint64_t seed = 0;
-    std::string facets = "known";  ///< or "found" by the library; "both": of each second box
+    std::string facets = "known";  ///< or "found" by the library; "both": found in every second box
     bool adjacent_only = false;    ///< only pairs that touch
 };
-/// Pairs of fragments of broken objects: right poses and calibration.
+/// Registers pairs of fragments of broken objects: accuracy of poses and calibration of the confidence.
 void joins(const JoinExperiment& options);
 
-/// Boxes in which the fragments of one object lie among strangers, one of each other box, put together.
+/// Reassembles boxes that contain the fragments of one object and unrelated fragments, one from each other box.
 struct AssemblyExperiment {
     std::vector<std::string> boxes;  ///< see read_box
     std::string output = "experiments-output/assemblies";
     int pieces = 10;
-    int strangers = 10;  ///< in each box, at most as many as there are other boxes
+    int strangers = 10;  ///< number of unrelated fragments per box, at most the number of other boxes
     std::uint64_t seed = 0;
-    bool found = false;  ///< facets as found instead of as known
+    bool found = false;  ///< found facets instead of known ones
     ReassemblyOptions reassembly;
 };
 void assemblies(const AssemblyExperiment& options);
 
 struct FacetExperiment {
-    int objects = 20;                  ///< of each kind that the model is made from
-    std::uint64_t seed = 1;            ///< of objects and breaks
+    int objects = 20;                  ///< number of training objects of each kind
+    std::uint64_t seed = 1;            ///< for objects and fractures
     BoostOptions boosting;             ///< see stats/boosted_trees.h
-    std::string model;                 ///< to make and write
-    std::vector<std::string> meshes;   ///< folders of mesh files of whole objects that the model is made from, too
-    std::vector<std::string> scanned;  ///< folders of broken objects that the model is made from, too
-    std::vector<std::string> judged;   ///< see facet_cases
-    std::string pictures;              ///< folder for coloured meshes of what is judged
-    bool each = false;                 ///< a row a fragment
+    std::string model;                 ///< model file to train and write
+    std::vector<std::string> meshes;   ///< folders of mesh files of whole objects for training
+    std::vector<std::string> scanned;  ///< folders of broken objects for training
+    std::vector<std::string> judged;   ///< sources for evaluation, see facet_cases
+    std::string pictures;              ///< folder for coloured meshes of the evaluated fragments
+    bool each = false;                 ///< one row per fragment
 };
-/// Breaks told from intact surface, on objects left out and on others.
+/// Classifies fracture and intact surface, evaluated on held-out objects and on others.
 void facets(const FacetExperiment& options);
 
-/// The sherds on the template made of them as a surface of revolution: axes, heights and rotations.
+/// Places sherds on the surface of revolution made of them: errors of axes, heights and rotations.
 void sherd_rotations(const BreakExperiment& options);
-/// Synthetic vessels, broken: rotations by breaks with wear, noise, a piece that is missing, one of another vessel.
+/// Synthetic vessels, broken: rotations from fractures with wear, noise, a missing piece, a piece of another vessel.
 void broken_pots(const BreakExperiment& options);
-/// Synthetic vessels, broken: templates turned from sherds that lie well, badly, or do not belong.
+/// Synthetic vessels, broken: surfaces of revolution from sherds that are well placed, badly placed, or unrelated.
 void turned_sherds(const BreakExperiment& options);
 
 }  // namespace ostraka::experiments

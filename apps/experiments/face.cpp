@@ -19,8 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A head where no scanned one is given, in mm, x forwards and z upwards: the mean of the synthetic heads' proportions
-/// (head_archetype draws others), with a longer nose and narrower eyes, so that the nose is 3 to 4 times as long as an eye is
+/// A synthetic head, in mm, x forwards and z upwards, used if no scan is given: mean proportions of the synthetic heads (others
+/// are drawn by head_archetype), with a longer nose and narrower eyes, so that the nose is 3 to 4 times as long as an eye is
 /// high.
 SyntheticMesh made_head(std::uint64_t vertices) {
     HeadShape shape;
@@ -38,7 +38,7 @@ double falloff(double distance, double near, double far) {
     return t * t * (3 - 2 * t);
 }
 
-/// The eye lower by a factor, about the middle of its measure; what is around it goes over smoothly.
+/// Reduces the height of the eye by a factor about the centre of its measure, with a smooth transition around it.
 void lower_eye(const Annotation& eye, double factor, std::vector<Point>& points) {
     const Measure& measure = measure_of(eye);
     const Vector3d bottom = eigen(points[measure.points[0]]), top = eigen(points[measure.points[1]]);
@@ -50,7 +50,7 @@ void lower_eye(const Annotation& eye, double factor, std::vector<Point>& points)
     }
 }
 
-/// The nose longer by a factor, from its root on.
+/// Lengthens the nose by a factor, starting from its root.
 void lengthen_nose(const Annotation& nose, double factor, std::vector<Point>& points) {
     const Measure& measure = measure_of(nose);
     const Vector3d root = eigen(points[measure.points[0]]), tip = eigen(points[measure.points[1]]),
@@ -63,7 +63,7 @@ void lengthen_nose(const Annotation& nose, double factor, std::vector<Point>& po
     }
 }
 
-/// The vertices outside of some parts.
+/// The vertices outside the given parts.
 std::vector<Index> outside(const Subject& subject, const std::vector<Ratio>& ratios) {
     std::vector<bool> rest(subject.mesh.number_of_vertices(), true);
     for (const Ratio& ratio : ratios)
@@ -71,7 +71,7 @@ std::vector<Index> outside(const Subject& subject, const std::vector<Ratio>& rat
     return flagged(rest);
 }
 
-/// Faces with a corner where one of the parts joins the rest.
+/// Faces with a corner on the border between one of the parts and the rest.
 std::vector<Index> faces_at(const Subject& subject, const std::vector<Ratio>& ratios) {
     std::set<Index> list;
     for (const Ratio& ratio : ratios)

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// What a scanner's cloud of it gives: a surface through points of about even spacing, a little off.
+/// Replaces the mesh by a reconstruction from a simulated scan: points of about even spacing with small errors.
 void as_cloud(FacetCase& sherd, Random& random) {
     PointCloud cloud;
     const double wanted = std::round(300 * std::pow(23, random.uniform()));
@@ -30,7 +30,7 @@ void as_cloud(FacetCase& sherd, Random& random) {
     std::vector<double> areas;
     double sum = 0;
     for (const Face f : sherd.mesh.faces()) areas.push_back(sum += face_area(sherd.mesh, f));
-    // One point a cell, as where scans are thinned.
+    // One point per cell, as in thinned scans.
     std::vector<std::array<long, 3>> cells;
     std::vector<std::pair<std::array<long, 3>, std::size_t>> order;
     std::vector<Point> points;
@@ -61,7 +61,7 @@ void as_cloud(FacetCase& sherd, Random& random) {
     sherd.broken = std::move(broken);
 }
 
-/// What is left of a scan where its archive wants it small.
+/// Simplifies the scan, like small scans in archives.
 void as_simplified(FacetCase& sherd, Random& random) {
     const auto vertices = static_cast<std::uint64_t>(std::lround(400 * std::pow(10, random.uniform())));
     Sherd small = simplified({std::move(sherd.mesh), std::move(sherd.broken)}, vertices);
@@ -69,10 +69,10 @@ void as_simplified(FacetCase& sherd, Random& random) {
     sherd.broken = std::move(small.broken);
 }
 
-/// Rough all over, grainy, smooth and arched as of flint or glass, or facetted as simulated on coarse cells.
+/// Chooses the kind of fracture: rough, grainy, smooth and curved like flint or glass, or faceted like coarse simulations.
 void choose_break(ShatterOptions& breaking, bool shell, Random& random) {
     const double kind = random.uniform();
-    // Shells show their breaks by the wall, solids by roughness only.
+    // Shells show fractures by the wall, solids only by roughness.
     breaking.roughness = shell ? 0.04 * std::pow(0.025, random.uniform()) : random.uniform(0.006, 0.04);
     breaking.hurst = random.uniform(0.3, 1);
     breaking.finest = random.uniform(0.02, 0.08);
@@ -125,7 +125,7 @@ std::vector<FacetCase> made_cases(const std::string& source) {
     ShatterOptions breaking;
     breaking.pieces = 2 + static_cast<int>(random.below(11));
     breaking.seed = seed;
-    // Shares of a piece's extent and of the diagonal.
+    // As shares of a piece's extent and of the diagonal.
     const double piece = std::sqrt(surface_area(object) / breaking.pieces) / box_diagonal(object);
     choose_break(breaking, kind == "pot" || kind == "thin", random);
     const bool worn = random.uniform() < 0.5, noisy = random.uniform() < 0.5, anew = random.uniform() < 0.5;
@@ -148,7 +148,7 @@ std::vector<FacetCase> made_cases(const std::string& source) {
             try {
                 as_cloud(one, random);
             } catch (const Error&) {
-                // Points too far apart for the piece: it stays the mesh that it was.
+                // The points are too sparse for the piece: keep its mesh.
             }
         }
     }
@@ -163,7 +163,7 @@ std::string object_of_source(const std::string& source) {
     if (std::filesystem::is_directory(source)) return name.rfind("tuw_", 0) == 0 ? name.substr(4) : name;
     const Source what = read_source(source);
     if (what.kind == "made") return what.name;
-    // Vessels of one seed have one profile. Files that are numbered are variants of what their folder names.
+    // Vessels of one seed have one profile. Numbered files are variants of the object named by their folder.
     if (what.kind != "mesh") return (what.kind == "stone" ? "stone " : "vessel ") + std::to_string(what.seed);
     const Path file(what.name);
     name = file.stem().string();

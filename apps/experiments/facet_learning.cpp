@@ -12,7 +12,7 @@ namespace {
 
 using Tables = std::vector<FeatureTable>;
 
-/// Trees from those rows of the sampled patches whose fragment is `used`.
+/// Trees trained on the sampled patches of fragments for which `used` is true.
 BoostedTrees learnt(const std::vector<SeenFragment>& all, const Tables& tables, const std::function<bool(std::size_t)>& used,
                     const BoostOptions& options) {
     FeatureTable rows;
@@ -20,7 +20,7 @@ BoostedTrees learnt(const std::vector<SeenFragment>& all, const Tables& tables, 
     std::vector<double> weights;
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (!used(k)) continue;
-        // Scanned objects are few, but they are what is asked about; of a vessel's sherd little is fracture.
+        // Scanned objects are few but most relevant, and vessel sherds contain little fracture.
         const std::string& object = all[k].given.object;
         const double weight = all[k].given.scanned ? 3 : object.starts_with("pot") || object.starts_with("thin") ? 2 : 1;
         for (std::size_t i = 0; i < all[k].sampled.size(); ++i) {
@@ -38,7 +38,7 @@ FeatureTable sampled_rows(const SeenFragment& one, const FeatureTable& features)
     return rows;
 }
 
-/// Log odds shift + slope x that fit the truth best (Platt 1999).
+/// Parameters of the log odds shift + slope x that fit the truth best (Platt 1999).
 std::pair<double, double> calibrated(const std::vector<double>& odds, const std::vector<bool>& truth) {
     double shift = 0, slope = 1;
     for (int step = 0; step < 50; ++step) {
@@ -78,8 +78,7 @@ SeenFragment seen_fragment(FacetCase given) {
     for (std::size_t p = 0; p < graph.count(); ++p)
         for (sum += graph.areas[p]; (static_cast<double>(k) + 0.5) * graph.area < samples * sum && k < samples; ++k)
             if (known[p] > 0.5 * graph.areas[p]) result.sampled.push_back(p);
-    for (const std::size_t scale : {0, 2})
-        result.evidence.around[scale] = {};  // context does not ask for them, and they are large
+    for (const std::size_t scale : {0, 2}) result.evidence.around[scale] = {};  // not needed for context, and large
     result.given = std::move(given);
     return result;
 }
@@ -92,13 +91,13 @@ LearntFacets learn_facets(const std::vector<SeenFragment>& all, std::size_t fold
     const auto told = [&](std::size_t k, const BoostedTrees& alone) {
         return with_context(all[k].evidence, log_odds_of(alone, all[k].evidence.features));
     };
-    // alone[i][j]: trees that have seen neither fold; alone[i][i]: all but the one.
+    // alone[i][j]: trees trained without folds i and j; alone[i][i]: trees trained without fold i.
     std::vector<std::vector<BoostedTrees>> alone(folds, std::vector<BoostedTrees>(folds));
     for (std::size_t i = 0; i < folds; ++i)
         for (std::size_t j = 0; j <= i; ++j)
             alone[i][j] = alone[j][i] = learnt(
                 all, own, [&](std::size_t k) { return all[k].fold != i && all[k].fold != j; }, options);
-    // Context of the sampled patches, where the fragment's fold and `left_out` are not seen.
+    // Context of the sampled patches, from trees trained without the fragment's fold and `left_out`.
     const auto tables = [&](std::size_t left_out) {
         Tables rows(n);
         for (std::size_t k = 0; k < n; ++k)

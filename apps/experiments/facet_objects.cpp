@@ -1,4 +1,4 @@
-// Whole objects to be broken, with many kinds of skin.
+// Whole objects to break, with many kinds of surfaces.
 #include "facet_cases.h"
 #include "ostraka/core/error.h"
 #include "ostraka/geom/eigen.h"
@@ -45,7 +45,7 @@ Mesh stretched(const Mesh& mesh, const Vector3d& factors) {
     return result;
 }
 
-/// A skin that is not smooth: carved or worn in the large, grainy in the small, or left as it is.
+/// Varies the surface: carved or worn at large scale, grainy at small scale, or unchanged.
 Mesh skinned(const Mesh& mesh, Random& random, double most) {
     Mesh result = mesh;
     const double coarse = random.uniform(0.1, 1) * most, fine = 0.15 * random.uniform(0.1, 1) * most;
@@ -55,7 +55,7 @@ Mesh skinned(const Mesh& mesh, Random& random, double most) {
     return result;
 }
 
-/// With a flat end, as of what was made to stand; meshed anew, since the end comes in few faces.
+/// Adds a flat base, as on standing objects; remeshed, since the base has few faces.
 Mesh based(const Mesh& mesh, Random& random) {
     namespace PMP = CGAL::Polygon_mesh_processing;
     const Vector3d up = Vector3d(random.normal(), random.normal(), random.normal()).normalized();

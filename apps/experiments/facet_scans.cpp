@@ -1,4 +1,4 @@
-// Scanned fragments in assembled layout: what lies close to another one and faces it is broken.
+// Scanned fragments in assembled layout: fracture is what lies close to and faces another fragment.
 #include "boxes.h"
 #include "facet_cases.h"
 #include "ostraka/geom/surface_search.h"
@@ -14,7 +14,7 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// What lies close to another fragment, faces it and has it in front, or a little behind where scans overlap.
+/// Whether each face is close to another fragment, faces it, and lies in front of it or slightly behind where scans overlap.
 std::vector<bool> facing(const Mesh& mesh, const std::vector<const SurfaceSearch*>& others, double gap, double overlap) {
     std::vector<bool> result(mesh.number_of_faces(), false);
     for (const Face f : mesh.faces()) {
@@ -52,7 +52,7 @@ std::vector<FacetCase> scanned_cases(const std::string& folder) {
     }
     const double diagonal = std::sqrt(std::pow(bounds.xmax() - bounds.xmin(), 2) + std::pow(bounds.ymax() - bounds.ymin(), 2) +
                                       std::pow(bounds.zmax() - bounds.zmin(), 2));
-    // Simulated pieces coincide, scanned ones lie apart, and the scanned vessel's far apart.
+    // Simulated pieces coincide, scanned ones have gaps, and those of the scanned vessel large ones.
     const bool copied = name.rfind("bb_", 0) == 0, vessel = name.find("vessel") != std::string::npos;
     const double gap = copied   ? 1e-4 * diagonal
                        : vessel ? 0.05 * diagonal
@@ -68,12 +68,12 @@ std::vector<FacetCase> scanned_cases(const std::string& folder) {
             if (q != k) others.push_back(&searches[q]);
         cases[k].broken = facing(cases[k].mesh, others, gap, overlap);
         if (copied || vessel) continue;
-        // Layouts of scans are about right: what is near another fragment, but not as near as breaks are, may be of one.
+        // Layouts of scans are approximate: a face near another fragment, but not within the gap, may still be fracture.
         const std::vector<bool> perhaps = facing(cases[k].mesh, others, 3 * gap, 3 * overlap);
         for (std::size_t f = 0; f < perhaps.size(); ++f) cases[k].known.push_back(cases[k].broken[f] || !perhaps[f]);
     }
     if (!copied) return cases;
-    // Coinciding vertices give nothing away here, but edges that are too sharp would.
+    // Coinciding vertices do not matter here, but unrealistically sharp edges do.
     for (std::size_t k = 0; k < cases.size(); ++k) {
         Random random(k, 179);
         const double noise = 0.03 * mean_edge_length(cases[k].mesh);

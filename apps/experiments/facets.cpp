@@ -1,4 +1,4 @@
-// Breaks told from intact surface: the model is made and judged on objects left out, and on scanned fragments.
+// Classification of fracture and intact surface: trains the model, and evaluates it on held-out objects and scanned fragments.
 #include "coloured_mesh.h"
 #include "experiments.h"
 #include "facet_cases.h"
@@ -21,11 +21,11 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// Areas by what they are and what they are called, and how probabilities fare.
+/// Areas by true and predicted class, and the calibration of probabilities.
 struct Score {
     std::array<std::array<double, 2>, 2> area{};  ///< [truth][called]
     std::array<std::array<double, 3>, 10> bins{};
-    double seconds = 0, faces = 0, alike = 0;  ///< alike: area that agrees by its own probability alone
+    double seconds = 0, faces = 0, alike = 0;  ///< alike: area classified correctly by its own probability alone
     std::size_t fragments = 0, unclear = 0, whole = 0, passed = 0;
 
     void add(const Score& other) {
@@ -54,7 +54,7 @@ struct Score {
     }
 };
 
-/// Of one fragment.
+/// Score of one fragment.
 Score score(const SeenFragment& one, const std::vector<double>& log_odds) {
     Score result;
     const std::clock_t begin = std::clock();
@@ -102,7 +102,7 @@ void write_model(const Path& file, const FacetModel& model, const std::string& r
     write_file(file, to_compact_text(document) + "\n");
 }
 
-/// As it is known, as it is likely, as it is found.
+/// Writes pictures of the true classes, the probabilities and the predicted classes.
 void pictures(const SeenFragment& one, const std::vector<double>& log_odds, const Path& folder) {
     const Mesh& mesh = one.given.mesh;
     const Facets found = find_facets(mesh, one.evidence, log_odds);
@@ -148,17 +148,17 @@ std::vector<std::string> own_sources(const FacetExperiment& options) {
     return sources;
 }
 
-/// Less is a chip that shows nothing of its object.
+/// Smaller fragments carry too little information.
 constexpr std::size_t least_faces = 100;
 
-/// How many fragments of a made object the model learns from: many objects tell more than many fragments of one, but a vessel
-/// shows little fracture on each.
+/// Max number of training fragments per synthetic object: variety of objects matters more than many fragments of one, but each
+/// vessel sherd shows little fracture.
 std::size_t most_learnt(const std::string& source) { return source.starts_with("pot:") || source.starts_with("thin:") ? 10 : 2; }
 
-/// `few`: no more of made objects than is learnt from.
+/// `few`: limits synthetic objects to the number of training fragments.
 std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std::size_t folds, bool few) {
     std::vector<SeenFragment> all;
-    std::map<std::string, std::size_t> fold_of;  // all of one object are left out together
+    std::map<std::string, std::size_t> fold_of;  // all fragments of one object are in one fold
     for (const std::string& source : sources) {
         try {
             const std::size_t fold = fold_of.emplace(object_of_source(source), fold_of.size() % folds).first->second;
@@ -170,7 +170,7 @@ std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std:
                 all.back().fold = fold;
             }
         } catch (const std::exception& error) {
-            // Also where the cut itself cannot be computed.
+            // includes failures of the cut itself
             std::cerr << source << " is left out: " << error.what() << '\n';
         }
     }
@@ -179,7 +179,7 @@ std::vector<SeenFragment> all_seen(const std::vector<std::string>& sources, std:
 
 void by_object(const std::vector<SeenFragment>& all, const std::vector<Score>& scores, bool grouped) {
     print_head();
-    std::map<std::string, double> known;  // objects of a group count alike, whatever their size and unit
+    std::map<std::string, double> known;  // objects of a group have equal weight, whatever their size and unit
     for (std::size_t k = 0; k < all.size(); ++k) known[all[k].given.object] += scores[k].all();
     std::map<std::string, Score> groups;
     Score total;
@@ -216,7 +216,7 @@ void facets(const FacetExperiment& options) {
         sources.insert(sources.end(), options.scanned.begin(), options.scanned.end());
         const std::vector<SeenFragment> all = all_seen(sources, folds, true);
         std::cout << format("%zu fragments in %.0f s\n", all.size(), watch.seconds().wall) << std::flush;
-        // Calibrated and judged by trees that have not seen the object.
+        // Calibrated and evaluated by trees trained without the object.
         const LearntFacets learnt = learn_facets(all, folds, options.boosting);
         model = learnt.model;
         std::vector<Score> scores;

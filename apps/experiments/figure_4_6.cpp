@@ -1,4 +1,4 @@
-// Figure 4.6 of the thesis: a region made plane over the points of the mesh and through a cage, and what else moves.
+// Figure 4.6 of the thesis: a region is flattened over the vertices of the mesh and through a cage; displacements elsewhere.
 #include "experiments.h"
 
 #include "coloured_mesh.h"
@@ -24,7 +24,7 @@ struct Case {
     std::string name, about;
     PlaneProblem problem;
     bool cage;
-    int iterations;  ///< 0: until nothing moves
+    int iterations;  ///< 0: until convergence
     std::string kind = "mean-value";
 };
 
@@ -40,7 +40,7 @@ const std::vector<Case> all_cases{
     {"mesh-alone-2", "plane alone, mesh, 2 iterations", {"nothing"}, false, 2},
     {"cage-alone-2", "plane alone, cage, 2 iterations", {"nothing"}, true, 2}};
 
-/// Through the cage by each kind of coordinates.
+/// Cases through the cage, one per kind of coordinates.
 std::vector<Case> cases_of(const std::vector<std::string>& kinds) {
     std::vector<Case> cases;
     for (const Case& one : all_cases) {
@@ -56,7 +56,7 @@ std::vector<Case> cases_of(const std::vector<std::string>& kinds) {
 }
 
 struct Solved {
-    std::vector<double> moved;  ///< each vertex's way
+    std::vector<double> moved;  ///< displacement of each vertex
     Points points;
     SolveSummary summary;
 };
@@ -77,7 +77,7 @@ std::pair<double, double> mean_and_most(const std::vector<double>& moved, const 
     return {sum / static_cast<double>(vertices.size()), maximum};
 }
 
-/// The part itself, all others, and the one of them that moves most in the mean; ways as shares of the diagonal.
+/// The part itself, all others, and the one with the greatest mean displacement; displacements as shares of the diagonal.
 std::string summary_row(const std::string& name, const Solved& one, double flatness, double diagonal,
                         const std::vector<Index>& region, const OtherParts& others) {
     const auto [mean, most] = mean_and_most(one.moved, region);
@@ -117,7 +117,7 @@ void figure_4_6(const Figure46Options& options) {
     std::map<std::string, CageWeights> weights_of;
     for (const std::string& kind : options.kinds) weights_of[kind] = compute_coordinates(kind, cage, mesh, computing).vertex;
     const double diagonal = box_diagonal(mesh), flat = flatness(rest, region);
-    // Of cages within a cage those that do not hold the region stand.
+    // In nested cages, the levels that do not influence the region stay fixed.
     const std::vector<CageLevel> levels = cage_levels(cage);
     const auto through_its_own = [&](std::vector<std::unique_ptr<Constraint>> list, const CageWeights& weights, Points& x,
                                      const SolveOptions& how) {
@@ -149,7 +149,7 @@ void figure_4_6(const Figure46Options& options) {
         if (one.cage) write_mesh(folder / (one.name + "-cage.ply"), with_points(cage, mesh_points(x)));
         solved.push_back(std::move(result));
     }
-    // One scale for all pictures.
+    // One colour scale for all pictures.
     double farthest = 0;
     for (std::size_t i = 0; i < cases.size(); ++i)
         if (cases[i].problem.rest_kind != "nothing")

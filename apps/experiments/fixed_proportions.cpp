@@ -1,4 +1,4 @@
-// How surely planted proportions are found, and how seldom others: many synthetic populations.
+// Detection rate of planted proportions, and false detections, in many synthetic populations.
 #include "ostraka/collection/proportions.h"
 #include "ostraka/core/parallel.h"
 #include "ostraka/report/plot.h"
@@ -20,7 +20,7 @@ struct Scenario {
     SyntheticMeasuresOptions made;
 };
 
-/// What one population gave.
+/// Result of one population.
 struct Found {
     std::size_t planted = 0, hit = 0, wrong = 0;
 };
@@ -54,8 +54,8 @@ std::vector<Found> over_seeds(const SyntheticMeasuresOptions& made, int seeds) {
     return list;
 }
 
-/// Share of intervals that hold the true value, with the planted deviation of the logarithm as truth of the coefficient of
-/// variation.
+/// Share of intervals that contain the true coefficient of variation, which follows from the planted deviation of the
+/// logarithm.
 double coverage(int seeds, double deviation) {
     const double truth = std::sqrt(std::expm1(deviation * deviation));
     std::vector<int> inside(static_cast<std::size_t>(seeds));
@@ -138,7 +138,7 @@ void fixed_proportions(const FixedProportionsOptions& options) {
                    s < with ? fixed(hit / planted, 3) : "-", percent(share / n), fixed(wrong / n, 2), percent(any / n, 0)});
     }
 
-    // How small a variation must be to be found, for three numbers of objects.
+    // The variation that can be detected, for three numbers of objects.
     Plot power{"Planted ratios found among ratios of 15 %",
                {"variation of the planted ratios, %"},
                {"share found", false, 0.0, 1.0},

@@ -1,4 +1,4 @@
-// Fragments broken off deformed copies of a template, fitted: what is found again of pose, of the observed part and of the rest.
+// Fits fragments broken off deformed copies of a template: errors of pose, observed part and missing part.
 #include "ostraka/synthetic/fragments.h"
 #include "ostraka/collection/statuette_annotations.h"
 #include "ostraka/geom/eigen.h"
@@ -26,7 +26,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A statuette with landmarks all over, and the canon that heights of parts keep their ratios.
+/// A statuette with landmarks all over, and the canon: constant ratios of the heights of parts.
 struct Canon {
     Statuette statuette;
     AnnotationSet set;
@@ -94,14 +94,14 @@ struct Case {
 
 struct Row {
     bool placed = false;
-    double angle = 0, shift = 0;                  ///< of the pose, degrees and share of the diagonal
-    double observed = 0, missing = 0, rigid = 0;  ///< root mean square, share of the diagonal
-    double before = 0, after = 0;                 ///< worst constraint, per cent out of range
+    double angle = 0, shift = 0;                  ///< error of the pose, in degrees and as a share of the diagonal
+    double observed = 0, missing = 0, rigid = 0;  ///< root mean square errors, as shares of the diagonal
+    double before = 0, after = 0;                 ///< largest constraint violation, in per cent
     std::size_t crossings = 0;
     double seconds = 0;
 };
 
-/// The class as twenty members show it: taller and shorter ones, wider and narrower, leaning forward or back.
+/// Learns the class from twenty members: taller and shorter, wider and narrower, leaning forward or back.
 ShapePrior learn_canon(const Canon& canon) {
     Random random(7);
     std::vector<Landmarks> members;
@@ -122,7 +122,7 @@ ShapePrior learn_canon(const Canon& canon) {
     return prior_of(learn_modes(members, members.front()));
 }
 
-/// A piece of `whole` around a part, with the landmarks that it has.
+/// A piece of `whole` around a part, with its landmarks.
 struct Broken {
     BrokenPiece piece;
     Fragment fragment;
@@ -180,14 +180,14 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
     row.placed = result.placement.any();
     if (!row.placed) return row;
     row.crossings = result.crossings;
-    // The truth where the fragment was laid.
+    // The truth in the frame of the placed fragment.
     const Motion frame = result.placement.fragments[0].pose.after(piece.pose.inverse());
     std::vector<Vector3d> truth, aligned;
     for (const Vertex v : mesh.vertices()) {
         truth.push_back(frame(eigen(whole.point(v))));
         aligned.push_back(result.placement.scale * eigen(mesh.point(v)));
     }
-    // Where it would lie best as a whole.
+    // Best rigid fit of the whole.
     const Motion best = fit_motion(truth, aligned);
     row.angle = Eigen::AngleAxisd(best.rotation).angle() * 180 / std::numbers::pi;
     Vector3d mean = Vector3d::Zero();
@@ -216,11 +216,11 @@ Row run(const Canon& canon, const ShapePrior* prior, const TemplateCage* cage, c
     return row;
 }
 
-/// What was planted in a pair of fragments.
+/// The difference planted in a pair of fragments.
 enum class Planted { nothing, size, proportion };
 
-/// A member of the canon: sizes differ, so do shapes within what the canon allows; with another canon its head is half as tall
-/// again.
+/// A member of the canon with random size and shape within the canon; with another canon its head is one and a half times as
+/// tall.
 Mesh make_member(const Canon& canon, Random& random, double size, bool other_canon) {
     const Mesh& mesh = canon.statuette.mesh;
     double brim = 0;
@@ -245,14 +245,14 @@ void verdicts(const FragmentExperiment& options) {
     const Canon canon = make_canon(options.vertices);
     const int head_canon = canon.graph.relationships[1].id;  // hat against head
     Random random(options.seed);
-    std::vector<bool> truth;       // of one object
-    std::vector<double> evidence;  // less strain
+    std::vector<bool> truth;       // whether both are of one object
+    std::vector<double> evidence;  // negative strain
     int right = 0, rejected = 0, called = 0, hit = 0, planted_named = 0, correctly_rejected = 0;
     TextTable table({"pair", "planted", "verdict", "strain", "named first"});
     for (int pair = 0; pair < options.pairs; ++pair) {
         const Planted planted = pair % 2 == 0 ? Planted::nothing : pair % 4 == 1 ? Planted::size : Planted::proportion;
         const double size = std::exp(0.15 * random.normal());
-        // Sizes that cannot belong together differ by 15 per cent at least.
+        // Incompatible sizes differ by at least 15 per cent.
         const double factor = std::exp((random.uniform() < 0.5 ? -1 : 1) * (0.14 + 0.2 * random.uniform()));
         const Mesh first = make_member(canon, random, size, planted == Planted::proportion);
         Mesh second = planted == Planted::size ? make_member(canon, random, size * factor, false) : first;
@@ -270,7 +270,7 @@ void verdicts(const FragmentExperiment& options) {
         const bool compatible = result.verdict == Compatibility::compatible;
         truth.push_back(planted == Planted::nothing);
         evidence.push_back(-result.strain);
-        // Causes come before what follows from them: sizes before constraints, of these the one that is off farthest.
+        // Causes precede consequences: sizes before constraints, and of these the one with the largest violation.
         const Objection* worst = nullptr;
         for (const Objection& one : result.objections)
             if (worst == nullptr || one.kind < worst->kind || (one.kind == worst->kind && one.strain > worst->strain))

@@ -29,7 +29,7 @@ namespace {
 
 double distance(const Point& a, const Point& b) { return std::sqrt(CGAL::squared_distance(a, b)); }
 
-/// Others end at the border of an open mesh, which is not laid.
+/// Other curves end at the border of an open mesh and are not projected.
 bool is_closed(const SurfaceCurve& curve) { return curve.nodes.front().point == curve.nodes.back().point; }
 
 double length_of_curves(const Mesh& mesh, const Annotation& annotation) {
@@ -39,7 +39,7 @@ double length_of_curves(const Mesh& mesh, const Annotation& annotation) {
     return sum;
 }
 
-/// A region asked about places of its own mesh.
+/// A region with queries at positions on its mesh.
 struct Known {
     Known(const Mesh& mesh, const Annotation& annotation)
         : filling(filling_of(mesh, annotation)), cut(mesh, curves_on(mesh, annotation), filling) {}
@@ -50,10 +50,11 @@ struct Known {
     CutFaces cut;
 };
 
-/// The curve of the source laid on the target place by place, and what it encloses there, found without the transfer.
+/// The source's curve projected pointwise onto the target, and the area it encloses there, computed independently of the
+/// transfer.
 struct Laid {
     double perimeter = 0, area = 0;
-    double overlap = 0;  ///< with the region that was transferred
+    double overlap = 0;  ///< with the transferred region
 };
 
 Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSearch& to, const Annotation& moved) {
@@ -82,7 +83,7 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
         const auto hit = from.closest_compatible(place, to.normal(face), 0, reach);
         return hit && before.holds(hit->face, hit->point);
     };
-    // Faces at the outline and two rings around them in detail, others by their middle.
+    // Faces within two rings of the outline are subdivided, others are tested by their centroid.
     std::vector<bool> near(mesh.number_of_faces(), false);
     for (const auto& [face, share] : after.filling.cut) near[face] = true;
     for (int ring = 0; ring < 2; ++ring) {
@@ -93,7 +94,7 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
                     for (const Face g : mesh.faces_around_target(mesh.halfedge(v)))
                         if (g != Mesh::null_face()) near[g] = true;
     }
-    std::vector<std::array<double, 3>> sums(mesh.number_of_faces());  // area inside, of both, of either
+    std::vector<std::array<double, 3>> sums(mesh.number_of_faces());  // area inside, intersection, union
     parallel_for(
         mesh.number_of_faces(),
         [&](std::size_t f) {
@@ -122,11 +123,11 @@ Laid laid(const SurfaceSearch& from, const Annotation& source, const SurfaceSear
     return result;
 }
 
-/// The same by rays, place by place: along the interpolated normals of the coarser of the two meshes, from it to the other. The
-/// curve laid is the source's where that is the coarser, else the one that was written, which then has to come back.
+/// Pointwise projection along rays: along the interpolated normals of the coarser mesh to the other one. The projected curve is
+/// the source's if its mesh is the coarser one, otherwise the transferred one, which must return to the source.
 struct LaidByRays {
-    double perimeter = 0, of_written = 0;  ///< of the curve laid, and of the one that it should be
-    double mean = 0, most = 0;             ///< distance of the laid places from that, in edges of the target
+    double perimeter = 0, of_written = 0;  ///< of the projected curve, and of the curve it should equal
+    double mean = 0, most = 0;             ///< distance of the projected points from that curve, in target edge lengths
     std::size_t places = 0, without_ray = 0;
 };
 
@@ -195,7 +196,7 @@ std::string name_of(std::size_t n) {
                             : std::to_string(n);
 }
 
-/// A region around a place, cut by a sphere: of this share of the surface.
+/// A spherical region around a point with the given share of the surface.
 std::optional<Annotation> ball(const Mesh& mesh, const Point& centre, double share, int id) {
     double low = 0, high = box_diagonal(mesh);
     std::optional<Annotation> best;
@@ -316,7 +317,7 @@ void free_outlines(const FreeOutlineOptions& options) {
                                            {"independent", &independent}}) {
             std::map<std::size_t, SurfaceSearch> searches;
             for (const auto& [size, mesh] : *meshes) searches.emplace(size, mesh);
-            // Drawn at the coarsest, there and back over all; and drawn at the finest, likewise.
+            // Chains from the coarsest mesh to the finest and back, and from the finest to the coarsest and back.
             for (const bool from_fine : {false, true}) {
                 std::vector<std::size_t> order = options.sizes;
                 if (from_fine) std::reverse(order.begin(), order.end());
@@ -340,12 +341,12 @@ void free_outlines(const FreeOutlineOptions& options) {
                 for (std::size_t i = 0; i + 1 < way.size(); ++i)
                     now = measure(name, kind, name_of(way[i]), searches.at(way[i]), name_of(way[i + 1]), searches.at(way[i + 1]),
                                   now);
-                // Straight from the first to the last, and back.
+                // Directly from the first to the last, and back.
                 AnnotationSet far = measure(name, kind, name_of(order.front()), searches.at(order.front()), name_of(order.back()),
                                             searches.at(order.back()), set);
                 measure(name, kind, name_of(order.back()), searches.at(order.back()), name_of(order.front()),
                         searches.at(order.front()), far);
-                // What came back against what was drawn.
+                // Compares the returned annotations with the original ones.
                 for (const Annotation& one : set.annotations)
                     for (const auto& [what, back] : {std::pair<std::string, const AnnotationSet*>{"whole chain and back", &now}})
                         if (const Annotation* there = back->find(one.id)) {

@@ -1,4 +1,4 @@
-// Pairs of fragments of broken objects: how often the pose found is right, and whether the confidence says so.
+// Pairs of fragments of broken objects: accuracy of the pose found, and calibration of its confidence.
 #include "boxes.h"
 #include "breaks.h"
 #include "experiments.h"
@@ -22,13 +22,13 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// A pair as it was found.
+/// Result of a pair.
 struct Row {
-    std::string box, other;  ///< of the first and of the second fragment
+    std::string box, other;  ///< boxes of the first and of the second fragment
     std::size_t first = 0, second = 0;
-    double contact = 0;  ///< truth: share of the smaller break; 0 for strangers
+    double contact = 0;  ///< truth: share of the smaller fracture surface; 0 for unrelated fragments
     bool stranger = false;
-    std::vector<bool> right;  ///< of each candidate
+    std::vector<bool> right;  ///< per candidate
     std::vector<std::array<double, JoinEvidence::count>> features;
     std::vector<double> log_odds;
     double confidence = 0;
@@ -57,10 +57,10 @@ Row try_pair(const Box& of, std::size_t i, const Box& with, std::size_t j, const
     return row;
 }
 
-/// Scanned and published objects are few, but they are what is asked about.
+/// Scanned and published objects are few but most relevant.
 double weight_of(const Row& row) { return row.box.find(':') == std::string::npos ? 2 : 1; }
 
-/// Weights of a logistic regression, held to 0 by `ridge` (iteratively reweighted least squares). Each row begins with a 1.
+/// Logistic regression weights with ridge penalty (iteratively reweighted least squares). Each row begins with a 1.
 Eigen::Vector3d logistic(const std::vector<Eigen::Vector3d>& rows, const std::vector<bool>& truth,
                          const std::vector<double>& counted, double ridge) {
     Eigen::Vector3d weights = Eigen::Vector3d::Zero();
@@ -86,8 +86,8 @@ using Features = std::array<double, JoinEvidence::count>;
 struct Trained {
     BoostedTrees trees;
     Eigen::Vector3d pair;
-    Features usual{}, spread{};  ///< of each feature over true joins: mean, standard deviation
-    double joined = 0;           ///< share of the pairs whose first candidate is right
+    Features usual{}, spread{};  ///< per feature over true joins: mean, standard deviation
+    double joined = 0;           ///< share of the pairs whose first candidate is correct
 };
 
 std::vector<float> row_of(const Features& features) { return {features.begin(), features.end()}; }
@@ -112,7 +112,7 @@ BoostedTrees learnt_from(const std::vector<Row>& rows, auto&& chosen) {
     return boost(table, truth, weights, how);
 }
 
-/// Trees are learnt from all rows; what a pair's log odds mean, by trees that have not seen its object (five folds).
+/// Trees are trained on all rows; calibration uses trees trained without a pair's object (five folds).
 Trained train(const std::vector<Row>& rows) {
     Trained model;
     std::map<std::string, std::size_t> fold;
@@ -156,7 +156,7 @@ Trained train(const std::vector<Row>& rows) {
     return model;
 }
 
-/// As a model says that has not seen its object.
+/// Evaluates a row by a model trained without its object.
 Row judged(Row row, const Trained& model) {
     std::vector<std::pair<double, bool>> scored;
     for (std::size_t c = 0; c < row.features.size(); ++c)
@@ -179,13 +179,13 @@ void write_model(const Path& file, const Trained& model, const std::string& reci
     write_json(file, document);
 }
 
-/// The rows that an earlier run wrote. Throws Error (input) for what is no such table.
+/// Reads the rows written by an earlier run. Throws Error (input) if the file is not such a table.
 std::vector<Row> read_rows(const std::string& file) {
     std::ifstream in(file);
     std::string line;
     std::vector<Row> rows;
     if (!std::getline(in, line)) fail_input(file, "cannot be read", "write it by 'ostraka_experiments joins'");
-    constexpr std::size_t before = 10;  // columns
+    constexpr std::size_t before = 10;  // number of leading columns
     while (std::getline(in, line)) {
         std::vector<std::string> words;
         std::istringstream text(line);
@@ -245,7 +245,8 @@ void report(const std::vector<Row>& rows, const std::string& what, std::ostream&
         << std::flush;
 }
 
-/// Each scanned or published object judged by a model learnt without it, made ones by models without a fifth of them.
+/// Evaluates each scanned or published object by a model trained without it, and synthetic objects by five-fold
+/// cross-validation.
 void report_left_out(const std::vector<Row>& rows) {
     std::map<std::string, std::size_t> fold;
     std::size_t made = 0, folds = 5;
@@ -322,7 +323,7 @@ void joins(const JoinExperiment& options) {
                 if (options.adjacent_only && !(box.contact[index[i]][index[j]] > 0.1)) continue;
                 rows.push_back(try_pair(box, index[i], box, index[j], prepared[i], moved_ones[j], motions[j]));
             }
-        // Against the box before: strangers.
+        // Pairs with fragments of the previous box, which are unrelated.
         constexpr std::size_t met = 5;
         for (std::size_t i = 0; i < std::min(met, prepared_before.size()); ++i)
             for (std::size_t j = 0; j < std::min(met, index.size()); ++j)

@@ -1,4 +1,4 @@
-// Human part labels (Princeton segmentation benchmark layout) carried to a remeshed version and back.
+// Transfers human part labels (layout of the Princeton segmentation benchmark) to a remeshed version and back.
 #include "experiments.h"
 
 #include "ostraka/core/error.h"
@@ -41,10 +41,10 @@ AnnotationSet regions_of(const std::vector<int>& labels) {
 
 struct Painted {
     std::vector<int> labels;
-    double bare = 0, twice = 0;  ///< shares of the area claimed by no region and by several
+    double bare = 0, twice = 0;  ///< area shares covered by no region and by several regions
 };
 
-/// One label per face; faces that no region claims take that of a neighbour, those that several claim the first one's.
+/// One label per face; uncovered faces get the label of a neighbour, faces in several regions the first one's.
 Painted paint(const Mesh& mesh, const AnnotationSet& set) {
     Painted painted;
     constexpr int none = std::numeric_limits<int>::min();

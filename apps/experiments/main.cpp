@@ -1,5 +1,5 @@
-// Experiments: how faithful transfer is, how sound cages are, what semantic constraints keep. Each prints Markdown tables and
-// writes the raw rows as CSV.
+// Experiments: accuracy of annotation transfer, validity of cages, effect of semantic constraints. Each prints Markdown tables
+// and writes the raw rows as CSV.
 #include "breaks.h"
 #include "classes.h"
 #include "experiments.h"
@@ -291,7 +291,7 @@ void declare_technique(CLI::App& command, TechniqueExperiment& options) {
 
 using Run = std::function<void()>;
 
-/// Declares the options of a command, and gives what then runs with them.
+/// Declares the options of a command, and returns the function that runs it.
 template <auto declare, auto run>
 Run declared(CLI::App& command) {
     return [&]<class Options>(void (*)(const Options&)) {

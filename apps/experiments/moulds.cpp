@@ -1,4 +1,4 @@
-// The mould study over synthetic heads and over mixes of scanned faces: which similarity and epsilon find the moulds.
+// The mould study on synthetic heads and on mixes of scanned faces: which similarity and epsilon recover the moulds.
 #include "experiments.h"
 #include "report.h"
 
@@ -35,8 +35,8 @@ struct Heads {
     std::vector<bool> beard, long_hair, hand_made;
 };
 
-/// A planned head as it comes to us. One whose features touch, so that its surface has a handle, is drawn again: of a mould
-/// another cast, of those formed by hand another head with such a hat.
+/// Generates a planned head. If its features touch, so that the surface has a handle, it is drawn again: another cast of its
+/// mould or, for hand-formed heads, another head with such a hat.
 HeadCast cast_planned(PlannedHead& head, const MouldPopulationOptions& population) {
     constexpr int attempts = 10;
     const HeadShape::Hat hat = head.shape.hat;
@@ -77,7 +77,7 @@ Heads synthetic_heads(const MouldPopulationOptions& population, const CastOption
     return heads;
 }
 
-/// Some of the heads without some of their parts, compared.
+/// Comparison of a selection of heads without some of their parts.
 struct Compared {
     MouldMatrices matrices;
     std::vector<int> truth;
@@ -156,7 +156,7 @@ MouldGroups grouped(const Compared& compared, const Choice& choice, int expected
     return group_heads(mould_distances(compared.matrices, choice.similarity), options);
 }
 constexpr Choice by_default{"combined", "linkage", "nested"};
-/// The thesis's: MeshSIFT's count, DBSCAN in the embedding with the mean distance of nearest neighbours.
+/// The thesis's choice: MeshSIFT's count, DBSCAN in the embedding with the mean distance of nearest neighbours.
 constexpr Choice thesis{"matches", "embedding", "knn"};
 
 CastOptions cast_of(const MouldExperimentOptions& options, double wear) {
@@ -168,7 +168,7 @@ CastOptions cast_of(const MouldExperimentOptions& options, double wear) {
     return cast;
 }
 
-/// Every similarity and epsilon, without wear and with moderate wear.
+/// All similarities and choices of epsilon, without wear and with moderate wear.
 void choice_experiment(const MouldExperimentOptions& options) {
     TextTable table({"similarity", "method", "epsilon", "no wear", "wear 0.01", "wear 0.02"});
     std::vector<std::vector<double>> scores(3, std::vector<double>(choices().size(), 0));
@@ -198,7 +198,7 @@ void choice_experiment(const MouldExperimentOptions& options) {
     table.write(options.output, "choices");
 }
 
-/// What happens as wear grows.
+/// Results for increasing wear.
 void wear_experiment(const MouldExperimentOptions& options) {
     const std::vector<double> levels{0, 0.005, 0.01, 0.02, 0.03, 0.04, 0.06};
     struct Curve {
@@ -262,8 +262,8 @@ void wear_experiment(const MouldExperimentOptions& options) {
     write_plot(Path(options.output) / "wear.svg", plot);
 }
 
-/// Figure 3.8: heads in the first two directions of the embedding, a series for each group that the thesis's choice finds,
-/// labelled with what they come from.
+/// Figure 3.8: heads in the first two dimensions of the embedding, one series per group found by the thesis's choice, labelled
+/// by origin.
 void draw_groups(const Path& file, const std::string& title, const MouldGroups& groups, const std::vector<std::string>& kinds) {
     Plot plot;
     plot.title = title;
@@ -285,7 +285,7 @@ void draw_groups(const Path& file, const std::string& title, const MouldGroups& 
     write_plot(file, plot);
 }
 
-/// The thesis's runs: moulded heads, some bearded, and heads formed by hand.
+/// The thesis's runs: moulded heads, some of them bearded, and hand-formed heads.
 void run_experiment(const MouldExperimentOptions& options) {
     MouldPopulationOptions population;
     population.objects = options.casts;
@@ -301,7 +301,7 @@ void run_experiment(const MouldExperimentOptions& options) {
         const char* name;
         std::function<bool(std::size_t)> chosen;
         std::vector<HeadPart> without;
-        const char* drawn = nullptr;  ///< the plot's file
+        const char* drawn = nullptr;  ///< file of the plot
     };
     const std::vector<StudyVariant> runs{
         {"moulded, faces only", moulded, {HeadPart::back}, "moulded.svg"},
@@ -316,7 +316,7 @@ void run_experiment(const MouldExperimentOptions& options) {
     for (const StudyVariant& run : runs) {
         const Compared compared = compare(heads, run.chosen, [&](std::size_t) { return run.without; });
         const MouldGroups groups = grouped(compared, by_default, 0), theirs = grouped(compared, thesis, 0);
-        // In how many groups both kinds meet.
+        // Number of groups that contain both kinds.
         std::map<int, std::set<bool>> kinds;
         for (std::size_t i = 0; i < groups.labels.size(); ++i)
             kinds[groups.labels[i]].insert(compared.moulds[i].starts_with("hand"));
@@ -348,7 +348,7 @@ Heads scanned_heads(const MouldExperimentOptions& options, double difference, do
         if (places.back().rows() != places.front().rows() || faces.size() < 2)
             fail_usage("the faces are not in correspondence", "give two or more with the same vertices");
     }
-    // The largest piece is the shell of the face; eyes and teeth are pieces of their own.
+    // The largest component is the shell of the face; eyes and teeth are separate components.
     const SubMesh shell = keep_faces(faces.front().mesh, std::vector<bool>(faces.front().mesh.number_of_faces(), true), true);
     Heads heads;
     Random random(11);
@@ -372,7 +372,7 @@ Heads scanned_heads(const MouldExperimentOptions& options, double difference, do
     parallel_for(
         heads.meshes.size(),
         [&](std::size_t i) {
-            // Each cast has a number of vertices of its own, so that no two meshes agree.
+            // A different number of vertices for each cast, so that no two meshes coincide.
             Random own(23, i);
             RemeshOptions remeshing;
             remeshing.vertices = static_cast<std::uint64_t>(options.vertices / 2 * own.uniform(0.9, 1.1));

@@ -1,4 +1,4 @@
-// How far each annotation moves from one shape of a mesh to others.
+// Displacement of each annotation between one shape of a mesh and others.
 #include "experiments.h"
 
 #include "coloured_mesh.h"
@@ -28,7 +28,7 @@ Motion motion_of(const JsonValue& matrix) {
     return motion;
 }
 
-/// Where a fit laid its one fragment, from the fragment's frame.
+/// Pose of the single fragment of a fit, from the fragment's frame.
 Motion laid(const std::string& file) {
     const Json assembly = read_json(file);
     const auto fragments = list_in(assembly, "fragments");
@@ -37,7 +37,7 @@ Motion laid(const std::string& file) {
     return motion_of(*pose);
 }
 
-/// The fitted shape with the fragment where it was laid, one coloured mesh.
+/// Writes the fitted shape and the placed fragment as one coloured mesh.
 void write_laid(const Path& file, const Mesh& shape, Mesh fragment, const Motion& motion) {
     for (const Vertex v : fragment.vertices()) fragment.point(v) = point_of(motion(eigen(fragment.point(v))));
     Mesh both = shape;

@@ -1,4 +1,4 @@
-// The optimisation problem of figure 4.6 and Table 4.1 of the thesis: a region is to become plane, the rest is to stay.
+// The optimisation problem of figure 4.6 and Table 4.1 of the thesis: a region is flattened, the rest keeps its shape.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -10,7 +10,7 @@
 
 namespace ostraka::experiments {
 
-/// What else there is besides the plane: "nothing", "closeness" of every vertex or "laplacian" displacement of every vertex.
+/// Constraints in addition to the plane: "nothing", "closeness" of every vertex or "laplacian" displacement of every vertex.
 struct PlaneProblem {
     std::string rest_kind = "closeness";
     double rest_weight = 1, plane_weight = 1;
@@ -23,7 +23,7 @@ std::vector<Point> mesh_points(const Points& points);
 std::vector<std::unique_ptr<Constraint>> plane_constraints(const Mesh& mesh, const Points& rest, const std::vector<Index>& region,
                                                            const PlaneProblem& problem);
 
-/// Root mean square distance of some points from the plane that is nearest to them.
+/// Root mean square distance of the region's points from their best-fitting plane.
 double flatness(const Points& points, const std::vector<Index>& region);
 
 }  // namespace ostraka::experiments

@@ -1,4 +1,4 @@
-// How often a search finds the place of a broken piece, and how often it says so rightly.
+// How often pose search finds the position of a broken piece, and how often its verdict is correct.
 #include "experiments.h"
 #include "report.h"
 
@@ -36,7 +36,7 @@ Mesh read_or_make(const std::string& name, std::uint64_t vertices, std::uint64_t
 }
 
 struct Case {
-    std::string name, whole, from;  ///< the whole, and what the piece is broken from
+    std::string name, whole, from;  ///< the whole, and the object from which the piece is broken
     enum class Kind { same, member, stranger } kind = Kind::same;
 };
 constexpr const char* kind_words[]{"same", "member", "stranger"};
@@ -50,14 +50,14 @@ void add_pairs(std::vector<Case>& cases, const std::vector<std::string>& pairs, 
     }
 }
 
-/// How far a pose is from the truth: degrees, and the way of the piece's middle as per cent of the diagonal.
+/// Error of a pose: rotation in degrees, and displacement of the piece's centre in per cent of the diagonal.
 struct PoseError {
     double degrees = 180, percent = 100;
 };
 
 PoseError error_of(const Motion& found, const Motion& truth, const Vector3d& middle, double diagonal,
                    const SlippableMotions& slippable) {
-    // What the shape leaves open does not count: the turn about a line, where there is one.
+    // Slippable motions of the shape do not count: the rotation about an axis, if there is one.
     const Motion between = found.after(truth.inverse());
     const Vector3d there = truth(middle);
     PoseError error{Eigen::AngleAxisd(between.rotation).angle() * 180 / std::numbers::pi,
@@ -83,7 +83,7 @@ struct Count {
     double seconds = 0;
 };
 
-/// The pieces of one case, registered to its whole.
+/// Registers the pieces of one case to its whole.
 class CaseTrial {
 public:
     CaseTrial(const Case& one, const PoseSearchExperiment& options, std::ostream& csv)
@@ -94,7 +94,7 @@ public:
           other_(read_or_make(one.from, options.vertices, 2)),
           surface_(whole_) {
         if (one.kind == Case::Kind::stranger) {
-            // As large as the whole, so that its size does not give it away.
+            // Scaled to the size of the whole, so that size does not reveal it.
             const double ratio = std::sqrt(surface_area(whole_) / surface_area(other_));
             for (const Vertex v : other_.vertices()) other_.point(v) = point_of(ratio * eigen(other_.point(v)));
         }
@@ -103,7 +103,7 @@ public:
         std::cerr << one.name << ": prepared in " << building.seconds().processor << " s\n";
     }
 
-    /// Nothing is counted where no such piece can be broken off.
+    /// Counts nothing if no such piece can be broken off.
     void lay(double share, double noise, std::uint64_t seed, std::map<std::string, Count>& table) const {
         const std::string row = case_.name + " | " + format("%g", 100 * share) + " | " + format("%g", 100 * noise);
         if (const auto piece = broken(share, noise, seed)) judge(*piece, share, noise, seed, table[row]);
@@ -126,7 +126,7 @@ private:
         }
     }
 
-    /// Where a piece belongs on the whole.
+    /// True position of a piece on the whole.
     [[nodiscard]] Motion truth_of(const BrokenPiece& piece) const {
         if (case_.kind != Case::Kind::member) return piece.pose;
         if (whole_.number_of_vertices() == other_.number_of_vertices() && options_.corresponding) {

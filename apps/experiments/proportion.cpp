@@ -10,7 +10,7 @@ namespace ostraka::experiments {
 
 namespace {
 using Eigen::Vector3d;
-constexpr double held = 0.01;  ///< weight of closeness in the thesis's way: it does not tell what holds the rest
+constexpr double held = 0.01;  ///< weight of closeness in the thesis's method, which does not state what fixes the other vertices
 }  // namespace
 
 const Measure& measure_of(const Annotation& part) {

@@ -1,4 +1,4 @@
-// Combinations of defects made on closed meshes, and how many repair undoes.
+// Combinations of defects introduced into closed meshes, and the number that repair removes.
 #include "experiments.h"
 #include "report.h"
 
@@ -16,11 +16,11 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// The defects that are combined; a set of them is a number of bits.
+/// The defects; combinations are bit masks.
 constexpr const char* defect_names[]{"equal duplicates", "opposite duplicates", "flips", "cuts", "T-junctions", "jitter"};
 constexpr int equal = 1, opposite = 2, flips = 4, cuts = 8, junctions = 16, jitter = 32, all_defects = 63;
 
-/// A few of a hundred triangles.
+/// A random number of triangles, at most about 2 %.
 std::size_t some(const TriangleSoup& soup, Random& random) {
     return 1 + random.below(std::max<std::size_t>(1, soup.triangles.size() / 50));
 }
@@ -34,7 +34,7 @@ void duplicate(TriangleSoup& soup, Random& random, bool turned) {
     }
 }
 
-/// Patches grown from seeds over shared vertices get vertices of their own.
+/// Detaches random patches: their border vertices are duplicated.
 void cut(TriangleSoup& soup, Random& random) {
     const std::size_t patches = 1 + random.below(4);
     for (std::size_t patch = 0; patch < patches; ++patch) {
@@ -60,7 +60,7 @@ void cut(TriangleSoup& soup, Random& random) {
     }
 }
 
-/// Sides of triangles get a vertex that the triangles beyond do not have.
+/// Splits sides of triangles with a vertex that the neighbouring triangles lack.
 void split_sides(TriangleSoup& soup, Random& random) {
     const std::size_t count = soup.triangles.size();
     for (std::size_t left = some(soup, random); left > 0; --left) {
@@ -77,7 +77,7 @@ void split_sides(TriangleSoup& soup, Random& random) {
     }
 }
 
-/// Triangles with vertices of their own, moved a little.
+/// Triangles with separate vertices, slightly displaced.
 TriangleSoup jittered(const TriangleSoup& soup, double distance, Random& random) {
     TriangleSoup loose;
     for (const auto& t : soup.triangles) {

@@ -11,7 +11,7 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// A line of the process's status, in kilobytes (Linux).
+/// A value from the process's status, in kilobytes (Linux).
 std::optional<double> status(const std::string& name) {
     std::ifstream file("/proc/self/status");
     for (std::string word; file >> word;) {
@@ -36,7 +36,7 @@ std::string format(const char* pattern, ...) {
 
 PeakMemory::PeakMemory() {
     malloc_trim(0);
-    std::ofstream reset("/proc/self/clear_refs");  // 5: the peak starts anew
+    std::ofstream reset("/proc/self/clear_refs");  // 5: resets the peak
     reset << "5" << std::flush;
     if (reset) before_ = status("VmRSS:");
 }

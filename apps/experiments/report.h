@@ -1,4 +1,4 @@
-// What the experiments measure with, and how they write numbers down.
+// Measurement and number formatting for the experiments.
 #pragma once
 
 #include <chrono>
@@ -8,10 +8,10 @@
 
 namespace ostraka::experiments {
 
-/// As printf.
+/// Formats like printf.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
-/// On the wall, and of the processor over all threads: what a busy machine does not stretch, if there is one thread.
+/// Wall time, and processor time of all threads; the latter is unaffected by other load if there is one thread.
 struct Seconds {
     double wall = 0, processor = 0;
     Seconds& operator+=(const Seconds& other) {
@@ -35,11 +35,11 @@ private:
     std::clock_t processor_ = std::clock();
 };
 
-/// Memory that the process had at most since this was made, above what it had then.
+/// Peak memory of the process since construction, minus the memory at construction.
 class PeakMemory {
 public:
     PeakMemory();
-    /// Nothing where the system does not tell.
+    /// Empty if the system does not report it.
     [[nodiscard]] std::optional<double> megabytes() const;
 
 private:

@@ -1,4 +1,4 @@
-// Figures 5.3 and 5.4 of the thesis: the flowered teapot is stretched upwards, its flowers keep their shape and level.
+// Figures 5.3 and 5.4 of the thesis: the flowered teapot is stretched vertically; its flowers keep their shape and level.
 #include "experiments.h"
 #include "semantics.h"
 
@@ -17,10 +17,10 @@ namespace ostraka::experiments {
 namespace {
 
 constexpr double factor = 1.4;
-constexpr double ring_radius = 1.6;  ///< of a flower's radius
+constexpr double ring_radius = 1.6;  ///< in units of a flower's radius
 constexpr double tilt = 20 * M_PI / 180;
 
-/// One row of the table. Where the details are the edited shape's, so are all other settings the defaults.
+/// A row of the table. If the details are those of the edited shape, all other settings are the defaults.
 struct Variant {
     std::string name, file, parameters;
     double weight = 1, laplacian = 2;
@@ -52,7 +52,7 @@ std::vector<Variant> variants() {
     return list;
 }
 
-/// Faces around the flowers: outside all of them, within some radii of the middle of one.
+/// Faces around the flowers: outside all of them, within a multiple of the radius around the centre of one.
 struct Ring {
     std::vector<Index> faces, vertices;
 };
@@ -75,7 +75,7 @@ Ring ring_of(const Subject& pot, const std::vector<int>& flowers) {
     return {region.faces, touched_vertices(pot.mesh, region)};
 }
 
-/// The vertex nearest to the mean of a flower's vertices on their plane (section 5.2.1).
+/// The vertex nearest to the mean of a flower's vertices in their plane (section 5.2.1).
 Index reference_vertex(const std::vector<Point>& points, const std::vector<Index>& vertices) {
     const Eigen::Vector3d mean = mean_of(points, vertices);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -86,9 +86,9 @@ Index reference_vertex(const std::vector<Point>& points, const std::vector<Index
 }
 
 struct Measures {
-    double heights = 0;     ///< difference of the heights of the flowers' means along the direction asked for, mm
-    double centroids = 0;   ///< the same of the centroids of their areas
-    double references = 0;  ///< the same of their reference vertices (thesis, section 5.2.1)
+    double heights = 0;     ///< difference of the heights of the flowers' means in the constrained direction, mm
+    double centroids = 0;   ///< the same for the area centroids
+    double references = 0;  ///< the same for the reference vertices (thesis, section 5.2.1)
     double rigid = 0;       ///< rms distance from a rigid copy, of the worst flower, mm
     double stretch = 0;     ///< (a), mean over the ring
     double off = 0;         ///< (b), rms distance of the ring's vertices from the edited surface, % of the diagonal
@@ -132,14 +132,14 @@ public:
         for (std::size_t i = 0; i < outcomes.size(); ++i) {
             const Outcome& outcome = outcomes[i];
             std::vector<double> map(pot_.mesh.number_of_faces(), std::numeric_limits<double>::quiet_NaN());
-            const bool solved = i >= 2;  // the first two are the shapes before
+            const bool solved = i >= 2;  // the first two are the input shapes
             const Measures m = measure(outcome.points, surface, solved && list[i - 2].tilted, map);
             write_outcome(folder, pot_, outcome, i == 0 ? std::vector<double>() : map);
             if (i == 0) continue;
             table.add({outcome.name, solved ? list[i - 2].details : "", iterations_of(outcome), digits(outcome.seconds, 1),
                        digits(m.heights, 4), digits(m.centroids, 4), digits(m.references, 4), digits(m.rigid, 4),
                        digits(m.stretch, 4), digits(m.off, 4), digits(m.turned, 2)});
-            // Iterations apart, soft and hard: one series.
+            // Rows that differ in iterations or in soft and hard constraints form one series.
             const std::string name = outcome.name.substr(0, outcome.name.rfind(", "));
             if (solved && (trade.series.empty() || trade.series.back().name != name)) trade.series.push_back({name, {}});
             if (solved) trade.series.back().points.push_back({m.rigid, m.stretch});
@@ -170,7 +170,7 @@ private:
         DeformOptions options;
         set_option(options, "details", variant.details);
         options.laplacian = variant.laplacian;
-        options.handles = 0.001;  // all vertices are moved by the edit
+        options.handles = 0.001;  // the edit moves all vertices
         options.solve.iterations = variant.iterations;
         if (!variant.accelerated) options.solve.window = 0;
         return options;

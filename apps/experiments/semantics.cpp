@@ -26,7 +26,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// An edit that puts the vertices that differ where they are told.
+/// An edit that moves the differing vertices to their target positions.
 Json moved_to(const std::vector<Point>& from, const std::vector<Point>& to) {
     Json edit(rapidjson::kObjectType);
     auto& allocator = edit.GetAllocator();
@@ -82,7 +82,7 @@ Relationship constraint(int id, const std::string& type, std::vector<int> member
 Outcome deformed_from(const Subject& subject, const std::vector<Point>& edited, const RelationGraph& graph, DeformOptions options,
                       const std::string& name, const std::string& file) {
     options.conflicts = 0;
-    if (options.solve.tolerance < 1e-9) options.passes = 1;  // a given number of iterations is asked for
+    if (options.solve.tolerance < 1e-9) options.passes = 1;  // a fixed number of iterations is requested
     const Json edit = moved_to(points_of(subject.mesh), edited);
     const auto start = std::chrono::steady_clock::now();
     DeformResult result = deform({subject.mesh, subject.set}, graph, edit, name, options);

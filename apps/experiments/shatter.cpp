@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Rings of one number of vertices each, a pole where the radius is 0.
+/// A surface of revolution: rings with equal numbers of vertices; radius 0 gives a pole.
 Mesh turned(const std::vector<Vector2d>& profile, int around) {
     TriangleSoup soup;
     std::vector<std::vector<Index>> rings;
@@ -47,7 +47,7 @@ Mesh turned(const std::vector<Vector2d>& profile, int around) {
     return build_mesh(soup);
 }
 
-/// Everything on one side of a rough sheet, as a closed mesh.
+/// The half-space on one side of a rough sheet, as a closed mesh.
 struct Sheet {
     Vector3d middle, normal, u, v;
     double extent = 1;
@@ -76,7 +76,7 @@ struct Sheet {
         for (const Wave& wave : waves) sum += wave.height * std::sin(wave.number.dot(p) + wave.phase);
         return sum;
     }
-    /// `side` is 1 or -1: what lies above or below. `uneven`: triangles of many shapes.
+    /// `side`: 1 for above, -1 for below. `uneven`: triangles of varying shapes.
     [[nodiscard]] Mesh half(double side, double edge, bool uneven) const {
         const int n = std::clamp(static_cast<int>(std::lround(2.2 * extent / edge)), 8, 300);
         TriangleSoup soup;
@@ -102,7 +102,7 @@ struct Sheet {
                 add(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1));
                 add(corner(i, j), corner(i + 1, j + 1), corner(i, j + 1));
             }
-        // A pyramid that holds the piece: its tip is far beyond.
+        // A pyramid that contains the piece, with a distant tip.
         for (int i = 0; i < n; ++i) {
             add(corner(i + 1, 0), corner(i, 0), count);
             add(corner(i, n), corner(i + 1, n), count);
@@ -113,7 +113,7 @@ struct Sheet {
     }
 };
 
-/// The same mesh with vertices and faces in an order that depends on nothing but their places: what cuts leave does not.
+/// The same mesh with vertices and faces ordered by position only, since the order after cuts is not deterministic.
 Mesh in_order(const Mesh& mesh) {
     const TriangleSoup soup = to_soup(mesh);
     std::vector<Index> order(soup.points.size()), place(order.size());
@@ -150,21 +150,21 @@ Vector3d middle_of(const Mesh& mesh) {
     return sum / area;
 }
 
-/// What two bodies have in common; false where the cut cannot be made: a rough sheet, or what earlier cuts left, may cross
-/// itself.
+/// Intersection of two bodies; false if it cannot be computed: a rough sheet, or the result of earlier cuts, may
+/// self-intersect.
 bool intersected(Mesh body, Mesh half, Mesh& result) {
     namespace PMP = CGAL::Polygon_mesh_processing;
     try {
         return PMP::corefine_and_compute_intersection(body, half, result) && !result.is_empty();
     } catch (const std::bad_alloc&) {
         throw;
-    } catch (const std::exception&) {  // of several kinds, all of them for bodies that cross themselves
+    } catch (const std::exception&) {  // of several types, all for self-intersecting bodies
         return false;
     }
 }
 
-/// What is worn off: faces of breaks move in, and vertices near their edges to the mean of their neighbours. `share`: how much
-/// of it, at each place.
+/// Wears the sherd: moves fracture faces inwards, and smooths vertices near their edges. `share`: fraction of the wear at each
+/// point.
 template <class Share>
 void wear(Sherd& sherd, double depth, const Share& share) {
     Mesh& mesh = sherd.mesh;
@@ -184,10 +184,10 @@ void wear(Sherd& sherd, double depth, const Share& share) {
         if (some && !all) distance[v] = 0, rim.push_back(v);
     }
     for (const Vertex v : mesh.vertices()) mesh.point(v) = point_of(eigen(mesh.point(v)) - in[v]);
-    // Distances from the rim over edges, as far as they matter.
+    // Distances from the rim along edges, up to the relevant distance.
     std::vector<Vertex> front = rim;
     const double reach = 2 * depth;
-    // Smoothing reaches an edge farther a round.
+    // Each round of smoothing extends one edge farther.
     const double edges = depth / mean_edge_length(mesh);
     const int rounds = std::clamp(static_cast<int>(std::ceil(edges * edges)), 3, 100);
     while (!front.empty()) {
@@ -214,9 +214,9 @@ void wear(Sherd& sherd, double depth, const Share& share) {
     }
 }
 
-/// The sherd with vertices and edges of its own.
+/// The sherd remeshed with independent vertices and edges.
 Sherd meshed_anew(const Sherd& sherd, double edge, Random& random) {
-    // Sizes and orders of chance: from equal triangles equal ones would come again.
+    // Random sizes and order: identical triangles would give identical meshes.
     const TriangleSoup soup = to_soup(sherd.mesh);
     TriangleSoup shuffled;
     const std::vector<std::size_t> points = random.permutation(soup.points.size()),
@@ -232,7 +232,7 @@ Sherd meshed_anew(const Sherd& sherd, double edge, Random& random) {
     }
     const double length = edge * random.uniform(0.85, 1.15);
     RemeshOptions how;
-    // Of equilateral triangles, two a vertex.
+    // Equilateral triangles, two per vertex.
     how.vertices = std::max<std::uint64_t>(
         60, static_cast<std::uint64_t>(std::lround(surface_area(sherd.mesh) / (std::sqrt(3.0) / 2 * length * length))));
     Sherd result{remesh(build_mesh(shuffled), how).mesh, {}};
@@ -258,7 +258,7 @@ Mesh make_pot(const PotOptions& options) {
     std::vector<Vector2d> line{{0, 0}};
     for (int k = 1; k < steps; ++k) line.push_back({radius(0) * k / steps, 0});
     for (int k = 0; k <= rows; ++k) line.push_back({radius(double(k) / rows), options.height * k / rows});
-    // Inside, the same curve farther in, down to the floor.
+    // Inside: the same curve, offset inwards, down to the floor.
     std::vector<Vector2d> inner;
     for (int k = rows; k >= 0; --k) {
         const double t = double(k) / rows, step = 1e-4;
@@ -338,7 +338,7 @@ std::vector<Sherd> shatter(const Mesh& whole, const ShatterOptions& options) {
             std::sort(parts.begin() + static_cast<std::ptrdiff_t>(before), parts.end(),
                       [](const Mesh& x, const Mesh& y) { return surface_area(x) > surface_area(y); });
         }
-        // Crumbs are no sherds: another cut.
+        // Very small pieces are rejected: cut again.
         const double minimum = 0.15 / options.pieces * surface_area(whole);
         for (const Mesh& part : parts) sound = sound && CGAL::is_closed(part) && surface_area(part) > minimum;
         if (!sound) continue;

@@ -1,5 +1,5 @@
-// Five scanned sherds of a vessel, moved at random, on the template made of them as a surface of revolution: axes, heights and
-// rotations found again.
+// Five scanned sherds of a vessel, moved at random, and the surface of revolution made of them as template: recovers axes,
+// heights and rotations.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"

@@ -1,4 +1,4 @@
-// Table 4.1 of the thesis: a region made plane over the points of the mesh and through a cage, at growing resolution.
+// Table 4.1 of the thesis: a region flattened over the vertices of the mesh and through a cage, for increasing resolution.
 #include "experiments.h"
 
 #include "convergence.h"
@@ -23,7 +23,7 @@ namespace ostraka::experiments {
 
 namespace {
 
-/// Seconds as published (thesis, Table 4.1) and as measured of its prototype: set-up and iterations.
+/// Seconds as published (thesis, Table 4.1) and as measured for its prototype: set-up and iterations.
 struct PublishedTimes {
     double thesis_mesh, thesis_cage;
     std::optional<std::pair<double, double>> prototype_mesh, prototype_cage;
@@ -46,7 +46,7 @@ struct Measured {
     [[nodiscard]] Seconds all() const { return weights + setup + iterate; }
 };
 
-/// The meshes, one after the other: made, or a scan refined and simplified.
+/// The sequence of meshes: synthetic, or a scan refined and simplified.
 class Subject {
 public:
     explicit Subject(const Table41Options& options) : options_(options) {
@@ -79,7 +79,7 @@ private:
     Mesh finest_;
 };
 
-/// The vertices of the share of the surface that is nearest to the one farthest along `direction`.
+/// The given share of the surface nearest to the vertex that is farthest along `direction`.
 std::vector<Index> region_of(const Mesh& mesh, const Points& rest, const std::vector<double>& direction, double share) {
     Eigen::Index seed = 0;
     (Eigen::RowVector3d(direction[0], direction[1], direction[2]) * rest).maxCoeff(&seed);
@@ -96,7 +96,7 @@ SolveOptions solving(int iterations, int window) {
     return options;
 }
 
-/// Set up and solved from rest; `solve` gets a run's options and leaves the points of the mesh in `x`.
+/// Set-up and solution from rest; `solve` receives the options of a run and stores the mesh vertices in `x`.
 class Problem {
 public:
     Problem(const Mesh& mesh, const std::vector<Index>& region, const std::string& rest_kind, const Mesh* cage)
@@ -168,7 +168,7 @@ std::string csv_row(const std::string& kind, const char* space, const Measured& 
                   m.megabytes ? format("%.1f", *m.megabytes).c_str() : "", m.flat_before, m.flat_after);
 }
 
-/// Plain and accelerated runs at one resolution, beside a long one.
+/// Plain and accelerated runs at one resolution, compared with a long run.
 std::string convergence_tables(const Mesh& mesh, const std::vector<Index>& region, const Mesh& cage, int iterations,
                                const Path& folder, std::string& csv) {
     std::string text;

@@ -1,4 +1,4 @@
-// How well the technique of generated statuettes is told, level by level, and with what scanners do to them.
+// Classification of the technique of synthetic statuettes, by level, and with simulated scanner effects.
 #include "experiments.h"
 #include "report.h"
 
@@ -20,12 +20,12 @@ struct Variant {
     PopulationOptions population;
 };
 
-/// Everything of one population.
+/// Results for one population.
 struct Outcome {
     std::map<std::string, ClassifierResult> classifiers;
-    std::map<std::string, double> divided;  ///< F1 of divisions that are better than those of one group
+    std::map<std::string, double> divided;  ///< F1 of divisions that score better than a single group
     std::size_t objects = 0, left_out = 0, open = 0, slices = 0, used = 0;
-    Seconds seconds;  ///< of measuring and answering
+    Seconds seconds;  ///< for measuring and classifying
 };
 
 Outcome outcome_of(const PopulationOptions& options) {
@@ -43,7 +43,7 @@ Outcome outcome_of(const PopulationOptions& options) {
                              object.measures.slices.size()};
                 measured[i] = std::move(object);
             } catch (const Error& error) {
-                if (error.kind() != ErrorKind::input) throw;  // too few slices can be used: counted below
+                if (error.kind() != ErrorKind::input) throw;  // too few usable slices: counted below
             }
         },
         1);
@@ -109,7 +109,7 @@ void add_rows(TextTable& table, const std::string& name, const std::vector<Outco
     table.add(cells);
 }
 
-/// Areas under the receiver operating characteristics.
+/// Adds areas under the ROC curves.
 void add_areas(TextTable& table, const std::string& name, const std::vector<Outcome>& outcomes) {
     std::vector<std::string> cells{name};
     for (const auto& classifier : shown()) cells.push_back(fixed(mean_area(outcomes, classifier), 3));

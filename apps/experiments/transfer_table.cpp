@@ -171,7 +171,7 @@ private:
             for (int k = 0; k < seeds_per_size; ++k) {
                 Annotation region;
                 region.id = id++;
-                // Seeds spread over the index range, the same for every size.
+                // Seeds evenly distributed over the index range, the same for every size.
                 const auto seed = static_cast<Index>((2 * k + 1) * mesh.number_of_vertices() / (2 * seeds_per_size));
                 region.faces = disc(mesh, Vertex(seed), share);
                 set.annotations.push_back(std::move(region));
@@ -179,8 +179,8 @@ private:
         return set;
     }
 
-    /// What truly belongs to each part on a mesh of a synthetic object: each face is sampled by 16 smaller triangles whose
-    /// centroids, followed to the true surface, tell their part.
+    /// True membership in each part on a mesh of a synthetic object: each face is sampled by 16 smaller triangles whose
+    /// centroids, projected to the true surface, determine the part.
     struct Truth {
         const Mesh* mesh;
         std::vector<std::map<int, double>> shares;
@@ -205,7 +205,7 @@ private:
         return truth;
     }
 
-    /// Parts by their labels at the faces' centroids, transferred and compared with the parts themselves.
+    /// Transfers parts defined by labels at face centroids, and compares the result with the true parts.
     void measure_truth(const Ladder& ladder, const SyntheticObject& object) {
         const std::string home = name_of(options_.rungs.front());
         const Mesh& source = ladder.rungs.at(home);
@@ -273,7 +273,7 @@ private:
             const double edge = std::max(source_edge, mean_edge_length(target));
             for (const std::string metric :
                  {"segment", "euclidean", "combined", "segment balanced", "euclidean balanced", "combined balanced", "refine"}) {
-                // Rounding makes the metrics alike; on the largest targets one of them stands for all.
+                // The metrics are similar because of rounding; on the largest targets only one is measured.
                 if (target.number_of_vertices() > 300000 && (metric == "segment balanced" || metric == "euclidean balanced"))
                     continue;
                 if (!options_.metric.empty() && metric.find(options_.metric) == std::string::npos) continue;
@@ -292,7 +292,7 @@ private:
                 const Mesh& on = there.refined ? there.refined->mesh : target;
                 TransferResult back = transfer(on, there.annotations, source_search, returning);
                 seconds = back.times.correspondence + back.times.paths + back.times.regions;
-                // The way there and back is judged against the region it started from, face by face.
+                // The round trip is compared with the original region, face by face.
                 for (TransferScore& score : back.scores) {
                     const auto& origin = set.annotations.at(static_cast<std::size_t>(score.id));
                     score.source_area = there.scores.at(static_cast<std::size_t>(score.id)).source_area;
@@ -352,7 +352,7 @@ private:
         }
     }
 
-    /// The tables so far, also written to files: a long run that is stopped leaves what it had.
+    /// The tables so far, also written to files, so that an interrupted run keeps them.
     std::string tables() const {
         std::ostringstream out;
         out << "Mean distortions in percent over objects and places; time in seconds for all regions of an object; "

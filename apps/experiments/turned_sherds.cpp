@@ -1,4 +1,4 @@
-// Templates turned from the sherds of made vessels, some of them of no use: axis, profile, which sherds were used.
+// Surfaces of revolution from the sherds of synthetic vessels, some of them useless: axis, profile, selection of sherds.
 #include "breaks.h"
 #include "experiments.h"
 #include "report.h"
@@ -29,14 +29,14 @@ namespace {
 struct Layout {
     const char* name;
     double noise, erosion;  ///< shares of the diagonal
-    double degrees, shift;  ///< of each sherd's tilt, and of where it lies (share of the diagonal): standard deviations
-    int useless;            ///< sherds that lie anywhere, in place of their own
+    double degrees, shift;  ///< standard deviations of each sherd's tilt and position (share of the diagonal)
+    int useless;            ///< number of sherds in random positions instead of their own
     bool stranger, tile;    ///< one sherd of another vessel; a flat piece
-    double missing;         ///< share of the sherds that were not found
+    double missing;         ///< share of missing sherds
 };
 
-/// How far the walls of the vessel are from the template laid on it by its axis and height, at most 5 % of the diagonal, only at
-/// heights where some sherd lies.
+/// Distance of the vessel's walls from the template aligned by its axis and height, at most 5 % of the diagonal; only at
+/// heights covered by sherds.
 double profile_error(const Mesh& whole, const std::vector<Fragment>& truth, const std::vector<bool>& lies,
                      RevolutionTemplate& made) {
     const SurfaceSearch vessel(whole);
@@ -54,7 +54,7 @@ double profile_error(const Mesh& whole, const std::vector<Fragment>& truth, cons
             const Vector n = area_vector(truth[k].mesh, f);
             const double length = std::sqrt(n.squared_length());
             if (!lies[k] || !(length > 0)) continue;
-            // Of the vessel's own walls.
+            // compares with the vessel's own walls
             const auto wall = vessel.closest_compatible(centroid(truth[k].mesh, f), n / length, 0.8, 0.01 * diagonal);
             if (!wall) continue;
             places.push_back(wall->point), normals.push_back(n / length), areas.push_back(length);
@@ -199,7 +199,7 @@ void turned_sherds(const BreakExperiment& options) {
                                         turned.sherds[k].on_template, turned.sherds[k].weight);
             }
             used += own_used, partly += own_partly, wrong += own_wrong;
-            // Laid on the truth by its own axis: the layout of all may lean a little.
+            // Aligned with the truth by its own axis, since the layout as a whole may be tilted.
             const Vector3d up = eigen(turned.axis.direction), at = eigen(turned.axis.point);
             degrees.push_back(180 / std::numbers::pi * std::acos(std::min(1.0, std::abs(up.z()))));
             const Vector3d foot = at + up * ((0.5 * shape.height - at.z()) / up.z());

@@ -34,7 +34,7 @@ std::vector<std::string> words_of(const std::string& name) {
     return words;
 }
 
-/// What stands behind a flag.
+/// Whether a flag takes a value.
 enum class FlagValue { unknown, none, one };
 
 bool begins_a_flag(const std::string& word) {
@@ -58,7 +58,7 @@ FlagValue value_of_flag(const Call& call, const std::string& name) {
     return slot == nullptr || slot->is_positional ? FlagValue::unknown : FlagValue::one;
 }
 
-/// Names the nearest option: the operation's or one that all have.
+/// Throws with the nearest option, of the operation or common to all.
 [[noreturn]] void refuse_option(const Call& call, const std::string& name) {
     const Slot* slot = call.parameters().slot(name);
     if (slot != nullptr && slot->is_positional)
@@ -71,8 +71,8 @@ FlagValue value_of_flag(const Call& call, const std::string& name) {
     call.no_such_name(name, names);
 }
 
-/// The words behind the operation's name as the parser takes them: each flag is one of the operation's, and has its value. A
-/// word that is a flag of the operation is a value only behind "=", and what begins with a dash an argument only behind "--".
+/// Checks and normalises the words after the operation's name for the parser: every flag is known and has its value. A word
+/// equal to a flag can be a value only after "=", and a positional argument can begin with a dash only after "--".
 std::vector<std::string> checked_words(Call& call, const std::vector<std::string>& words) {
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
         throw Error(ErrorKind::usage, call.entry().name, what, remedy);
@@ -81,7 +81,7 @@ std::vector<std::string> checked_words(Call& call, const std::vector<std::string
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
         if (word == "--") {
-            // An option that takes words without a flag, such as another program's command line, gets them as they are.
+            // A positional option that takes several words, such as the command line of another program, gets them unchanged.
             for (Option& option : call.parameters().options)
                 if (option.is_positional && option.takes_words && i + 1 < words.size()) {
                     option.set(std::vector(words.begin() + static_cast<long>(i) + 1, words.end()));
@@ -120,7 +120,7 @@ std::vector<std::string> checked_words(Call& call, const std::vector<std::string
     return checked;
 }
 
-/// A file of the command line is a file.
+/// Sets a file; names of in-memory files are rejected on the command line.
 void set_file(Call& call, const std::string& name, const std::string& file) {
     if (is_memory(file))
         throw Error(ErrorKind::usage, call.entry().name, name + " is '" + printable(file, 60) + "', which is for programs",
@@ -133,7 +133,7 @@ bool is_group(const std::string& path) {
     return std::any_of(groups.begin(), groups.end(), [&](const OperationGroup& one) { return one.name == path; });
 }
 
-/// "help" in front of the words of a command, or behind those of a group, is --help behind them.
+/// Converts "help" before the words of a command, or after those of a group, to a trailing --help.
 std::vector<std::string> with_help_as_flag(std::vector<std::string> words) {
     if (!words.empty() && words.front() == "help") {
         words.erase(words.begin());
@@ -144,7 +144,7 @@ std::vector<std::string> with_help_as_flag(std::vector<std::string> words) {
     return words;
 }
 
-/// The operation whose words begin the arguments; null where they name a group or nothing. Throws where they name neither.
+/// The operation named by the first arguments; null if they name a group or are empty. Throws if they name neither.
 const OperationEntry* named_operation(const std::vector<std::string>& arguments) {
     std::vector<std::string> given;
     for (const std::string& word : arguments)
@@ -152,7 +152,7 @@ const OperationEntry* named_operation(const std::vector<std::string>& arguments)
         else given.push_back(word);
     const OperationEntry* best = nullptr;
     std::size_t maximum = 0, agreeing = 0;
-    std::vector<std::string> next;  // words that may follow those that agree
+    std::vector<std::string> next;  // possible next words
     for (const OperationEntry& entry : operations()) {
         const auto words = words_of(entry.name);
         std::size_t same = 0;
@@ -237,7 +237,7 @@ std::string shown_order(Call& call, std::vector<std::string> order) {
     return joined(order, " ");
 }
 
-/// Help where arguments without flags have several orders, which the parser knows as one list.
+/// Help for positional arguments with several orders, which the parser treats as one list.
 class OrdersFormatter final : public CLI::Formatter {
 public:
     explicit OrdersFormatter(Call& call) : call_(call) {}
@@ -264,7 +264,7 @@ private:
     Call& call_;
 };
 
-/// How many of the files end as those of the slots that they would fill.
+/// Number of files whose extension fits the slot they would fill.
 std::size_t agreeing_endings(Call& call, const std::vector<std::string>& order, const std::vector<std::string>& files) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < std::min(order.size(), files.size()); ++i) {
@@ -277,7 +277,8 @@ std::size_t agreeing_endings(Call& call, const std::vector<std::string>& order, 
     return count;
 }
 
-/// Arguments without flags where the order depends on how many there are and, of as many, on the files' endings.
+/// Assigns positional arguments. The order is selected by their number and, among orders of equal length, by the file
+/// extensions.
 void take_positionals(Call& call, const std::vector<std::string>& words) {
     const auto& orders = call.parameters().orders;
     const auto fits = [&](const std::vector<std::string>& order) {
@@ -306,7 +307,7 @@ void take_positionals(Call& call, const std::vector<std::string>& words) {
     }
 }
 
-/// Says what the first thing is that is needed and was not given, and how it is given.
+/// Throws for the first missing required argument, and explains how to give it.
 void refuse_missing(const Call& call) {
     const Parameters& parameters = call.parameters();
     const auto refuse = [&](const std::string& name, const std::string& what, const char* value) {
@@ -320,7 +321,7 @@ void refuse_missing(const Call& call) {
         if (option.needed && !option.given) refuse(option.name, option.help, "VALUE");
 }
 
-/// A file that belongs behind a flag is said to.
+/// Throws for a superfluous argument; the remedy names the flag to which a file may belong.
 [[noreturn]] void refuse_extra(const Call& call, const std::string& word) {
     std::string remedy = "'ostraka " + std::string(call.entry().name) + " --help' shows what it takes";
     for (const Slot* slot : call.parameters().slots()) {
@@ -332,7 +333,7 @@ void refuse_missing(const Call& call) {
     throw Error(ErrorKind::usage, call.entry().name, "'" + printable(word, 60) + "' is one argument too many", remedy);
 }
 
-/// Flags of all commands.
+/// Flags common to all commands.
 struct Common {
     bool json = false, quiet = false;
     std::string show = "table";
@@ -340,7 +341,7 @@ struct Common {
     double memory = 0;
 };
 
-/// Declares the operation's flags. True where `take_positionals` is to take the arguments without flags, from `words`.
+/// Declares the operation's flags. Returns true if positional arguments are collected in `words` for `take_positionals`.
 bool add_parameters(CLI::App& command, Call& call, std::vector<std::string>& words) {
     Parameters& parameters = call.parameters();
     const auto& orders = parameters.orders;
@@ -367,8 +368,8 @@ void check_standard_output() {
     if (!std::cout) throw Error(ErrorKind::failure, "standard output", "cannot be written", "free some space or mend the pipe");
 }
 
-/// Allocations beyond the limit fail, whoever makes them: what the guesses of operations miss ends in words all the same. Stacks
-/// of threads count for the system, though hardly any of them is used: they come on top.
+/// Limits the address space, so that allocations beyond the limit fail with an error even if the estimate of an operation was
+/// too low. Thread stacks are added to the limit, because the system counts them although they are hardly used.
 void limit_allocations(double bytes) {
     rlimit limit{};
     if (bytes <= 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
@@ -403,7 +404,7 @@ int run_call(Call& call, const Common& common) {
         const std::string text = report.to_text(format);
         shown = !text.empty();
         std::cout << text;
-        // Where the report could not be given, nothing is replaced.
+        // If the report could not be printed, no file is replaced.
         check_standard_output();
     };
     const Report report = call.run(context, show);
@@ -415,7 +416,7 @@ int run_call(Call& call, const Common& common) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
-    if (argc > 1 && std::string_view(argv[1]) == "--complete") {  // asked by a shell
+    if (argc > 1 && std::string_view(argv[1]) == "--complete") {  // called by shell completion
         for (const std::string& word : completions({argv + 2, argv + argc})) std::cout << printable(word) << '\n';
         return done;
     }
@@ -476,7 +477,7 @@ int run_command_line(int argc, char** argv) {
         fail_usage("'" + printable(given[0], 60) + "' stands before a command", "flags follow it: ostraka mesh info FILE --json");
     }
     try {
-        std::reverse(given.begin(), given.end());  // as the parser wants them
+        std::reverse(given.begin(), given.end());  // the parser expects reverse order
         tool.parse(given);
     } catch (const CLI::ParseError& error) {
         if (call && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) refuse_missing(*call);

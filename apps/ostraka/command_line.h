@@ -1,4 +1,4 @@
-// The command line as one face of the table of operations.
+// Command-line interface of the table of operations.
 #pragma once
 
 namespace ostraka::app {
@@ -6,7 +6,7 @@ namespace ostraka::app {
 /// Exit codes of the tool: 0 done, 1 failed, 2 wrong usage, 3 done but the answer is "no", 130 cancelled.
 inline constexpr int done = 0, failed = 1, wrong_usage = 2, answer_is_no = 3, cancelled = 130;
 
-/// Parses, runs the operation that is named, shows its report. Returns the exit code; throws Error.
+/// Parses the arguments, runs the operation, prints its report. Returns the exit code; throws Error.
 int run_command_line(int argc, char** argv);
 
 }  // namespace ostraka::app

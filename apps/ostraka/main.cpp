@@ -11,14 +11,14 @@
 // NOLINTNEXTLINE(bugprone-exception-escape): what stands in the catches throws only without any memory left
 int main(int argc, char** argv) {
     using namespace ostraka;
-    // A closed pipe or a full disk shall be an error with words, not a signal.
+    // A closed pipe or a full disk must give an error message, not a signal.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     try {
         return app::run_command_line(argc, argv);
     } catch (const Error& error) {
         std::cerr << "ostraka: " << printable(error.what()) << '\n';
-        // All is undone; work of other libraries that nobody waits for may still be under way (core/run_apart.h).
+        // All outputs are undone; detached work of other libraries may still be running (core/run_apart.h).
         if (error.kind() == ErrorKind::cancelled) std::_Exit(app::cancelled);
         return error.kind() == ErrorKind::usage ? app::wrong_usage : app::failed;
     } catch (const std::bad_alloc&) {

@@ -55,7 +55,7 @@ Signals::Signals() : shared_(std::make_shared<Shared>()) {
     sigset_t signals;
     sigemptyset(&signals);
     for (const int signal : {SIGINT, SIGTERM}) sigaddset(&signals, signal);
-    struct sigaction hang_up {};  // ignored under nohup
+    struct sigaction hang_up {};  // SIGHUP is ignored under nohup
     if (::sigaction(SIGHUP, nullptr, &hang_up) != 0 || hang_up.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     std::thread([shared = shared_, signals] { shared->wait(signals); }).detach();

@@ -1,4 +1,4 @@
-// The signals that end a program.
+// Handles the signals that end the program.
 #pragma once
 
 #include <functional>
@@ -6,10 +6,10 @@
 
 namespace ostraka::app {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP call what `stop` was given, on a thread of its own. Where the program does not end
-/// within 0.7 s after that, at a second signal, and where nothing was given yet, the process ends at once with exit code 130:
-/// temporary files, scratch folders and started programs go, complete files stay. To be made before other threads, which inherit
-/// that the signals are not theirs.
+/// During its lifetime, SIGINT, SIGTERM and SIGHUP call the function given to `stop`, on a separate thread. The process exits
+/// immediately with code 130 if it has not ended 0.7 s later, at a second signal, or if no function was given: temporary files,
+/// scratch folders and child processes are removed, complete files remain. Create it before other threads, which inherit the
+/// blocked signals.
 class Signals {
 public:
     Signals();
@@ -21,7 +21,7 @@ public:
 
 private:
     struct Shared;
-    std::shared_ptr<Shared> shared_;  ///< with the thread, which may outlive this
+    std::shared_ptr<Shared> shared_;  ///< shared with the thread, which may live longer
 };
 
 }  // namespace ostraka::app

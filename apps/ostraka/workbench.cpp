@@ -1,4 +1,4 @@
-// The workbench as a command: a server on this machine, until it is interrupted.
+// The command that runs the workbench: a local server, until it is interrupted.
 #include "workbench.h"
 
 #include "command_line.h"
@@ -29,9 +29,9 @@ namespace ostraka::app {
 
 namespace {
 
-/// Shows the workbench's address in the browser of a desktop; silent where there is none. Whoever is at work on the machine sees
-/// command lines, and the address holds a secret: the browser is given a page in the session's folder that only its owner can
-/// read, and that leads to the address. The page is gone as soon as it is not needed.
+/// Opens the workbench in the desktop's browser, if there is one. Other users can see command lines, and the URL contains a
+/// secret; so the browser opens a file in the session's folder that only its owner can read and that redirects to the URL. The
+/// file is deleted as soon as it is no longer needed.
 class Doorway {
 public:
     explicit Doorway(const Path& session) : file_(std::filesystem::absolute(session) / "ostraka-workbench.html") { close(); }
@@ -48,22 +48,22 @@ public:
                            address + "\">\n",
                        FileAccess::owner_only);
         } catch (const Error&) {
-            return;  // the address stands on the standard output
+            return;  // the URL is on the standard output
         }
         if (!show()) close();
     }
-    /// From any thread.
+    /// May be called from any thread.
     void close() const {
         std::error_code ignored;
         std::filesystem::remove(file_, ignored);
     }
 
 private:
-    /// False where there is no program for it.
+    /// Returns false if no program to open it is found.
     [[nodiscard]] bool show() const {
         std::string program = "xdg-open", argument = file_.string();
         char* arguments[]{program.data(), argument.data(), nullptr};
-        // A browser that begins here is not ended with the workbench, and heeds all signals.
+        // A browser started here must outlive the workbench and receive all signals.
         posix_spawnattr_t attributes;
         ::posix_spawnattr_init(&attributes);
         sigset_t none;

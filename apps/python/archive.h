@@ -1,4 +1,4 @@
-// Values as bytes and back, field by field: what pickles of objects hold. Reading checks every length against what is left.
+// Serialisation of values, field by field, for pickles of objects. Reading checks every length against the remaining bytes.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -13,12 +13,12 @@ namespace ostraka::python {
 
 static_assert(std::endian::native == std::endian::little, "archives are little-endian");
 
-/// Where bytes are no archive of ours.
+/// Throws if the bytes are not a valid archive.
 [[noreturn]] inline void fail_archive(const std::string& problem) {
     fail_input("pickle", problem, "pickle the object again with this version, or save it as a file");
 }
 
-/// Numbers, and arrays of them, that are stored as they lie in memory, without gaps.
+/// Whether a type is stored as in memory, without padding: numbers and arrays of numbers.
 template <class T>
 constexpr bool is_plain = std::is_arithmetic_v<T> && !std::same_as<T, bool>;
 template <class T, std::size_t Count>
@@ -71,7 +71,7 @@ private:
     }
 };
 
-/// Takes fields from bytes. Throws Error (input) where they do not hold such.
+/// Reads fields from bytes. Throws Error (input) if the bytes do not hold them.
 class Reader {
 public:
     explicit Reader(std::string_view all) : rest_(all) {}
@@ -79,7 +79,7 @@ public:
     void operator()(T&... values) {
         (get(values), ...);
     }
-    /// Throws Error (input) where bytes are left.
+    /// Throws Error (input) if bytes are left over.
     void end() const {
         if (!rest_.empty()) fail_archive("holds more than an object");
     }
@@ -91,7 +91,7 @@ private:
         rest_.remove_prefix(count);
         return taken;
     }
-    /// Of a list whose elements take so many bytes at least.
+    /// Reads the length of a list whose elements take at least `bytes_each` bytes.
     std::size_t get_size(std::size_t bytes_each) {
         std::uint64_t size = 0;
         get(size);
@@ -145,7 +145,7 @@ private:
     std::string_view rest_;
 };
 
-/// A type, whether it is written (const) or read.
+/// Matches a type both for writing (const) and for reading.
 template <class T, class Of>
 concept Is = std::same_as<std::remove_const_t<T>, Of>;
 

@@ -1,5 +1,5 @@
-// The native half of the Python module: operations of the table called by name, and what they take and make as objects of
-// Python. No operation is named here; the functions are made from the declarations by apps/python/ostraka.
+// Native part of the Python module: calls operations of the table by name, and converts their inputs and outputs to Python
+// objects. It names no operation; apps/python/ostraka generates the functions from the declarations.
 #include "objects.h"
 
 #include "ostraka/core/json_build.h"
@@ -55,13 +55,13 @@ py::str shown(const Report& report, const std::string& format) {
 
 // ---- calls ----
 
-/// The name of an output that stays in memory, as its file would be called.
+/// File name of an output that stays in memory.
 std::string default_name(const Slot& slot) {
     const auto endings = endings_of(slot.kind);
     return slot.name + (endings.empty() ? slot.kind == Kind::values ? ".npy" : "" : endings.front());
 }
 
-/// What Call::declaration says of every operation, with what a caller of another language has to know beside it.
+/// The result of Call::declaration for every operation, with further data that callers in other languages need.
 py::bytes declarations() {
     Json list(rapidjson::kArrayType);
     auto& allocator = list.GetAllocator();
@@ -91,7 +91,7 @@ void set_option(Call& call, const std::string& name, const py::handle& value) {
     else if (py::isinstance<py::float_>(value)) call.set(name, value.cast<double>());
     else if (py::isinstance<py::str>(value)) call.set(name, value.cast<std::string>());
     else {
-        // Whole numbers and lists, as JSON gives them.
+        // Integers and lists, in JSON form.
         Json settings(rapidjson::kObjectType);
         auto& allocator = settings.GetAllocator();
         const auto one = [&](const py::handle& element) {
@@ -141,13 +141,13 @@ void set_outputs(Call& call, const py::list& outputs) {
             call.set_file(slot, path_of(value.cast<py::bytes>()));
             continue;
         }
-        // Files that are made in memory know by themselves how they are called: their writers go by it.
+        // Outputs written as files in memory choose their own name, from which writers derive the format.
         const bool own = dynamic_cast<const FileOutput*>(&call.slot(slot)) != nullptr;
         call.want(slot, !value.is_none() ? value.cast<std::string>() : own ? "" : default_name(call.slot(slot)));
     }
 }
 
-/// What stayed in memory, by the names of the outputs.
+/// Outputs that stayed in memory, by name.
 py::dict outputs_of(const Call& call, const std::shared_ptr<Context>& context) {
     py::dict made;
     for (const Slot* slot : call.parameters().slots()) {
@@ -157,7 +157,7 @@ py::dict outputs_of(const Call& call, const std::shared_ptr<Context>& context) {
             if (!source.object) continue;
             Held held{source.object, source.object.as<Path>() || source.object.as<Template>() ? context : nullptr};
             const Slot* updated = slot->updated;
-            if (held.object.name == slot->name)  // nobody called it otherwise
+            if (held.object.name == slot->name)  // no name was given
                 held.object.name = updated != nullptr && *updated ? updated->file_name() : default_name(*slot);
             objects.append(std::move(held));
         }
@@ -166,13 +166,13 @@ py::dict outputs_of(const Call& call, const std::shared_ptr<Context>& context) {
     return made;
 }
 
-/// Runs an operation. `options`: names and values; `inputs`: names of slots, each with a file's name (bytes), an object, or
-/// nothing where "none" holds a place; `outputs`: the same with a file's name or, of what stays in memory, what it is called.
+/// Runs an operation. `options`: (name, value); `inputs`: (slot name, file name as bytes, object, or None for "none");
+/// `outputs`: the same with a file name or, for outputs in memory, the name of the object.
 py::tuple run(const std::string& name, const py::dict& options, const py::list& inputs, const py::list& outputs,
               const py::object& progress) {
     const auto call = std::make_shared<Call>(find_operation(name));
     for (const auto& [option, value] : options) set_option(*call, option.cast<std::string>(), value);
-    // The folders and templates that are given have their files in contexts of their own, which last as long.
+    // Folders and templates given as inputs keep their files in contexts of their own, which must live as long.
     std::vector<std::shared_ptr<Context>> contexts;
     for (const auto given : inputs)
         if (const auto value = given.cast<std::tuple<std::string, py::object, std::string>>();
@@ -217,7 +217,7 @@ PYBIND11_MODULE(_ostraka, module) {
     module.def("hold_spare_team", hold_spare_team);
     module.def("threads", [] { return wanted_threads.load(); });
     module.def("set_threads", [](int count) {
-        set_threads(count);  // refuses what is no number of threads
+        set_threads(count);  // rejects invalid numbers of threads
         wanted_threads = threads();
     });
     module.def("nearest_name", nearest_name);

@@ -1,4 +1,4 @@
-// Objects of the toolkit as Python sees them: meshes and arrays, without a copy where the layout allows it.
+// Objects of the toolkit for Python: meshes and arrays, without a copy if the layout permits it.
 #include "objects.h"
 
 #include "saved.h"
@@ -15,12 +15,12 @@
 
 namespace ostraka::python {
 
-/// Text of files may hold bytes that are no UTF-8.
+/// Decodes text from files, which may contain invalid UTF-8.
 py::str text_of_bytes(const std::string& text) {
     return py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
 }
 
-/// A name of a file as Python gives it: bytes, as os.fsencode makes them.
+/// Path from a Python file name: bytes, as from os.fsencode.
 Path path_of(const py::bytes& name) {
     const std::string text = name;
     if (text.empty()) fail_usage("the name of a file is empty", "name a file");
@@ -56,7 +56,7 @@ Object object_of_values(std::vector<double> list) {
 
 namespace {
 
-/// Which class of Python shows it.
+/// The Python class that represents the object.
 std::string type_of(const Held& held) {
     const Object& object = held.object;
     if (object.as<MeshFile>() || object.as<PolygonSoup>() || object.as<Mesh>()) return "mesh";
@@ -75,14 +75,14 @@ void save(const Held& held, const py::bytes& name) {
 
 py::bytes bytes_of(const Held& held) {
     if (const auto bytes = held.object.as<std::string>()) return *bytes;
-    return unlocked([held] {  // with the context that has its files
+    return unlocked([held] {  // keeps the context that holds the files
         const InMemory place(Path(held.object.name).filename().string());
         write_object(held.object, place.file);
         return read_file(place.file);
     });
 }
 
-/// An array that shows memory of the toolkit, without a copy; it keeps the owner alive and cannot be written to.
+/// A read-only array that shares memory of the toolkit; it keeps the owner alive.
 template <class Number>
 py::array view_of(const std::shared_ptr<const void>& owner, const Number* numbers, std::vector<py::ssize_t> shape) {
     const py::capsule keeps(new std::shared_ptr<const void>(owner),
@@ -91,7 +91,7 @@ py::array view_of(const std::shared_ptr<const void>& owner, const Number* number
     array.attr("setflags")(py::arg("write") = false);
     return array;
 }
-/// The same of a list that is made for it.
+/// The same for a list that the array takes over.
 template <class Number>
 py::array array_of(std::vector<Number> numbers, std::vector<py::ssize_t> shape) {
     const auto owner = std::make_shared<const std::vector<Number>>(std::move(numbers));
@@ -101,7 +101,7 @@ py::ssize_t size_of(std::size_t count) { return static_cast<py::ssize_t>(count);
 
 // ---- meshes ----
 
-/// As a manifold where it is one of triangles, since operations want that most often; else as it stands.
+/// A manifold mesh if it is a valid triangle mesh, which most operations need; otherwise the polygons as given.
 Object mesh_object(PolygonSoup soup, std::string name, const std::string& sha256) {
     const std::size_t count = soup.polygon_count();
     bool triangles = count > 0;
@@ -149,7 +149,7 @@ void take_extra(const py::dict& extras, const char* name, std::size_t count, std
     std::copy_n(given.data(), given.size(), reinterpret_cast<Number*>(list.data()));
 }
 
-/// Of points (n x 3), corners of all polygons one after another, and where each polygon begins among them.
+/// Makes a mesh from points (n x 3), the concatenated corners of all polygons, and the begin of each polygon among the corners.
 Held make_mesh_object(const Numbers<double>& points, const Numbers<std::int64_t>& begin, const Numbers<std::int64_t>& corners,
                       const py::dict& extras, const std::string& name) {
     check_mesh_extension(name);
@@ -210,7 +210,7 @@ py::array points_view(const Held& held) {
     return view_of(file, reinterpret_cast<const double*>(&file->mesh.point(Vertex(0))), {size_of(count), 3});
 }
 
-/// Where each polygon begins among the corners, and the corners.
+/// Begin of each polygon among the corners, and the corners.
 std::pair<py::array, py::array> polygons_of(const Held& held) {
     if (const auto soup = held.object.as<PolygonSoup>())
         return {view_of(soup, soup->polygon_begin.data(), {size_of(soup->polygon_begin.size())}),
@@ -226,7 +226,7 @@ std::pair<py::array, py::array> polygons_of(const Held& held) {
     return {array_of(std::move(begin), {faces}), array_of(std::move(corner_list), {corners})};
 }
 
-/// What travels with the elements: arrays by name, without those that are empty.
+/// Attributes of the elements: arrays by name, without empty ones.
 py::dict extras_of(const Held& held) {
     const auto soup = held.object.as<PolygonSoup>();
     const auto file = held.object.as<MeshFile>();
@@ -303,7 +303,7 @@ Held unpickled(const py::bytes& state) {
     return unlocked([text = std::string(state)] { return held_of(text); });
 }
 
-/// The faces of each region, and a label per face: the id of the smallest region on it, -1 for none.
+/// The faces of each region, and one label per face: the id of the smallest region that contains it, -1 for none.
 std::pair<py::dict, py::array> faces_of(const Held& held, const Held& on) {
     const auto file = on.object.as<MeshFile>();
     if (!file) throw Error(ErrorKind::input, on.object.name, "is no oriented manifold of triangles", "use ostraka.mesh.repair");

@@ -1,4 +1,4 @@
-// What the native half of the Python module shares: objects that Python holds.
+// Shared by the native part of the Python module: objects held by Python.
 #pragma once
 
 #include "running.h"
@@ -17,19 +17,19 @@ class Context;
 
 namespace ostraka::python {
 
-/// Text of files may hold bytes that are no UTF-8.
+/// Decodes text from files, which may contain invalid UTF-8.
 py::str text_of_bytes(const std::string& text);
 
-/// A name of a file as Python gives it: bytes, as os.fsencode makes them.
+/// Path from a Python file name: bytes, as from os.fsencode.
 Path path_of(const py::bytes& name);
 
 /// An object of the toolkit that Python holds.
 struct Held {
     Object object;
-    std::shared_ptr<Context> context = {};  ///< in whose memory the files of a folder or a template are
+    std::shared_ptr<Context> context = {};  ///< context that holds the files of a folder or a template
 };
 
-/// A name for a file in memory whose folder is removed at the end.
+/// A unique in-memory file name; its folder is removed on destruction.
 struct InMemory {
     explicit InMemory(const std::string& name) : folder("memory:.python-" + std::to_string(++count)), file(folder / name) {}
     ~InMemory() { forget_memory(folder); }
@@ -39,13 +39,13 @@ struct InMemory {
     Path folder, file;
 };
 
-/// Writes the object as files, all together or not at all.
+/// Writes the object to files, all or none.
 void write_object(const Object& object, const Path& file);
 
-/// A number for each element.
+/// One number per element.
 Object object_of_values(std::vector<double> list);
 
-/// Adds the class of such objects, and the functions that read and make them, to the module.
+/// Adds the class of these objects, and the functions that read and make them, to the module.
 void add_objects(py::module_& module);
 
 }  // namespace ostraka::python

@@ -19,9 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds poll{50}, patience{600};
-constexpr int interrupted_polls = 4;  ///< in which the main thread handles an interrupt: it waits for this thread
+constexpr int interrupted_polls = 4;  ///< polls during which the main thread may handle an interrupt
 
-/// Work under way, owned by the thread that works and by the one that waits.
+/// A running job, owned by the worker thread and by the waiting thread.
 struct Job {
     std::shared_ptr<Watch> watch;
     std::function<void()> work;
@@ -29,12 +29,13 @@ struct Job {
     std::condition_variable ended;
     bool done = false;
     std::exception_ptr failure;
-    bool at_end = false;                               ///< of Python, which this call is a part of
-    std::atomic<bool> abandoned{false};                ///< nobody waits for it; set under Python's lock
-    std::optional<py::error_already_set> raised = {};  ///< by Python while it worked; touched under Python's lock only
+    bool at_end = false;                               ///< the call runs while Python is shutting down
+    std::atomic<bool> abandoned{false};                ///< no thread waits for it; set while holding the GIL
+    std::optional<py::error_already_set> raised = {};  ///< exception raised by Python; accessed only while holding the GIL
 };
 
-/// The work of all threads; a process that was forked has none of its parent's. Never destroyed: threads may outlive it.
+/// Running jobs of all threads; a forked process starts without those of its parent. Never destroyed, since threads may outlive
+/// it.
 class Jobs {
 public:
     void add(const Job* job) {
@@ -43,7 +44,7 @@ public:
     void remove(const Job* job) {
         change([&] { jobs_.erase(job); });
     }
-    /// Cancels all; whether there are any.
+    /// Cancels all jobs; returns whether there are any.
     bool cancel() {
         bool any = false;
         change([&] {
@@ -62,7 +63,7 @@ private:
     std::mutex mutex_;
     std::set<const Job*> jobs_;
 };
-/// Forgotten, not destroyed, in a process that was forked: the threads are those of its parent.
+/// Abandoned, not destroyed, in a forked process: the threads belong to the parent.
 std::atomic<Jobs*> jobs{nullptr};
 
 void add_jobs() { jobs = new Jobs; }
@@ -83,14 +84,14 @@ void work_on(const std::shared_ptr<Job>& job, Jobs* list) {
     } catch (...) {
         job->failure = std::current_exception();
     }
-    job->work = nullptr;  // and what it owns
+    job->work = nullptr;  // also frees the objects it owns
     list->remove(job.get());
     const std::lock_guard lock(job->mutex);
     job->done = true;
     job->ended.notify_one();
 }
 
-/// Keeps what Python has raised, and cancels the work.
+/// Stores the exception raised by Python and cancels the job.
 void stop(Job& job) {
     py::error_already_set error;
     if (!job.raised) job.raised.emplace(std::move(error));
@@ -109,8 +110,8 @@ std::function<void(const std::string&, double)> calls(const std::weak_ptr<Job>& 
     };
 }
 
-/// Lets the handlers of signals run, and what other threads have raised in this one. `polls`: for how many calls in a row the
-/// main thread has been handling an interrupt.
+/// Runs signal handlers and picks up exceptions that other threads raised in this one. `polls`: number of consecutive calls
+/// during which the main thread has been handling an interrupt.
 void hear(Job& job, int& polls) {
     if (PyErr_CheckSignals() != 0) return stop(job);
     PyObject* module = PyImport_ImportModule("ostraka._interrupts");
@@ -126,13 +127,13 @@ void hear(Job& job, int& polls) {
     }
 }
 
-/// While Python ends, whoever asks for its lock would be ended within this code: all threads but the one that ends it wait for
-/// the end of the process.
+/// While Python shuts down, a thread that requests the GIL would be terminated inside this code: all threads except the one
+/// that shuts Python down wait for the end of the process.
 void wait_if_python_ends(const Job& job) {
     while (!job.at_end && python_ends()) ::pause();
 }
 
-/// Until it has ended, or was told to 0.6 s ago. Without Python's lock; whether it has ended.
+/// Waits without the GIL until the job has ended, or for 0.6 s after its cancellation. Returns whether it has ended.
 bool wait_for(Job& job) {
     int polls = 0;
     std::optional<Clock::time_point> last;
@@ -201,7 +202,7 @@ void hold_spare_team() {
 void stop_work_at_exit() {
     add_jobs();
     ::pthread_atfork(nullptr, nullptr, add_jobs);
-    // All of Python has ended by then. What works on would use what the end of the process takes apart.
+    // Python has shut down completely by then. Jobs still running would use data that process exit destroys.
     Py_AtExit([] {
         if (!jobs.load()->cancel()) return;
         abandon_outputs();

@@ -1,4 +1,4 @@
-// Work on a thread of its own, for which Python's lock is released: what a call of Python waits for, and how it is interrupted.
+// Runs work on a separate thread without the GIL, so that the calling Python thread can be interrupted.
 #pragma once
 
 #include "ostraka/core/progress.h"
@@ -14,18 +14,18 @@ namespace py = pybind11;
 
 namespace ostraka::python {
 
-/// The number of threads that operations use: a setting of each thread, handed to every one that works.
+/// The number of threads that operations use; it is set in every worker thread, since the setting is per thread.
 inline std::atomic<int> wanted_threads{0};
-/// Bytes that the process may occupy while an operation works; 0: what the machine has.
+/// Memory limit of the process during operations in bytes; 0: the memory of the machine.
 inline std::atomic<double> wanted_memory{0};
 
-/// Runs `work` on a thread of its own, without Python's lock. This thread hears signals meanwhile: what their handlers raise,
-/// such as KeyboardInterrupt, cancels the work, and so does what `progress` raises. It is raised as soon as the work has ended,
-/// and 0.6 s later at the latest: the work then ends at its next check on the thread of its own, and what it made is dropped.
-/// `work` must therefore own all that it uses, and touch nothing of Python. Throws Error (failure) where the memory is used up.
+/// Runs `work` on a separate thread, without the GIL. The calling thread handles signals meanwhile: an exception raised by
+/// their handlers, such as KeyboardInterrupt, or by `progress` cancels the work. The exception is raised when the work has
+/// ended, or after 0.6 s at the latest; in that case the work ends at its next cancellation check, and its result is dropped.
+/// `work` must therefore own all data it uses and must not use Python objects. Throws Error (failure) if memory is exhausted.
 void run_watched(const std::shared_ptr<Watch>& watch, const py::object& progress, std::function<void()> work);
 
-/// The same of work that is not watched; returns what it returns.
+/// Runs work without a watch; returns its result.
 template <class Work>
 auto unlocked(Work work) {
     const auto result = std::make_shared<std::optional<decltype(work())>>();
@@ -33,11 +33,12 @@ auto unlocked(Work work) {
     return std::move(**result);
 }
 
-/// For a process that had loaded OpenMP, without a policy of waiting, before this module could name one: threads that wait for
-/// work then spin for milliseconds, unless more threads exist than cores. Two more, which sleep for good, see to that.
+/// For a process that loaded OpenMP without a wait policy before this module could set one: idle threads then spin for
+/// milliseconds, unless there are more threads than cores. Starts two additional threads that sleep forever, so that idle
+/// threads do not spin.
 void hold_spare_team();
 
-/// To be called once: what still works when Python has ended leaves no temporary files, and does not outlive what it uses.
+/// To be called once: at exit, running work is ended before the data it uses are destroyed, and temporary files are removed.
 void stop_work_at_exit();
 
 }  // namespace ostraka::python

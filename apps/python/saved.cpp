@@ -37,21 +37,21 @@ void fields(Archive& archive, T& x) {
 
 namespace {
 
-constexpr std::string_view magic = "ostraka object 1\n";  ///< with the version of what follows
+constexpr std::string_view magic = "ostraka object 1\n";  ///< includes the version of the format
 constexpr std::size_t digest_size = 64;
 
-/// What an object is, and what is read for it. The order is part of the format.
+/// Type of a saved object. The order is part of the format.
 enum class Type { mesh, polygons, annotations, text, document, values, coordinates, index_map, folder, template_package };
 constexpr Type last_of(Type /*any*/) { return Type::template_package; }
 
-using Files = std::vector<std::pair<std::string, std::string>>;  ///< names and bytes
+using Files = std::vector<std::pair<std::string, std::string>>;  ///< (name, bytes)
 
 Files files_of_folder(const Path& folder) {
     Files files;
     for (const std::string& file : files_in(folder)) files.emplace_back(file, read_file(folder / file));
     return files;
 }
-/// What the object writes for a file of this name, and beside it.
+/// The files that the object writes under this name.
 Files files_of_object(const Object& object, const std::string& name) {
     const InMemory place(name);
     write_object(object, place.file);
@@ -64,13 +64,13 @@ std::string bytes_of_object(const Object& object, const std::string& name) {
 }
 std::string file_name_of(const Object& object) { return Path(object.name).filename().string(); }
 
-// ---- meshes: how they are written is part of them ----
+// ---- meshes, including the way they are written ----
 
-/// What an operation said of the writing of a mesh. A PLY file holds all of it; the other formats hold less.
+/// How an operation wrote a mesh. A PLY file holds all data; other formats hold less.
 struct MeshWriting {
     std::string comment;
     bool ascii = false;
-    Files files;  ///< by extension: of PLY, of the format that the mesh's name says, and of those that hold polygons
+    Files files;  ///< by extension: PLY, the format of the mesh's name, and the formats that hold polygons
 };
 }  // namespace
 
@@ -81,14 +81,14 @@ void fields(Archive& archive, T& x) {
 
 namespace {
 
-/// Of a PLY file that the toolkit writes.
+/// Number of faces of a PLY file written by the toolkit.
 std::size_t faces_of_ply(std::string_view ply) {
     constexpr std::string_view line = "\nelement face ";
     const std::size_t begin = ply.find(line);
     return begin == std::string_view::npos ? 0 : std::strtoull(ply.data() + begin + line.size(), nullptr, 10);
 }
 
-/// `faces`: of the object; a file that holds others holds polygons for its triangles.
+/// `faces`: number of faces of the object; if the file has another number, it holds polygons instead of the triangles.
 MeshWriting writing_of(const Object& object, std::size_t faces) {
     MeshWriting writing;
     const auto add = [&](const std::string& ending) {
@@ -107,7 +107,7 @@ MeshWriting writing_of(const Object& object, std::size_t faces) {
     return writing;
 }
 
-/// A way to write the mesh: the bytes that are kept, where there are any for the format, else by `write`.
+/// A function that writes the mesh: the stored bytes of the format if available, otherwise `write`.
 template <class Write>
 std::function<void(const Path&)> write_mesh_with(MeshWriting writing, Write write) {
     return [writing = std::make_shared<const MeshWriting>(std::move(writing)), write](const Path& file) {
@@ -164,7 +164,7 @@ PolygonSoup soup_of(const MeshFile& file) {
     return soup;
 }
 
-/// The same halfedges as reading makes.
+/// Builds the same halfedge order as reading a file does.
 MeshFile mesh_of(PolygonSoup soup, std::vector<Index> triangle_polygon) {
     TriangleSoup triangles;
     for (std::size_t i = 0; i < soup.polygon_count(); ++i) {
@@ -263,7 +263,7 @@ void save_coordinates(Writer& writer, const Object& object, const Coordinates& c
     if (coordinates.is_sparse()) save_sparse(writer, coordinates.sparse);
 }
 
-/// The files of coordinates as write_coordinates makes them; `header`: theirs, with other names.
+/// Writes the files of coordinates as write_coordinates does; `header`: their header, with other names.
 void write_restored(const Path& weights, const Coordinates& coordinates, const std::string& header) {
     if (extension(weights) != ".npy") fail_usage("'" + weights.string() + "' is no name for a NumPy array", "end it in .npy");
     Json document = parse_json(header, "pickle");
@@ -350,7 +350,7 @@ Object restored_annotations(Reader& reader) {
 
 // ---- several files ----
 
-/// Into a folder in memory that a context of their own keeps.
+/// Writes the files into an in-memory folder that `context` keeps.
 Path put_files(const Files& files, Context& context, const std::string& name) {
     const Path folder = context.memory(name);
     OutputTransaction own;
@@ -372,7 +372,7 @@ Held restored_folder(Reader& reader) {
 constexpr const char* template_name = "saved.template.json";
 
 void save_template(Writer& writer, const Object& object, const Template& known) {
-    std::vector<std::string> parts;  // by their names in the folder
+    std::vector<std::string> parts;  // by file name in the folder
     for (const PackagedFile& part : known.file.contents) parts.push_back(part.file.filename().string());
     writer(known.file, parts, files_of_object(object, template_name));
 }
@@ -390,7 +390,7 @@ Held restored_template(Reader& reader) {
         file.contents[i].file = folder / parts[i];
     }
     TemplateOptions options;
-    options.allow_outside = options.force_mesh = true;  // as whoever made it has allowed
+    options.allow_outside = options.force_mesh = true;  // as permitted by whoever loaded the template
     Object object = Object::of(load_template(std::move(file), options));
     object.write = [files = std::make_shared<const Files>(std::move(files))](const Path& path) {
         for (const auto& [name, bytes] : *files) write_file(name == template_name ? path : path.parent_path() / name, bytes);
@@ -432,7 +432,7 @@ void save_data(Writer& writer, const Object& object) {
     else if (const auto soup = object.as<PolygonSoup>()) writer(Type::polygons, *soup, writing_of(object, soup->polygon_count()));
     else if (const auto set = object.as<AnnotationSet>())
         writer(Type::annotations, *set, bytes_of_object(object, file_name_of(object)));
-    // A graph is held against the annotations when it is read.
+    // A graph is checked against its annotations when it is read.
     else if (object.as<RelationGraph>()) writer(Type::text, bytes_of_object(object, file_name_of(object)));
     else if (const auto document = object.as<Json>()) writer(Type::document, to_text(*document), static_cast<bool>(object.write));
     else if (const auto values = object.as<std::vector<double>>()) writer(Type::values, *values);

@@ -1,4 +1,4 @@
-// Programs that are judged: started for each case, or once.
+// Backends as programs, started for each case or once.
 #include "ostraka/conformance/kit.h"
 #include "ostraka/core/child_process.h"
 #include "ostraka/core/progress.h"
@@ -19,7 +19,7 @@ bool is_told_to_stop() {
     return watch != nullptr && watch->is_cancelled();
 }
 
-/// Reads "result" of a report or an answer into the answer.
+/// Copies "result" of a report into the answer.
 void take_result(Answer& answer, const Json& report) {
     const JsonValue* result = find_member(report, "result");
     if (result == nullptr) return;
@@ -72,7 +72,7 @@ public:
     }
     ~LinesBackend() override {
         if (!program_) return;
-        program_->close_input();  // the end of its input is the end of its work
+        program_->close_input();  // the program ends when its input ends
         const Stopwatch since;
         program_->wait([&] { return since.seconds() > 1; });
     }
@@ -109,7 +109,7 @@ public:
 
 private:
     void start() { program_ = std::make_unique<ChildProcess>(words_, ChildOptions{.pipes = true}); }
-    /// It is started again for the next case.
+    /// The program will be restarted for the next case.
     Answer crashed(const std::string& how) {
         program_.reset();
         left_.clear();
@@ -145,7 +145,7 @@ private:
 
     std::vector<std::string> words_;
     double time_limit_;
-    std::unique_ptr<ChildProcess> program_;  ///< none after one that crashed
+    std::unique_ptr<ChildProcess> program_;  ///< null after a crash
     std::string left_;
     std::mutex mutex_;
 };

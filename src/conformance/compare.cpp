@@ -48,7 +48,7 @@ std::string mesh_difference(const Comparison& comparison, const Mesh& expected, 
         return counted(got.number_of_vertices(), "vertex") + " and " + counted(got.number_of_faces(), "face") + ", expected " +
                std::to_string(expected.number_of_vertices()) + " and " + std::to_string(expected.number_of_faces());
     const double limit = comparison.within * scale_of(comparison, expected);
-    std::vector<Index> place(got.number_of_vertices());  // of each vertex its own among the expected
+    std::vector<Index> place(got.number_of_vertices());  // index of the matching expected vertex
     double most = 0;
     if (is_free(comparison, "vertex order")) {
         std::vector<Point> points;
@@ -89,7 +89,7 @@ std::string mesh_difference(const Comparison& comparison, const Mesh& expected, 
     return {};
 }
 
-/// Share of area that two sets of faces of one mesh have in common (Jaccard).
+/// Area of the intersection over area of the union of two face sets (Jaccard index).
 double overlap_of(const Mesh& mesh, const std::vector<Index>& a, const std::vector<Index>& b) {
     std::vector<Index> both, any;
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
@@ -98,7 +98,7 @@ double overlap_of(const Mesh& mesh, const std::vector<Index>& a, const std::vect
     return all > 0 ? area_of(mesh, both) / all : both.size() == any.size() ? 1 : 0;
 }
 
-/// How far the places of points and lines are apart, share of the diagonal.
+/// Hausdorff distance between two vertex sets, relative to the diagonal.
 double apart(const Mesh& mesh, const std::vector<Index>& a, const std::vector<Index>& b) {
     if (a.empty() || b.empty()) return a.empty() && b.empty() ? 0 : 1;
     const auto farthest = [&](const std::vector<Index>& from, const std::vector<Index>& to) {
@@ -158,7 +158,7 @@ std::string array_difference(const Comparison& comparison, const Path& expected,
            digits(wanted.values[worst], 6) + ", allowed difference " + digits(limit, 4);
 }
 
-/// JSON pointers of what differs, and how.
+/// Collects the differences, with JSON pointers.
 void compare_values(const Comparison& comparison, const JsonValue& expected, const JsonValue& got, const std::string& place,
                     std::vector<std::string>& wrong) {
     const auto skipped = [&](const std::string& at) {
@@ -222,7 +222,7 @@ std::string difference(const Comparison& comparison, const Path& expected, const
         AnnotationSet found;
         if (expected_mesh == got_mesh) {
             found = read_annotations(got, wanted_on);
-        } else {  // on a mesh of the backend's own, which must be that which was expected
+        } else {  // on the backend's own mesh, which must equal the expected one
             const Mesh own = read_mesh(got_mesh).mesh;
             if (own.number_of_faces() != wanted_on.number_of_faces()) return "are on another mesh than expected";
             found = read_annotations(got, own);

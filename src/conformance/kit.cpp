@@ -34,7 +34,7 @@ Comparison read_comparison(const JsonValue& value) {
     return comparison;
 }
 
-/// Takes members of these names out of objects at any depth.
+/// Removes members with these names from objects at any depth.
 void remove_members(JsonValue& value, const std::vector<std::string>& names) {
     if (value.IsArray())
         for (auto& one : value.GetArray()) remove_members(one, names);
@@ -45,7 +45,7 @@ void remove_members(JsonValue& value, const std::vector<std::string>& names) {
 
 Path expected_folder(const ConformanceKit& kit, const ConformanceCase& one) { return kit.folder / "expected" / one.id; }
 
-/// "output/slices.json" of the file "slices/": the file of that output, and what lies in it.
+/// File of an output, or of a file in an output folder: "output/slices.json" for the folder "slices/".
 std::string file_of(const ConformanceCase& one, const std::string& what) {
     const std::size_t slash = what.find('/');
     const auto output = one.outputs.find(what.substr(0, slash));
@@ -53,10 +53,10 @@ std::string file_of(const ConformanceCase& one, const std::string& what) {
     return slash == std::string::npos ? output->second : (Path(output->second) / what.substr(slash + 1)).string();
 }
 
-/// Flags of all commands, which are for who runs the kit.
+/// Flags common to all commands, reserved for the user who runs the kit.
 constexpr const char* callers_flags[]{"json", "show", "quiet", "threads", "memory", "help"};
 
-/// A name below a folder that is new, so that it holds no links.
+/// Throws unless the name lies below the case's folder, which is new and holds no links.
 void require_below(const std::string& name, const std::string& where, const std::string& at) {
     require_file_name(name, where, at);
     const Path path(name);
@@ -66,7 +66,7 @@ void require_below(const std::string& name, const std::string& where, const std:
                    "give a relative name without '..'");
 }
 
-/// Names become flags of a command line: no other text, and none of the flags that all commands have.
+/// Names become command-line flags: throws for other text, and for flags common to all commands.
 void require_setting(const std::string& name, const std::string& where, const std::string& at) {
     const bool is_plain = !name.empty() && name[0] >= 'a' && name[0] <= 'z' && std::all_of(name.begin(), name.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
@@ -76,7 +76,7 @@ void require_setting(const std::string& name, const std::string& where, const st
     if (!is_plain || is_common) fail_input(where, "at " + at + ": is no option that a case may set", "leave it out");
 }
 
-/// Values that stand without their names on a command line do not begin as flags do.
+/// Throws if a positional value looks like a flag.
 void require_no_flag(const JsonValue& value, const std::string& where, const std::string& at) {
     const auto begins_as_one = [](const JsonValue& one) {
         return one.IsString() && one.GetStringLength() > 1 && one.GetString()[0] == '-' && !number_of(text_of(one));
@@ -85,7 +85,7 @@ void require_no_flag(const JsonValue& value, const std::string& where, const std
     if (is_wrong) fail_input(where, "at " + at + ": begins with a dash", "write it otherwise");
 }
 
-/// What a case names lies in the kit or in the folder of the case, and it sets nothing that is the caller's to set.
+/// Checks that files of a case lie in the kit or in the folder of the case, and that it sets no reserved flags.
 void check_names(const ConformanceKit& kit, const ConformanceCase& one, const Call& call, const std::string& where) {
     const std::string remedy = "put the file into the kit";
     const auto require_in_kit = [&](const std::string& name, const std::string& at) {
@@ -214,7 +214,7 @@ Json settings_of(const ConformanceKit& kit, const ConformanceCase& one, const Pa
         add_member(settings, name, std::move(value), allocator);
     }
     for (const auto& [output, file] : one.outputs) add_member(settings, output, (folder / file).string(), allocator);
-    // Where nobody names the folder of a run it is made where one stands.
+    // Without a named folder, a run would write into the current folder.
     if (one.operation == "run" && !one.outputs.contains("output"))
         add_member(settings, "output", (folder / "unnamed-run").string(), allocator);
     return settings;
@@ -282,7 +282,7 @@ void record_case(const ConformanceKit& kit, const ConformanceCase& one, Backend&
     std::error_code code;
     std::filesystem::remove_all(expected, code);
     std::set<std::string> files;
-    Json report(rapidjson::kObjectType);  // what is compared, and no more: other members may name places of this machine
+    Json report(rapidjson::kObjectType);  // only compared members: others may contain local paths
     for (const Comparison& comparison : one.comparisons) {
         if (comparison.what == "report") {
             if (!answer.result) fail_work("case '" + one.id + "'", "there is no report", "correct the case");

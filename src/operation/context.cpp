@@ -11,7 +11,7 @@ namespace ostraka {
 
 struct Object::Made {
     std::mutex mutex;
-    std::map<std::string, Checksums> of;  ///< by name
+    std::map<std::string, Checksums> of;  ///< by name of the object
 };
 
 std::shared_ptr<Object::Made> Object::make_made() { return std::make_shared<Made>(); }
@@ -19,7 +19,7 @@ std::shared_ptr<Object::Made> Object::make_made() { return std::make_shared<Made
 const Object::Checksums& Object::checksums() const {
     const std::lock_guard lock(made_->mutex);
     if (const auto known = made_->of.find(name); known != made_->of.end()) return known->second;
-    Checksums sums{sha256, {}};  // kept once they are complete: writing may be cancelled
+    Checksums sums{sha256, {}};  // stored only once complete, because writing may be cancelled
     if (sums.sha256.empty() && write) {
         static std::atomic<std::size_t> count{0};
         struct Folder {
@@ -31,7 +31,7 @@ const Object::Checksums& Object::checksums() const {
         write(file);
         own.commit();
         sums.sha256 = sha256_of_file(file);
-        for (const std::string& one : files_in(folder.path))  // such as the header of coordinates
+        for (const std::string& one : files_in(folder.path))  // e.g. the header of coordinates
             if (one != file.filename()) sums.beside.emplace_back(one, sha256_of_file(folder.path / one));
     } else if (const auto bytes = as<std::string>(); sums.sha256.empty() && bytes) {
         sums.sha256 = ostraka::sha256(*bytes);
@@ -80,11 +80,12 @@ struct Context::Kept {
     };
     using Name = std::tuple<std::string, std::type_index, std::string>;
     std::map<Name, Entry> objects;
-    std::set<Name> reading;  ///< by a context that shares them
+    std::set<Name> reading;  ///< names that a sharing context is reading
     std::mutex mutex;
     std::condition_variable read;
 
-    /// What is kept under this name and unchanged, once nobody reads it; else it is this context that reads it.
+    /// The cached entry of this name if it is unchanged, after waiting for any reader of it; otherwise the caller becomes its
+    /// reader.
     std::optional<Entry> find_or_begin(const Name& name) {
         std::unique_lock lock(mutex);
         read.wait(lock, [&] { return !reading.contains(name); });
@@ -127,20 +128,20 @@ Provenance Context::provenance() const {
     provenance.options = run_->parameters->options.values();
     std::erase_if(provenance.options, [](const auto& option) { return option.second.empty(); });
     std::set<Path> listed;
-    std::map<Path, std::string> known;  // checksums of what was read
+    std::map<Path, std::string> known;  // checksums of files already read
     for (const auto& entry : run_->read) known.emplace(entry.file, entry.sha256);
     for (const Slot* slot : run_->parameters->slots()) {
         if (slot->role != Role::input) continue;
         for (std::size_t i = 0; i < slot->sources.size(); ++i) {
             const Source& source = slot->sources[i];
-            if (source.object.as<Path>()) continue;  // a folder, whose files are recorded
+            if (source.object.as<Path>()) continue;  // a folder; its files are recorded separately
             if (source.object) {
                 provenance.inputs.emplace_back(Path(source.object.name).filename().string(), run_->know(*slot, i));
                 continue;
             }
             listed.insert(source.file);
             const std::string called = (source.label.empty() ? "" : source.label + "=") + source.file.filename().string();
-            if (!known.contains(source.file)) {  // not read yet, or a folder, whose files are read
+            if (!known.contains(source.file)) {  // not read yet, or a folder, whose files are recorded separately
                 if (!file_exists(source.file)) continue;
                 run_->read.push_back({source.file, sha256_of_file(source.file)});
                 known.emplace(source.file, run_->read.back().sha256);
@@ -175,7 +176,7 @@ std::shared_ptr<const void> Context::load(const Slot& slot, std::size_t i, std::
             return run_->loaded[place] = known->data;
         }
     std::optional<Kept::Entry> entry;
-    struct End {  // whatever becomes of the reading
+    struct End {  // ends the reading also if an exception is thrown
         Kept* kept;
         const Kept::Name& name;
         std::optional<Kept::Entry>& entry;

@@ -1,4 +1,4 @@
-// What a call takes, as JSON.
+// The declaration of a call as JSON.
 #include "ostraka/core/json_build.h"
 #include "ostraka/operation/operation.h"
 
@@ -6,7 +6,7 @@ namespace ostraka {
 
 namespace {
 
-/// Members "minimum" and "maximum", or one of the allowed names, of a schema or a declaration.
+/// Adds the rule of an option to a schema or declaration: "minimum" and "maximum", or the allowed names under the key `names`.
 void add_rule(JsonValue& object, const Option& option, const char* names, JsonAllocator& allocator) {
     if (const auto* range = std::get_if<Range>(&option.rule))
         add_members(object, allocator, "minimum", range->min, "maximum", range->max);
@@ -27,7 +27,7 @@ JsonValue option_schema(const Option& option, JsonAllocator& allocator) {
     return schema;
 }
 
-/// The value before anything was set, in its type.
+/// Default value of an option, with its JSON type.
 JsonValue initial_of(const Option& option, JsonAllocator& allocator) {
     const OptionType type = option.type();
     if (type == OptionType::boolean) return JsonValue(option.initial == "true");

@@ -10,24 +10,25 @@ namespace ostraka {
 
 namespace {
 
-/// Of an object in memory that another operation made, or that is bytes or a folder.
+/// Path of an in-memory file or folder that holds the object.
 Path in_memory(Context& context, const Object& object, const std::string& slot) {
     if (const auto folder = object.as<Path>()) return *folder;
     const Path path = context.memory(object.name.empty() ? slot : Path(object.name).filename().string());
-    OutputTransaction own;  // it is read before the outputs of the call are complete
+    OutputTransaction own;  // read before the outputs of the call are committed
     write_object(object, path, slot);
     own.commit();
     return path;
 }
 
-/// Says the checksum of an object that came without one and without a file that it would be.
+/// Records the checksum `sum()` for an object that has neither a checksum nor a file form.
 void tell_checksum(const Slot& slot, std::size_t i, const std::function<std::string()>& sum) {
     const Object& object = slot.sources[i].object;
     if (object.sha256.empty() && !object.write) slot.context->record_object(slot, i, sum());
 }
 
-/// The i-th object of a slot: what `read` makes of its file; an object in memory itself if it is a T, with the checksum that
-/// `sum` says and once `check` has seen it; else what `convert` makes of it, if anything, or `read` of the file that it would be.
+/// The i-th object of a slot. A file is read with `read`. An object in memory is used directly if it is a T, after `check`, and
+/// its checksum is `sum`; otherwise it is converted by `convert` if possible, or written to an in-memory file and read from
+/// there.
 template <class T, class Read, class Sum>
 const T& loaded(const Slot& slot, std::size_t i, const std::string& key, const Read& read, const Sum& sum,
                 const std::function<std::optional<T>(const Object&)>& convert = {},
@@ -46,16 +47,16 @@ const T& loaded(const Slot& slot, std::size_t i, const std::string& key, const R
         }));
 }
 
-/// Provenance names the bytes of every input.
+/// Throws: provenance requires the checksum of every input.
 [[noreturn]] std::string unknown_checksum(const Slot& slot) {
     throw Error(ErrorKind::usage, slot.name, "is given as an object that does not say of which bytes",
                 "say its checksum (Object::sha256), or give a file, or its bytes");
 }
 
-/// Of an object that is what it is for another one only.
+/// Key for an object that depends on another object in memory.
 std::string address(const void* object) { return std::to_string(reinterpret_cast<std::uintptr_t>(object)); }
 
-/// A copy, or the object itself where nobody else has it.
+/// Returns a copy, or moves the object if nothing else holds it.
 template <class T>
 T taken(const Slot& slot, std::size_t i, const T& object) {
     if (slot.context->keep_objects || slot.sources.at(i).object) return object;
@@ -116,7 +117,7 @@ const MeshFile& MeshInput::get(std::size_t i) const {
         tell_checksum(*this, i, [&] { return mesh_checksum(file.mesh); });
         return file;
     };
-    // Where objects are kept, the file is read once for those who want its polygons and those who want the mesh.
+    // With a cache, the file is read once for both its polygons and its mesh.
     const auto read = [&](const Path& path) {
         return context->keep_objects && !sources.at(i).object ? mesh_of_polygons(polygons(i), path.string()) : read_mesh(path);
     };

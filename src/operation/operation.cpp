@@ -89,7 +89,7 @@ Slot& Call::slot(const std::string& name) {
 }
 
 namespace {
-/// Errors of options name the operation.
+/// Runs `work`; errors about options name the operation.
 template <class Work>
 void in_operation(const char* name, const Work& work) {
     try {
@@ -213,7 +213,7 @@ void Call::set(const JsonValue& values, const std::string& where) {
 }
 
 namespace {
-/// Arguments in the wrong order: a mesh where a JSON document is expected.
+/// Refuses a mesh file where a JSON document is expected (arguments in the wrong order).
 void refuse_mesh(const Slot& slot, const Path& file) {
     constexpr std::array documents{Kind::annotations, Kind::graph, Kind::edit, Kind::recipe, Kind::rules};
     const auto meshes = endings_of(Kind::mesh);
@@ -290,7 +290,7 @@ Report Call::run(Context& context, const std::function<void(const Report&)>& bef
     context.run_ = &run;
     const WatchScope watch(&context.watch);
     check_cancelled();
-    // Where somebody set a limit, what cannot keep it is refused before it begins.
+    // If a memory limit is set, refuse work that is estimated to exceed it.
     if (context.watch.memory_limit > 0)
         require_memory(operation_->memory_needed(input_bytes()), std::string("'") + entry_->name + "'",
                        "allow more, or use smaller meshes");

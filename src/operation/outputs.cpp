@@ -13,15 +13,15 @@ namespace ostraka {
 
 namespace {
 
-/// The name with this before its extension.
+/// Inserts `ending` before the extension of the file name.
 Path with_ending(const Path& file, const std::string& ending) {
     return ending.empty() ? file : file.parent_path() / (file.stem().string() + ending + file.extension().string());
 }
 
 bool goes_to_file(const Slot& slot) { return !slot.sources.empty() && !slot.sources.front().file.empty(); }
 
-/// Writes the slot's file by `write(file, made)`, or keeps what was made with that way to write it. `ending`: of one of several,
-/// before the extension.
+/// Writes `made` to the slot's file with `write(file, made)`, or keeps it in memory together with `write`. `ending`: inserted
+/// before the extension for one of several parts.
 template <class T, class Write>
 void put(const Slot& slot, T made, Write write, const std::string& ending = {}) {
     auto& sources = const_cast<std::vector<Source>&>(slot.sources);
@@ -40,7 +40,7 @@ void put(const Slot& slot, T made, Write write, const std::string& ending = {}) 
     source.object = std::move(object);
 }
 
-/// What the folder would lie in is no file.
+/// Throws if the nearest existing ancestor of the folder is not a folder.
 void check_can_be_made(const Path& folder) {
     std::error_code code;
     Path known = std::filesystem::absolute(folder, code);
@@ -74,7 +74,7 @@ std::string MeshOutput::part_file(const std::string& ending) const {
 }
 
 void MeshOutput::keep(Mesh mesh, MeshExtras extras, WriteOptions options, const std::string& ending) const {
-    // In memory it is as its file would be read: loops over edges go the same way.
+    // Make the mesh in memory equal to the one read back from its file, with the same order of edge traversal.
     if (!goes_to_file(*this)) mesh = build_mesh(to_soup(mesh));
     options = written(std::move(options));
     put(
@@ -105,7 +105,7 @@ void MeshOutput::write(TriangleSoup soup, MeshExtras extras, WriteOptions option
 void AnnotationsOutput::write(AnnotationSet set, const Mesh& mesh, const std::string& mesh_name,
                               const std::optional<Provenance>& own) const {
     const Provenance provenance = own ? *own : context->provenance();
-    if (goes_to_file(*this)) {  // no copy of the mesh
+    if (goes_to_file(*this)) {  // avoids a copy of the mesh
         context->check_output(sources.front().file);
         write_annotations(sources.front().file, set, mesh, mesh_name, provenance);
         return;
@@ -147,7 +147,7 @@ void CoordinatesOutput::write(Coordinates coordinates, const Mesh& mesh, const M
 void ValuesOutput::write(std::vector<double> values) const { put(*this, std::move(values), write_values); }
 
 namespace {
-/// With the provenance as its last member, if it is an object.
+/// A copy of the document; if it is an object, the provenance is appended as its last member.
 Json signed_document(const JsonValue& value, const Context& context) {
     Json document;
     auto& allocator = document.GetAllocator();
@@ -216,7 +216,7 @@ const Path& FolderOutput::open(std::size_t i, bool replaces) const {
     const Path folder = sources.at(i).file.empty() ? context->memory(name) : sources.at(i).file;
     make_folder(folder);
     if (!is_memory(folder)) {
-        // Known before the work, not after the first object of many hours.
+        // Check now, not when the first object is written hours later.
         if (::access(folder.c_str(), W_OK | X_OK) != 0)
             throw Error(ErrorKind::failure, folder.string(), "the folder cannot be written to",
                         "check its rights, or name another");
@@ -231,7 +231,7 @@ const Path& FolderOutput::open(std::size_t i, bool replaces) const {
 
 Path FolderOutput::in(const std::string& file, std::size_t i) const {
     const Path path = open(i) / file;
-    require_writable_inside(path, open(i));  // somebody else may have put links into the folder
+    require_writable_inside(path, open(i));  // the folder may contain links that others placed there
     context->check_output(path);
     return path;
 }

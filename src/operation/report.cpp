@@ -16,7 +16,7 @@ namespace ostraka {
 
 namespace {
 
-/// Sets a member of a member ("distortion.A"), making what is between.
+/// Sets a nested member ("distortion.A"), creating the objects in between.
 void set_member(JsonValue& object, std::string_view key, JsonValue value, JsonAllocator& allocator) {
     JsonValue* at = &object;
     for (std::size_t dot; (dot = key.find('.')) != std::string_view::npos; key.remove_prefix(dot + 1)) {
@@ -38,7 +38,7 @@ const Field* find_field(const std::vector<Field>& fields, std::string_view key) 
     return found == fields.end() ? nullptr : &*found;
 }
 
-/// A table for terminals: columns padded, numbers right-aligned, no text cut.
+/// A table for terminals: padded columns, numbers right-aligned, no text truncated.
 std::string plain_table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows) {
     std::vector<std::vector<std::string>> all{header};
     for (const auto& row : rows) {
@@ -54,7 +54,7 @@ std::string plain_table(const std::vector<std::string>& header, const std::vecto
     });
 }
 
-/// Names and values, one a line, the values below each other.
+/// Names and values, one pair per line, with the values aligned.
 std::string plain_values(const std::vector<std::pair<std::string, std::string>>& rows) {
     std::size_t widest = 0;
     for (const auto& [name, value] : rows) widest = std::max(widest, shown_width(name));

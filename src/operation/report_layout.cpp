@@ -7,7 +7,7 @@ namespace ostraka {
 namespace {
 
 JsonValue type_schema(const Field& field, JsonAllocator& allocator) {
-    static constexpr const char* types[]{"boolean", "integer", "number", "string", "number", "string"};  // of `any` none
+    static constexpr const char* types[]{"boolean", "integer", "number", "string", "number", "string"};  // `any` has no type
     JsonValue schema(rapidjson::kObjectType);
     if (field.type == FieldType::numbers || field.type == FieldType::texts)
         add_members(schema, allocator, "type", "array", "items",
@@ -19,7 +19,7 @@ JsonValue type_schema(const Field& field, JsonAllocator& allocator) {
     return schema;
 }
 
-/// The object with these fields, as a schema; dots in keys are members of members.
+/// JSON schema of an object with these fields; dots in keys separate nested members.
 JsonValue object_schema(const std::vector<Field>& fields, JsonAllocator& allocator) {
     JsonValue properties(rapidjson::kObjectType);
     std::map<std::string, std::vector<Field>> inner;

@@ -103,7 +103,7 @@ public:
             if (measure.value) text += ": " + digits(*measure.value, 4) + (in.empty() ? "" : " " + in);
             scene_.labels.push_back({text, ink, {}, drawn.points, true});
             if (!measure.value) continue;
-            // Where there are no labels beside the object, the value stands at the middle.
+            // Without labels beside the object, the value is drawn at the middle of the line.
             const std::array<double, 3>&a = drawn.points[(drawn.points.size() - 1) / 2],
                                      &b = drawn.points[drawn.points.size() / 2];
             scene_.markers.push_back({{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2}, ink, 0, text, true});
@@ -121,7 +121,7 @@ private:
             }
     }
 
-    /// Colours and outlines that follow the regions without the steps of the mesh.
+    /// Colours and outlines that follow the regions smoothly instead of along mesh edges.
     void smooth() {
         std::vector<int> labels;
         for (const Annotation* region : top_) labels.push_back(region == nullptr ? -1 : region->id);
@@ -149,8 +149,8 @@ private:
         }
     }
 
-    /// Steps of the edges away: each point goes half way to the middle of its neighbours, some times, ends stay; and back onto
-    /// the surface, with points between.
+    /// Smooths a line: four rounds of averaging each point with the midpoint of its neighbours, end points fixed; then
+    /// subdivides it and projects it onto the surface.
     void smooth_line(std::vector<std::array<double, 3>>& points) {
         const bool closed = points.size() > 3 && points.front() == points.back();
         if (closed) points.pop_back();
@@ -185,7 +185,7 @@ private:
         line.cased = cased;
     }
 
-    /// An edge with one smaller region on both sides.
+    /// Whether the smallest region is the same on both sides of the edge.
     [[nodiscard]] bool covered(Index from, Index to) const {
         if (on_map_) return false;
         const Halfedge edge = mesh_.halfedge(Vertex(from), Vertex(to));
@@ -193,11 +193,11 @@ private:
         return left != Mesh::null_face() && right != Mesh::null_face() && top_[left.idx()] == top_[right.idx()];
     }
 
-    /// The outline, closed, or what is left of it between its covered edges.
+    /// The closed outline, or its parts between covered edges.
     [[nodiscard]] std::vector<std::vector<Index>> seen_of(const Outline& outline) const {
         const std::size_t n = outline.size();
         const auto corner = [&](std::size_t i) { return outline[i % n]; };
-        std::size_t begin = 0;  // where a covered edge ends, if any is
+        std::size_t begin = 0;  // index after a covered edge, if there is one
         for (std::size_t i = 0; i < n && begin == 0; ++i)
             if (covered(corner(i), corner(i + 1))) begin = i + 1;
         std::vector<std::vector<Index>> lines;
@@ -215,14 +215,14 @@ private:
     const Mesh& mesh_;
     AnnotationStyle style_;
     bool on_map_;
-    std::optional<SurfaceSearch> surface_;  ///< made when a line needs it
-    std::vector<const Annotation*> top_;    ///< the smallest region on each face, null where none is; empty on a map
+    std::optional<SurfaceSearch> surface_;  ///< created when a line needs it
+    std::vector<const Annotation*> top_;    ///< the smallest region on each face, or null; empty if the scene shows values
 };
 
 }  // namespace
 
 void draw_annotations(Scene& scene, const Mesh& given_mesh, const AnnotationSet& given, const AnnotationStyle& given_style) {
-    // Free outlines are drawn as they are: on the mesh cut along them.
+    // Free outlines are drawn exactly, on the mesh cut along them.
     const AlongEdges along_edges(given_mesh, given);
     const Mesh& mesh = along_edges.mesh();
     const AnnotationSet& set = along_edges.annotations();
@@ -234,13 +234,13 @@ void draw_annotations(Scene& scene, const Mesh& given_mesh, const AnnotationSet&
         style.smooth = false;
     }
     AnnotationDrawing drawing(scene, mesh, set, style);
-    // Outlines come first, so that lines lie on top of them.
+    // Outlines come first, so that lines are drawn on top of them.
     for (const bool regions : {true, false})
         for (const Annotation& annotation : set.annotations)
             if ((annotation.type == AnnotationType::region) == regions) drawing.draw(annotation);
     for (const Annotation& annotation : set.annotations) drawing.add_to_legend(annotation);
     if (style.measures) {
-        PathSearch search(given_mesh);  // a tape along edges is one along the edges of the mesh itself
+        PathSearch search(given_mesh);  // tapes follow edges of the original mesh
         for (const Annotation& annotation : given.annotations) drawing.draw_measures(search, given_mesh, annotation, set.unit);
     }
     scene.unit = set.unit;

@@ -1,4 +1,4 @@
-// Annotations as things to draw.
+// Annotations as drawable elements of a scene.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -7,23 +7,23 @@
 namespace ostraka {
 
 struct AnnotationStyle {
-    bool smooth = false;    ///< borders of regions and lines without the steps of the mesh
-    bool painted = true;    ///< regions are faces in their colours; else outlines, as where the scene shows values
-    bool measures = false;  ///< measures with their pins and values
+    bool smooth = false;    ///< smooth borders of regions and smooth lines, not along mesh edges
+    bool painted = true;    ///< paint the faces of regions; otherwise draw outlines, as in scenes that show values
+    bool measures = false;  ///< draw measures with their pins and values
 };
 
-/// Adds colours, lines, dots and legend of the annotations of `mesh` to the scene, and their unit. Where the scene shows values,
-/// regions are outlines in their colours; else their faces are painted, the smallest on top, and of an outline what no smaller
-/// region covers is drawn. Each has a label.
+/// Adds colours, lines, points, labels and the legend of the annotations of `mesh` to the scene, and the unit. If the scene
+/// shows values, regions are drawn as coloured outlines; otherwise their faces are painted, the smallest region on top, and
+/// outlines are drawn except where a smaller region covers them.
 void draw_annotations(Scene& scene, const Mesh& mesh, const AnnotationSet& set, const AnnotationStyle& style = {});
 
-/// Their upward direction as `render` takes it.
+/// Their up direction in the text form that `render` accepts.
 std::string up_words(const AnnotationSet& set);
 
-/// A small picture of an object and its annotations, if it has any.
+/// A small picture of an object with its annotations, if any.
 Picture thumbnail(const Mesh& mesh, const AnnotationSet* set, const std::string& size);
 
-/// Adds the edges and control points of a cage, which hide nothing and are not hidden.
+/// Adds the edges and control points of a cage, drawn without occlusion.
 void draw_cage(Scene& scene, const Mesh& cage);
 
 }  // namespace ostraka

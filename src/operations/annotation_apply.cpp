@@ -16,7 +16,7 @@ namespace ostraka {
 
 namespace {
 
-/// A recipe or annotations, not labels.
+/// Whether the file is a recipe or annotations, as opposed to labels.
 bool is_document(const Slot& slot) {
     const std::string ending = extension(slot.file());
     return ending == ".json" || ending == ".ant" || (slot && slot.sources.front().object.as<AnnotationSet>() != nullptr);
@@ -45,7 +45,7 @@ void declare_annotations(ReportLayout& layout) {
                  people("perimeter / length", FieldType::number, "length"), texts("attributes", "attributes"), text("note"));
 }
 
-/// What the set holds.
+/// Reports the annotations of the set.
 void report_annotations(Context& context, Report& report, const Mesh& mesh, const AnnotationSet& set) {
     context.notes("", set.notes);
     report.set_unit(set.unit);
@@ -68,7 +68,7 @@ void report_annotations(Context& context, Report& report, const Mesh& mesh, cons
     }
 }
 
-/// Further files of annotations that were made.
+/// Further outputs of annotations: a coloured mesh and face labels.
 struct AnnotationPictures {
     MeshOutput coloured;
     FileOutput labels;
@@ -214,7 +214,7 @@ struct AnnotationRemap final : Operation {
         report_annotations(context, report, target, moved);
     }
 
-    /// The old mesh may be broken here: labels ask for the count of its faces only.
+    /// The old mesh may be defective: labels only need its number of faces.
     void carry_labels(Context& context, Report& report, const Mesh& target) const {
         const TriangulatedSoup source = triangulate(before.take_polygons());
         const std::size_t count = source.soup.triangles.size();

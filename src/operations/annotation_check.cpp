@@ -29,7 +29,7 @@ struct AnnotationCheck final : Operation {
     }
 
     void run(Context&, Report& report) override {
-        // What cannot be read at all is a failure, not an answer.
+        // An unreadable file is a failure, not a "no".
         const Vocabulary* known_words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;
         const ClassRules* kept_rules = rules ? &rules.load<ClassRules>(read_class_rules) : nullptr;
         const Mesh& on = mesh->mesh;

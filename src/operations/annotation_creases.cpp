@@ -1,4 +1,4 @@
-// annotation creases: ridges and hollows of the surface as candidates for joints.
+// annotation creases: ridges and valleys of the surface as candidates for joints.
 #include "operations.h"
 
 #include "ostraka/select/creases.h"

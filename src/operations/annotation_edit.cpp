@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-/// An id, or a tag or name.
+/// Parses an id, or a tag or name.
 EntryName entry_name(const std::string& text) {
     int value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -19,7 +19,7 @@ EntryName entry_name(const std::string& text) {
     return {whole ? std::optional(value) : std::nullopt, text};
 }
 
-/// "200,30,60", "200 30 60" or "#c81e3c".
+/// Parses a colour: "200,30,60", "200 30 60" or "#c81e3c".
 std::array<int, 3> named_colour(const std::string& text) {
     std::array<int, 3> colour{};
     const bool hexadecimal = text.size() == 7 && text[0] == '#';
@@ -84,7 +84,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         std::vector<AnnotationEdit> edits;
         if (list) edits = list.load<std::vector<AnnotationEdit>>(read_edits);
         else if (!annotation.empty()) edits = {by_options()};
-        // A tag may be a number as well.
+        // A number may also be a tag.
         if (!list && !edits.empty() && edits[0].annotation.id && edited.find(*edits[0].annotation.id) == nullptr)
             edits[0].annotation.id.reset();
         for (AnnotationEdit& edit : edits)
@@ -103,7 +103,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         output.write(std::move(edited), on, mesh.file());
     }
 
-    /// "image=photo.jpg"
+    /// Parses "image=photo.jpg".
     static Information referred(const std::string& text) {
         const std::size_t equals = text.find('=');
         Information one;
@@ -117,7 +117,7 @@ struct AnnotationEditing final : AnnotatedMeshOperation {
         one.value = text.substr(equals + 1);
         return one;
     }
-    /// Files are named relative to the annotations that name them.
+    /// Resolves a file relative to the annotations that refer to it.
     [[nodiscard]] Path beside_output(const std::string& value) const {
         const Path file(value);
         return file.is_absolute() || output.file().empty() ? file : Path(output.file()).parent_path() / file;

@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-/// A mesh or its annotations: both of one name in one folder.
+/// A collection of one object, given as its mesh or its annotations, which have the same name and folder.
 Collection single_object(const Path& file) {
     const std::string name = file.filename().string(), ending = ".ant.json";
     CollectionObject object;
@@ -43,7 +43,7 @@ Path graph_beside(const CollectionObject& object) {
     return file_exists(graph) ? graph : Path();
 }
 
-/// What a query is asked of, read.
+/// An object on which a query is evaluated.
 struct ReadObject {
     MeshFile file;
     AnnotationSet set;
@@ -183,7 +183,7 @@ struct AnnotationFind final : Operation {
         if (found == 0) report.answer_no();
     }
 
-    /// Words that no object has and the vocabulary does not know are slips more often than questions.
+    /// Reports words that no object has and the vocabulary does not contain, as they are probably typing errors.
     static void note_unknown(Report& report, const AnnotationQuery& asked, const std::vector<ObjectResult>& results,
                              const Vocabulary* words) {
         std::set<std::string> unknown(asked.words().begin(), asked.words().end()), tags;

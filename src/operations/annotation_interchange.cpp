@@ -62,7 +62,7 @@ struct AnnotationImport final : Operation {
             try {
                 return import_annotations(on, bytes, *format, input.file(), base, options);
             } catch (const Error& error) {
-                // What is wrong with the mesh is said of its file.
+                // Errors about the mesh name its file.
                 if (error.kind() != ErrorKind::input || error.where() != "mesh") throw;
                 fail_input(mesh.file(), error.problem(), error.remedy());
             }

@@ -13,7 +13,7 @@ void declare_differences(ReportLayout& layout, const std::string& table) {
 
 namespace {
 
-/// Differences and conflicts are of an annotation, or of the set.
+/// Adds a row for a difference or conflict of an annotation, or of the set as a whole.
 template <class Change>
 Report::Row named_row(Report& report, const std::string& table, const Change& change) {
     Report::Row row = report.row(table);

@@ -1,4 +1,4 @@
-// annotation select: one step of a recipe, given by options.
+// annotation select: one step of a recipe, specified by options.
 #include "select_step.h"
 
 #include "ostraka/annotation/label_file.h"
@@ -44,10 +44,10 @@ struct AnnotationSelect final : Operation {
             begins ? std::string() : record.load<std::string>([](const Path& path) { return read_file(path); });
         Json steps = begins ? begun(makes) : parse_json(before, record.file());
         if (!begins) validate(steps, "recipe", record.file());
-        // The recipe alone makes these annotations.
+        // Whether the recipe alone reproduces the annotations.
         const bool replayable = recipe && (begins ? makes : !makes && stems_from(start.annotations, steps, before, start.folder));
 
-        // This step alone, with the head of the recipe, on what there is.
+        // This step alone, with the head of the recipe, applied to the current annotations.
         Json now;
         now.CopyFrom(steps, now.GetAllocator());
         now["annotations"].Clear();
@@ -56,10 +56,10 @@ struct AnnotationSelect final : Operation {
             for (Json* to : {&steps, &now})
                 (*to)["annotations"].PushBack(JsonValue(made, to->GetAllocator()), to->GetAllocator());
         };
-        AnnotationSet there;  // ids follow what is there when the step is taken
+        AnnotationSet there;  // new ids depend on the annotations present at this step
         there.annotations = start.annotations.annotations;
         if (makes && !object_class.empty() && !(step.all && step.action == "make")) {
-            // The whole object comes first, as a step of its own: later steps then find the same ids.
+            // The whole object is added first, as a step of its own, so that later steps find the same ids.
             Json whole = parse_json(R"({"id": 0, "type": "region", "select": {"all": true}})", "root");
             add_member(whole, "tag", object_class, whole.GetAllocator());
             append(whole);
@@ -91,7 +91,7 @@ struct AnnotationSelect final : Operation {
                         ": replay it with 'annotation apply --edit' on the annotations as they were before it was begun");
     }
 
-    /// Says where the set has an annotation of this tag already, which is easily meant.
+    /// Notes that the set already has an annotation with this tag, as the user may have meant to extend it.
     void note_twins(const AnnotationSet& there, Report& report) const {
         std::vector<std::string> ids;
         for (const Annotation& annotation : there.annotations)
@@ -101,7 +101,7 @@ struct AnnotationSelect final : Operation {
                     ": to make it a part of that one, give --action 'add to' --id " + ids.front());
     }
 
-    /// What the options say of the object, where the recipe does not. With an older file --up turns the camera only.
+    /// Adds what the options state about the object and the recipe does not. With an existing file, --up sets the camera only.
     void add_head(Json& document, bool makes) const {
         auto& a = document.GetAllocator();
         const auto missing = [&](const char* name) { return find_member(document, name) == nullptr; };
@@ -117,7 +117,7 @@ struct AnnotationSelect final : Operation {
         return document;
     }
 
-    /// True if the set is what 'annotation apply' makes of the recipe with these bytes.
+    /// Whether the set was produced by 'annotation apply' from the recipe with these bytes.
     static bool stems_from(const AnnotationSet& set, const Json& recipe, const std::string& bytes, const Path& folder) {
         if (!set.provenance.IsObject()) return false;
         const JsonValue *command = find_member(set.provenance, "command"), *inputs = find_member(set.provenance, "inputs");

@@ -1,4 +1,4 @@
-// annotation smooth: outlines and lines without the steps of the edges.
+// annotation smooth: smooth outlines and lines that do not follow the mesh edges.
 #include "operations.h"
 
 #include "ostraka/annotation/fair_outlines.h"

@@ -18,7 +18,7 @@ namespace ostraka {
 
 namespace {
 
-/// Less than 1e-9 % is what rounding leaves of nothing.
+/// Shares below 1e-9 % are rounding errors and shown as 0.
 std::string percent(double share) { return std::abs(share) < 1e-11 ? "0" : number(100 * share, 3); }
 
 std::string remarks_on(const TransferScore& score) {
@@ -102,7 +102,7 @@ struct AnnotationTransfer final : Operation {
             if (registered) take_home(*registered, again->annotations);
         }
 
-        // All work is done: what is written now is complete.
+        // All work is done, so what is written now is complete.
         if (coloured) coloured.write(on, colour_by_annotation(on, there.annotations));
         if (map) map.write({"face-origin", there.refined->face_origin, onto.number_of_faces()});
         report.run("checks", there.times.checks);
@@ -121,7 +121,7 @@ struct AnnotationTransfer final : Operation {
         if (refined) refined.write(std::move(there.refined->mesh));
     }
 
-    /// The source where the target is.
+    /// The source, registered to the target.
     struct RegisteredSource {
         Mesh mesh;
         AnnotationSet set;
@@ -152,7 +152,7 @@ struct AnnotationTransfer final : Operation {
         return registered;
     }
 
-    /// Annotations on the moved source as those on the source itself, measures taken there.
+    /// Transforms annotations of the registered source back to the source, and measures there.
     void take_home(const RegisteredSource& registered, AnnotationSet& set) const {
         AnnotationSet home = moved_annotations(source->mesh, set, registered.motion.inverse(), annotations.on(source->mesh).unit);
         refresh_measures(source->mesh, home);

@@ -1,4 +1,4 @@
-// assemble: a box of fragments put together by their breaks.
+// assemble: joins fragments along their fracture surfaces.
 #include "completed_output.h"
 #include "operations.h"
 #include "turned_groups.h"
@@ -65,7 +65,7 @@ struct Assemble final : Operation {
     }
 
 private:
-    /// A file that was named, or found in a folder.
+    /// A file given by name, or found in a given folder.
     struct Given {
         Path file;
         std::size_t slot;
@@ -97,7 +97,7 @@ private:
         }
         if (list.size() < 2)
             fail_usage("there is one fragment, and nothing to join it with", "name two or more, or their folder");
-        // So that the order in which they are named does not matter.
+        // Makes the result independent of the order of the files.
         std::stable_sort(list.begin(), list.end(),
                          [](const Given& x, const Given& y) { return x.file.stem().string() < y.file.stem().string(); });
         for (std::size_t k = 1; k < list.size(); ++k)
@@ -123,7 +123,7 @@ private:
                 if (!in_memory(k)) attempt(k, [&] { return read_fragment(list[k].file, reading); });
             },
             1);
-        // Each thread read on its own: that they are inputs is said here.
+        // The files were read by several threads; record them as inputs here.
         context.record([&] {
             for (std::size_t k = 0; k < list.size(); ++k)
                 if (!in_memory(k))
@@ -156,13 +156,13 @@ private:
 
     static std::string remedy_of(const Error& error) { return error.remedy().empty() ? "" : " (" + error.remedy() + ")"; }
 
-    /// Copies count once; what is of another size altogether is said.
+    /// Leaves out copies and fragments of a very different size, and reports them.
     void find_odd(Report& report) {
         for (const OddFragment& odd : odd_fragments(fragments)) {
             report.note(printable(fragments[odd.fragment].name) + " " + odd.text);
             if (!odd.left_out) continue;
             left_out[odd.fragment] = odd.text;
-            // Without a surface of its own it meets nothing.
+            // A fragment without a surface is not joined to others.
             fragments[odd.fragment].mesh = Mesh();
             fragments[odd.fragment].facets.clear();
         }
@@ -245,7 +245,7 @@ private:
         if (result.groups() == 0) report.answer_no();
     }
 
-    /// In words of the files: what is known of how facets came about.
+    /// Why a fragment is not joined, in terms of the files: includes where its facets came from.
     [[nodiscard]] std::string why_alone(std::size_t k, const std::string& reason, double broken) const {
         if (left_out.contains(k)) return left_out.at(k);
         if (reason.empty() || fragments[k].mesh.number_of_faces() < static_cast<std::size_t>(options.min_faces) ||
@@ -281,7 +281,7 @@ private:
         MeshExtras extras;
         Scene scene;
         std::size_t shown = 0;
-        std::vector<std::size_t> begins;  // of each fragment's points
+        std::vector<std::size_t> begins;  // first point of each fragment
         for (std::size_t k = 0; k < fragments.size(); ++k) {
             if (result.group[k] != g) continue;
             const Mesh placed = moved(fragments[k].mesh, result.poses[k]);
@@ -325,7 +325,7 @@ private:
         if (known) complete(context, report, whole, name, entry, allocator);
     }
 
-    /// Moves fragments away from their common middle, so that breaks are seen.
+    /// Moves fragments away from their common centre, so that fracture surfaces are visible.
     static void draw_apart(TriangleSoup& soup, std::vector<std::size_t> begins) {
         begins.push_back(soup.points.size());
         const auto middle = [&](std::size_t begin, std::size_t end) {
@@ -334,7 +334,7 @@ private:
                 sum += Eigen::Vector3d(soup.points[i][0], soup.points[i][1], soup.points[i][2]);
             return Eigen::Vector3d(sum / static_cast<double>(std::max<std::size_t>(1, end - begin)));
         };
-        constexpr double apart = 0.4;  // of the distance from the middle
+        constexpr double apart = 0.4;  // fraction of the distance from the centre
         const Eigen::Vector3d whole = middle(0, soup.points.size());
         for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
             const Eigen::Vector3d way = apart * (middle(begins[k], begins[k + 1]) - whole);
@@ -374,9 +374,9 @@ private:
     bool no_pictures = false, fresh = false;
     std::vector<Fragment> fragments;
     std::vector<std::string> facets_from;
-    std::vector<std::pair<std::string, std::string>> unreadable;  ///< name, what is wrong
-    std::map<std::size_t, std::string> left_out;                  ///< of copies
-    std::size_t asked = 0, recalled = 0;                          ///< pairs
+    std::vector<std::pair<std::string, std::string>> unreadable;  ///< name and problem
+    std::map<std::size_t, std::string> left_out;                  ///< reason for each excluded fragment
+    std::size_t asked = 0, recalled = 0;                          ///< numbers of pairs
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// cage edit: moves the vertices of a cage by an edit that knows no mesh.
+// cage edit: moves the vertices of a cage by an edit that does not need a mesh.
 #include "operations.h"
 
 #include "ostraka/cage/cage.h"
@@ -39,7 +39,7 @@ struct CageEdit final : Operation {
         output.write(std::move(moved), cage->extras);
     }
 
-    /// A step may select by annotation, but not here.
+    /// Refuses steps that select by annotation: there are no annotations here.
     void refuse_annotations(const Json& document) const {
         const JsonValue* steps = document.IsObject() ? find_member(document, "steps") : nullptr;
         if (steps == nullptr || !steps->IsArray()) return;

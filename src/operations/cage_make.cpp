@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-/// The table of what a cage can hold.
+/// Declares the table of the constraints that a cage can satisfy.
 void declare_reach(ReportLayout& report) {
     report.table("reach", integer("id", "id"), text("type", "constraint"), texts("parts", "parts"), integer("rows", "rows"),
                  integer("rank", "rank through the cage"), number("asked", "asked", "length"), number("left", "left", "length"),
@@ -147,7 +147,7 @@ struct CageMake final : Operation {
             else output.write_part(ending(sizes[i]), std::move(results[i].cage));
     }
 
-    /// One cage that can meet the constraints, as far as one can.
+    /// One cage fine enough to satisfy the constraints, as far as a cage can.
     [[nodiscard]] std::vector<CageResult> for_constraints(const Mesh& object, const AnnotationSet& set,
                                                           const std::optional<MirrorPlane>& plane, Report& report) const {
         CageForConstraints made =
@@ -163,7 +163,7 @@ struct CageMake final : Operation {
         return results;
     }
 
-    /// All levels and the cages of the parts as one mesh, the outermost first.
+    /// All levels and the cages of the parts in one mesh, the outermost first.
     [[nodiscard]] Mesh nested(const Mesh& object, const AnnotationSet& set, const RelationGraph& relations,
                               const std::vector<std::size_t>& regions, const std::vector<CageResult>& results,
                               Report& report) const {
@@ -207,7 +207,7 @@ struct CageMake final : Operation {
         return set.annotations[regions[k]].tag;
     }
 
-    /// The regions that --parts names, each once.
+    /// The regions named by --parts, without duplicates.
     [[nodiscard]] std::vector<std::size_t> regions_of(const AnnotationSet& set) const {
         const TagWords words = vocabulary.words();
         std::vector<std::size_t> regions;
@@ -226,7 +226,7 @@ struct CageMake final : Operation {
 
     static std::string ending(std::uint64_t size) { return "-" + std::to_string(size); }
 
-    /// Numbers of vertices, from fine to coarse.
+    /// Requested numbers of vertices, from fine to coarse.
     [[nodiscard]] std::vector<std::uint64_t> wanted() const {
         std::vector<std::uint64_t> sizes(levels.begin(), levels.end());
         if (sizes.empty()) sizes.push_back(options.vertices);
@@ -270,7 +270,7 @@ struct CageMake final : Operation {
         return plane;
     }
 
-    /// Of the mirror symmetry of the whole in the graph. Parts may mirror each other, and themselves, in planes of their own.
+    /// Mirror plane of the whole object, from the graph. Mirror planes of parts are ignored.
     [[nodiscard]] std::optional<MirrorPlane> mirror_of(const RelationGraph& relations, const Mesh& object,
                                                        const AnnotationSet& set) const {
         for (const Annotation& one : set.annotations)

@@ -13,7 +13,7 @@ namespace ostraka {
 
 namespace {
 
-/// A cage, whose polygons are cut where coordinates are asked for.
+/// The triangles of a cage; a note reports if its polygons were triangulated.
 const Mesh& triangles_of_cage(const MeshInput& cage, Report& report) {
     if (!cage->triangle_polygon.empty())
         report.note("the cage's polygons were cut into " + std::to_string(cage->mesh.number_of_faces()) + " triangles");

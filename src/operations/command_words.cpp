@@ -10,7 +10,7 @@ std::vector<std::string> command_words(const std::string& operation, const JsonV
     const Call call(find_operation(operation));
     const auto given = [&](const std::string& name) { return find_member(settings, name) != nullptr; };
     const auto& orders = call.parameters().orders;
-    // The longest order of which everything is given; else the first, without what is missing.
+    // The longest order whose arguments are all given; otherwise the first order, without the missing arguments.
     const std::vector<std::string>* order = &orders.front();
     std::size_t length = 0;
     for (const auto& one : orders)

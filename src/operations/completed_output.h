@@ -1,4 +1,4 @@
-// A completed object as a file whose colours and labels say what was seen.
+// Writes a completed object with colours and labels for the origin of its surface.
 #pragma once
 
 #include "operations.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// Face labels: what was observed, interpolated, is a hypothesis; values: fragment, distance, confidence.
+/// Face labels: observed, interpolated or hypothesis; face values: fragment, distance, confidence.
 void write_completed(const FolderOutput& folder, const std::string& name, const CompletedObject& object);
 
 }  // namespace ostraka

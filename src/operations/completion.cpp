@@ -7,7 +7,7 @@ namespace ostraka {
 
 namespace {
 
-/// Files and folders whose names begin with what was written.
+/// Adds files and folders whose names begin with `begun`.
 void add_files(std::vector<std::string>& list, const std::string& begun, const std::vector<std::string>& endings) {
     const std::size_t slash = begun.rfind('/');
     const std::string folder = slash == std::string::npos ? "" : begun.substr(0, slash + 1);
@@ -24,7 +24,7 @@ void add_files(std::vector<std::string>& list, const std::string& begun, const s
     }
 }
 
-/// Tags of the annotation files among the words.
+/// Adds the tags of the annotation files among the words.
 void add_tags(std::vector<std::string>& list, const std::vector<std::string>& words) {
     for (const std::string& word : words) {
         if (!word.ends_with(".ant.json")) continue;
@@ -35,7 +35,7 @@ void add_tags(std::vector<std::string>& list, const std::vector<std::string>& wo
             for (const auto& one : annotations->GetArray())
                 if (const JsonValue* tag = one.IsObject() ? find_member(one, "tag") : nullptr; tag != nullptr && tag->IsString())
                     list.emplace_back(tag->GetString());
-        } catch (const Error&) {  // nothing is known of it
+        } catch (const Error&) {  // unreadable files give no tags
             continue;
         }
     }
@@ -98,7 +98,7 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
             if (!named_values.empty()) list = named_values;
             else if (option->type() == OptionType::text || option->type() == OptionType::texts) add_tags(list, words);
         } else {
-            // The next argument without a flag.
+            // The next positional argument.
             std::size_t place = 0;
             for (std::size_t i = length; i + 1 < words.size(); ++i) {
                 if (!words[i].starts_with("-")) ++place;
@@ -112,7 +112,7 @@ std::vector<std::string> completions(const std::vector<std::string>& words) {
             if (next != nullptr) add_files(list, begun, endings_of(next->kind));
         }
     }
-    // A word with a control character cannot be typed.
+    // Words with control characters cannot be typed.
     std::erase_if(list, [&](const std::string& one) { return !one.starts_with(begun) || printable(one) != one; });
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-/// What both have: the kit, which cases, and the report.
+/// Shared by both operations: the kit, the selection of cases, and the report.
 struct Conformance : Operation {
     void describe_kit(Parameters& p) {
         p.input_option("kit", Kind::folder, kit, "folder of the kit (conformance.json); else the one that came with the command");
@@ -59,7 +59,7 @@ struct Conformance : Operation {
         parallel_for(
             known.cases.size(),
             [&](std::size_t i) {
-                // What they write is their own business, and not part of what this operation commits.
+                // Files written by a case are not committed with the outputs of this operation.
                 const TransactionScope none(nullptr);
                 if (record) record_case(known, known.cases[i], backend, scratch.path(), find_operation);
                 results[i] = run_case(known, known.cases[i], backend, scratch.path(), find_operation);

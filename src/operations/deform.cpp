@@ -1,4 +1,4 @@
-// deform: an edit of a shape that keeps what its annotations and relations ask for.
+// deform: an edit of a shape that preserves its annotations and relations.
 #include "constraint_report.h"
 
 #include "ostraka/geom/with_points.h"
@@ -132,7 +132,7 @@ struct Deform final : Operation {
         if (!result.acceptable) report.answer_no();
     }
 
-    /// What is deformed, from files of its own or from a template.
+    /// The object to deform, from separate files or from a template.
     struct Subject {
         const MeshFile* object = nullptr;
         const AnnotationSet* set = nullptr;
@@ -145,7 +145,7 @@ struct Deform final : Operation {
         fail_usage("--cage-out without a cage", "add --cage and --weights, or a cage and its coordinates to the template");
     }
 
-    /// That to the deformed cage, those of the edit, and then those that were said in words.
+    /// All steps: to the deformed cage, then those of the edit, then those given in words.
     [[nodiscard]] Json all_steps(const Subject& subject) const {
         Json said = edit_of(words, *subject.set);
         if (!edit && !deformed_cage) return said;
@@ -161,7 +161,7 @@ struct Deform final : Operation {
         return all;
     }
 
-    /// Moves the vertices of the cage that are elsewhere in the deformed one.
+    /// A step that moves the cage vertices whose positions differ in the deformed cage.
     [[nodiscard]] JsonValue step_to_cage(const Subject& subject, JsonAllocator& allocator) const {
         if (subject.around == nullptr)
             fail_usage("--deformed-cage without a cage",
@@ -207,7 +207,7 @@ struct Deform final : Operation {
                     subject.coordinates = &own_weights;
                 } catch (const Error& error) {
                     if (error.kind() == ErrorKind::cancelled) throw;
-                    why_not = error.what();  // those of another cage, perhaps
+                    why_not = error.what();  // perhaps coordinates of another cage
                 }
             }
         if (!cage && subject.coordinates == nullptr && !why_not.empty())
@@ -302,7 +302,7 @@ struct Deform final : Operation {
             row("cost.before", constraint.cost_before)("cost.after", constraint.cost, number(constraint.cost, 3));
     }
 
-    /// What fights with what.
+    /// Reports a conflict: the constraints that exclude each other.
     static void report_result(Report& report, const DeformResult& result, const ConstraintConflict& conflict) {
         const auto name = [&](int id) {
             for (const ConstraintReport& one : result.constraints)
@@ -338,8 +338,8 @@ struct Deform final : Operation {
     EditWords words;
     DeformOptions options;
     RelationOptions tolerances = deform_tolerances();
-    AnnotationSet own_set;  ///< with measures that the words keep
-    MeshFile own_cage;      ///< of the template, with its coordinates
+    AnnotationSet own_set;  ///< the annotations with measures that the words preserve
+    MeshFile own_cage;      ///< cage of the template, with its coordinates
     Coordinates own_weights;
 };
 

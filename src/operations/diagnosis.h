@@ -6,13 +6,14 @@
 
 namespace ostraka {
 
-/// The values that `to_json` has.
+/// Declares the values that `to_json` writes.
 void declare_diagnosis(ReportLayout& layout);
 
-/// Counts, topology, size and defects; lists (components, border loops) are cut after the first hundred, and say so.
+/// Counts, topology, size and defects; lists (components, border loops) are truncated after one hundred entries, and marked as
+/// such.
 JsonValue to_json(const MeshDiagnosis& diagnosis, JsonAllocator& allocator);
 
-/// "what" and "value", for people.
+/// Pairs of quantity and value, for people.
 std::vector<std::pair<std::string, std::string>> rows_of(const MeshDiagnosis& diagnosis);
 
 }  // namespace ostraka

@@ -6,9 +6,9 @@
 
 namespace ostraka {
 
-/// A table of differences.
+/// Declares a table of differences.
 void declare_differences(ReportLayout& layout, const std::string& table);
-/// Its rows; where there are none, people read `none`.
+/// Fills the table; without differences, people see the text `none`.
 void add_differences(Report& report, const std::string& table, const std::vector<Difference>& list, const std::string& none);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// fit: from fragments to the whole object.
+// fit: reconstructs the whole object from fragments.
 #include "completed_output.h"
 #include "constraint_report.h"
 
@@ -84,7 +84,7 @@ struct Fit final : Operation {
         Reconstructor reconstructor(mesh, *known->annotations, graph, options, prior ? &*prior : nullptr,
                                     cage ? &*cage : nullptr);
         for (std::size_t k = 0; k < fragments.size(); ++k) reconstructor.add(*fragments[k], std::move(stated[k]));
-        // No fragment stands where a result will be written: reported before the work.
+        // Results must not overwrite fragments; checked before the work starts.
         for (const char* name : {"fit.assembly.json", searches_file, "completed.ply", "completed.ant.json"})
             static_cast<void>(output.in(name));
         for (const std::string& name : names.fragments) static_cast<void>(output.in(name + ".placed.ply"));
@@ -104,7 +104,7 @@ struct Fit final : Operation {
         if (result.verdict != Compatibility::compatible) report.answer_no();
     }
 
-    /// What a person stated of each.
+    /// Reads the fragments; returns the matches that a person stated for each.
     std::vector<std::vector<StatedMatch>> read_fragments(Context& context, Report& report) {
         std::vector<std::vector<StatedMatch>> stated;
         if (assembly) validate(*assembly, "assembly", assembly.file());
@@ -142,7 +142,7 @@ struct Fit final : Operation {
 
     static constexpr const char* searches_file = "fit.searches.json";
 
-    /// Searches that an earlier fit in the folder made. Whether one is of use here its key says.
+    /// Adds pose searches stored by an earlier fit in the folder. The key of each decides whether it is used.
     void remember(PoseSearches& searches, Report& report) const {
         const Path file = output.in(searches_file);
         if (!file_exists(file)) return;
@@ -223,7 +223,7 @@ struct Fit final : Operation {
              one.problem.empty() ? number(one.residual, 3) : "-", one.own_scale > 0 ? number(one.own_scale, 4) : "-", wrong});
     }
 
-    /// The joints by which turns were decided, and the fragments without one.
+    /// Reports the joints that decided the rotations, and the fragments without a joint.
     void report_rotations(Report& report, const RotationMatch& rotations) const {
         for (const BreakJoint& joint : rotations.joints)
             report.row("joints", {names.fragments[static_cast<std::size_t>(joint.first)] + " - " +
@@ -257,10 +257,10 @@ struct Fit final : Operation {
     bool placed = false, fresh = false;
     ReconstructOptions options;
     FragmentFileOptions reading;
-    std::map<std::string, const Option*> thresholds;  ///< options that a class has a say in
+    std::map<std::string, const Option*> thresholds;  ///< thresholds for which the class may give a value
 
     VocabularyOption vocabulary;
-    std::deque<Fragment> renamed;  ///< fragments with tags of the template
+    std::deque<Fragment> renamed;  ///< fragments with the tags of the template
     std::vector<const Fragment*> fragments;
     AssemblyNames names;
     std::vector<UsedThreshold> used;

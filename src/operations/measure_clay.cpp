@@ -1,4 +1,4 @@
-// measure clay: how much clay an object holds, with what is not seen of its inside.
+// measure clay: the clay volume of an object, with estimates for unseen inner surfaces.
 #include "operations.h"
 
 #include "ostraka/measure/solid.h"
@@ -70,7 +70,7 @@ struct MeasureClay final : Operation {
         return of.empty() || length_unit.empty() ? "" : " " + length_unit + of.substr(std::string("length").size());
     }
 
-    /// "12345 mm^3 (12.3 cm^3)": large ones in larger units beside.
+    /// "12345 mm^3 (12.3 cm^3)": large volumes also in a larger unit.
     [[nodiscard]] std::string volume(double value) const {
         std::string text = number(value) + unit_text("length^3");
         const double cubic_cm = length_unit == "mm" ? value / 1000 : length_unit == "cm" ? value : 0;
@@ -109,7 +109,7 @@ struct MeasureClay final : Operation {
     MeshInput mesh;
     AnnotationsInput annotations;
     DirectionOption up;
-    std::string unit, length_unit;  ///< the unit asked for, or that of the annotations
+    std::string unit, length_unit;  ///< requested unit, or that of the annotations
     ClayOptions options;
 };
 

@@ -1,4 +1,4 @@
-// measure describe: what can be computed of annotations.
+// measure describe: descriptors of annotations.
 #include "measured_object.h"
 
 #include "ostraka/measure/descriptors.h"
@@ -53,7 +53,7 @@ struct MeasureDescribe final : Operation {
         return named;
     }
 
-    /// Those chosen, each once; all if none was.
+    /// The selected annotations, without duplicates; all if none is selected.
     [[nodiscard]] std::vector<Annotation*> selected(AnnotationSet& set) const {
         std::vector<Annotation*> list;
         for (const auto& name : chosen)
@@ -64,7 +64,7 @@ struct MeasureDescribe final : Operation {
         return list;
     }
 
-    /// What is wrong with a map is said of its file.
+    /// Computes the quantities; errors about a map name its file.
     [[nodiscard]] std::vector<Quantity> quantities_of(const Annotation& annotation, DescriptorSearch& search,
                                                       const std::vector<NamedMap>& named) const {
         try {

@@ -1,4 +1,4 @@
-// measure map: curvature, thickness or distance, everywhere.
+// measure map: curvature, thickness or distance at every vertex.
 #include "file_attribute.h"
 
 #include "ostraka/geom/geodesic.h"
@@ -99,7 +99,7 @@ struct MeasureMap final : Operation {
         return geodesic_distances(on_mesh, sources);
     }
 
-    /// Of the file of the values; empty in memory, where no file is written yet.
+    /// Checksum of the file of values; empty in memory, where no file is written yet.
     [[nodiscard]] std::string checksum(const std::vector<double>& values) const {
         if (output.sources.front().file.empty()) return {};
         Object file = Object::of(values, output.file_name());

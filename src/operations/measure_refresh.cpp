@@ -1,4 +1,4 @@
-// measure refresh: all measures and descriptors computed anew.
+// measure refresh: recomputes all measures and descriptors.
 #include "measured_object.h"
 
 #include "ostraka/measure/measure.h"

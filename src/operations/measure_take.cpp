@@ -1,4 +1,4 @@
-// measure take: a ruler, a tape, or two planes.
+// measure take: a ruler, a tape, or two parallel planes.
 #include "measured_object.h"
 
 #include "ostraka/core/limits.h"
@@ -80,7 +80,7 @@ struct MeasureTake final : Operation {
         return {numbers[0], numbers[1], numbers[2]};
     }
 
-    /// The measure as it was asked for, with its pins on vertices.
+    /// The requested measure, with its pins at vertices.
     [[nodiscard]] Measure pinned(const Mesh& mesh, const Annotation& holder, Report& report) const {
         Measure measure;
         measure.tool = tool;
@@ -96,7 +96,7 @@ struct MeasureTake final : Operation {
         return measure;
     }
 
-    /// The nearest vertex; a place far from the surface is a mistake, of the unit or of the position, say.
+    /// The nearest vertex. A position far from the surface is an error, probably of the unit or the coordinates.
     [[nodiscard]] Index pin(const Mesh& mesh, const Point& place, Report& report) const {
         const Index found = in_file(object.mesh.file(), [&] { return nearest_vertex(mesh, place); });
         const double moved = std::sqrt(CGAL::squared_distance(place, mesh.point(Vertex(found)))), diagonal = box_diagonal(mesh);

@@ -1,4 +1,4 @@
-// What is measured: a mesh and its annotations or, without a file of them, one annotation that is the whole object.
+// The object to measure: a mesh with annotations or, without an annotation file, with one annotation of the whole object.
 #pragma once
 
 #include "operations.h"
@@ -11,16 +11,17 @@ struct MeasuredObject {
     AnnotationsOutput output;
     std::string unit;
 
-    /// Slots `mesh`, `annotations` and `output`, and the option `unit`. Returns that of the annotations, which may be left out.
+    /// Declares the slots `mesh`, `annotations` and `output`, and the option `unit`. Returns the annotations slot, which the
+    /// caller may make optional.
     Slot& describe(Parameters& p);
 
-    /// The annotations to change, with the unit.
+    /// The annotations to change, with the unit set.
     AnnotationSet read(Report& report) const;
-    /// By id, or by tag if exactly one annotation has it. Throws Error (usage) where no annotations are given.
+    /// Finds an annotation by id, or by tag if it is unique. Throws Error (usage) if no annotations are given.
     [[nodiscard]] Annotation& one(AnnotationSet& set, const std::string& name) const;
-    /// The file that says what is measured.
+    /// The file to name in messages: the annotations, or else the mesh.
     [[nodiscard]] std::string file() const { return annotations ? annotations.file() : mesh.file(); }
-    /// If it was asked for.
+    /// Writes the annotations if the output is requested.
     void write(AnnotationSet set) const;
 };
 

@@ -1,4 +1,4 @@
-// mesh break: a fragment whose pose and place on the whole are known.
+// mesh break: a fragment with known pose and known position on the whole.
 #include "operations.h"
 
 #include "ostraka/annotation/remap.h"
@@ -71,7 +71,7 @@ struct MeshBreak final : Operation {
         try {
             numbers = numbers_of<double>(at, "--at");
         } catch (const Error&) {
-            numbers.clear();  // said below, with what else it may be
+            numbers.clear();  // reported below, together with the alternatives
         }
         if (numbers.size() != 3)
             fail_usage("--at is '" + printable(at, 60) + (set != nullptr ? "', and no annotation has this tag" : "'"),

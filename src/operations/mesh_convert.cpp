@@ -43,7 +43,8 @@ struct MeshConvert final : Operation {
         output.write(std::move(triangles.soup), std::move(triangles.extras), std::move(writing));
     }
 
-    /// Of a file whose polygons give these triangles, in their order, whatever shape it has.
+    /// Writes the polygons of a file whose triangulation gives exactly these triangles in this order, with the shape of the
+    /// mesh.
     void keep_polygons(const TriangleSoup& soup, WriteOptions& writing, Report& report) {
         PolygonSoup given = polygons_of.take_polygons();
         const std::vector<Index> corner = given.corners, begin = given.polygon_begin;

@@ -1,4 +1,4 @@
-// mesh extract: annotated parts cut out of an object.
+// mesh extract: cuts annotated parts out of an object.
 #include "operations.h"
 
 #include "ostraka/annotation/label_file.h"
@@ -33,7 +33,7 @@ struct MeshExtract final : AnnotatedMeshOperation {
         std::vector<std::size_t> regions, left_out;
         const auto add = [&](const std::string& name, std::vector<std::size_t>& to) {
             const auto found = words.require(set(), name, annotations.file());
-            // A tag may be that of a region and of points: these hold no surface.
+            // A tag may be shared by regions and points; points have no surface.
             for (const std::size_t i : found)
                 if (set().annotations[i].type == AnnotationType::region || found.size() == 1) to.push_back(i);
             if (to.empty())
@@ -59,8 +59,8 @@ struct MeshExtract final : AnnotatedMeshOperation {
         output.write(std::move(part.mesh), std::move(extras));
     }
 
-    /// Colours and labels of the whole on the part: colours of vertices on the cuts are interpolated; faces that close cuts have
-    /// no label and the colour of nothing.
+    /// Transfers colours and labels of the whole to the part. Vertex colours on the cuts are interpolated; faces that close
+    /// cuts have no label and a neutral colour.
     [[nodiscard]] MeshExtras extras_of(const CutPart& part, Report& report) const {
         const MeshExtras& from = mesh->extras;
         MeshExtras extras;

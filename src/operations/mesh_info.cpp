@@ -1,4 +1,4 @@
-// mesh info: what a file holds and what is wrong with it.
+// mesh info: the content and the defects of a mesh file.
 #include "diagnosis.h"
 #include "operations.h"
 
@@ -8,7 +8,7 @@ namespace ostraka {
 
 namespace {
 
-/// Names of what the file holds beside its geometry.
+/// Names of the data in the file other than geometry.
 std::vector<std::string> names_of(const MeshExtras& extras) {
     std::vector<std::string> names;
     if (!extras.vertex_colours.empty()) names.emplace_back("vertex colours");
@@ -20,7 +20,7 @@ std::vector<std::string> names_of(const MeshExtras& extras) {
     return names;
 }
 
-/// Polygons with fewer than three distinct corners, which give no triangle.
+/// Number of polygons with fewer than three distinct corners, which give no triangle.
 std::size_t count_degenerate(const PolygonSoup& soup) {
     std::size_t count = 0;
     std::vector<Index> corners;
@@ -70,8 +70,8 @@ struct MeshInfo final : Operation {
         if (!sound) report.answer_no();
     }
 
-    /// Says how far points that belong together are apart, and what joins them: the copies of a point lie farther from each other
-    /// than each from the nearest.
+    /// Notes the width of cracks and the distance that joins them. The distance is larger than the crack width because
+    /// duplicates of a point may be farther from each other than from their nearest duplicate.
     void note_cracks(const TriangleSoup& soup, const MeshDiagnosis& diagnosis, Report& report) const {
         const double width = crack_width(soup);
         if (!(width > 0)) return;

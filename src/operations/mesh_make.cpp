@@ -1,4 +1,4 @@
-// mesh make: objects whose parts are known exactly.
+// mesh make: synthetic objects with exactly known parts.
 #include "operations.h"
 
 #include "ostraka/annotation/label_file.h"

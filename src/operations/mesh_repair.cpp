@@ -1,4 +1,4 @@
-// mesh repair: an oriented manifold out of any file with faces.
+// mesh repair: makes an oriented manifold from any file with faces.
 #include "diagnosis.h"
 #include "operations.h"
 
@@ -63,7 +63,7 @@ struct MeshRepair final : Operation {
 
     static void report_result(Report& report, const RepairStep& step) {
         JsonValue counts(rapidjson::kObjectType);
-        std::string name = step.name;  // once, beside its first count
+        std::string name = step.name;  // shown once, beside its first count
         for (const auto& [what, count] : step.counts) {
             add_members(counts, report.allocator(), what, count);
             if (count == 0) continue;

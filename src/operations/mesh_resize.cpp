@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// What all three declare and tell.
+/// Declarations and reports shared by the three operations.
 struct MeshResize : Operation {
     void describe_meshes(Parameters& p) {
         p.input("input", Kind::mesh, input, "mesh to read: .ply, .obj, .off, .stl");
@@ -30,7 +30,7 @@ struct MeshResize : Operation {
     MeshOutput output;
 };
 
-/// What annotations, labels and colours follow.
+/// Resizing with annotations, labels and colours transferred to the new mesh.
 struct MeshResizeBound : MeshResize {
     void check() const override {
         if (static_cast<bool>(annotations) != static_cast<bool>(annotations_out))
@@ -55,7 +55,7 @@ struct MeshResizeBound : MeshResize {
                        people("change of length"), boolean("degenerate"), text("note", "note"));
     }
 
-    /// Calls `resize(mesh)` in between, tells of it and writes.
+    /// Reads the input, calls `work`, reports the changes and writes the outputs.
     template <class Resize>
     auto resize(Context& context, Report& report, const Resize& work) {
         const AnnotationSet* set = annotations ? &annotations.on(input->mesh) : nullptr;

@@ -1,4 +1,4 @@
-// operations: the table itself
+// operations: the table of operations itself
 #include "operations.h"
 
 #include "ostraka/operations/pages.h"
@@ -42,7 +42,7 @@ struct Operations final : Operation {
         }
     }
 
-    /// Others may keep files of their own in these folders.
+    /// Keeps other files in the folder, which may belong to the user.
     static void put(const FolderOutput& folder, const std::string& file, const std::string& text) {
         folder.open(0, false);
         write_file(folder.in(file), text);

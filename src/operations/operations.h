@@ -1,4 +1,4 @@
-// What the files of operations share; arguments that are texts: lists of numbers, directions, names of annotations.
+// Shared by the sources of operations: common slots, and text arguments such as lists of numbers, directions, annotation names.
 #pragma once
 
 #include "ostraka/operations/table.h"
@@ -33,31 +33,31 @@ inline Json document_of(std::string_view kind, const JsonValue& result, const Pr
     return document;
 }
 
-/// The numbers of "12,88"; Error (usage) names the option.
+/// Parses the numbers of "12,88"; Error (usage) names the option.
 template <class Number>
 std::vector<Number> numbers_of(const std::string& text, const std::string& option);
 extern template std::vector<double> numbers_of<double>(const std::string&, const std::string&);
 extern template std::vector<std::uint32_t> numbers_of<std::uint32_t>(const std::string&, const std::string&);
 
-/// The direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
+/// Parses the direction "0,0,1", or the axis "z" or "-z"; Error (usage) names the option.
 std::array<double, 3> direction_of(const std::string& text, const std::string& option);
 
-/// What `direction_of` takes, as the rule of an option; `more`: words that it takes beside, which the operation knows.
+/// Option rule for texts that `direction_of` accepts; `more`: further words that the operation accepts.
 Words direction_words(const std::string& option, std::vector<std::string> more = {});
 
-/// --up: a direction as `direction_of` takes it, checked before any work.
+/// --up: a direction in the form of `direction_of`, checked before any work starts.
 class DirectionOption {
 public:
     void describe(Parameters& p, const std::string& help);
     explicit operator bool() const { return !text_.empty(); }
-    /// Empty where none was given.
+    /// The direction; empty if none was given.
     [[nodiscard]] std::optional<std::array<double, 3>> value() const;
 
 private:
     std::string text_;
 };
 
-/// --vocabulary: by which tags are compared.
+/// --vocabulary: the vocabulary by which tags are compared.
 class VocabularyOption {
 public:
     void describe(Parameters& p, const std::string& help) {
@@ -65,7 +65,7 @@ public:
     }
     explicit operator bool() const { return static_cast<bool>(file_); }
     [[nodiscard]] TagWords words() const { return file_ ? TagWords(&file_.load<Vocabulary>(read_vocabulary)) : TagWords(); }
-    /// Empty where none is given.
+    /// Checksum of the file; empty if none was given.
     [[nodiscard]] std::string checksum() const { return file_ ? sha256_of_file(file_.path()) : std::string(); }
 
 private:
@@ -74,10 +74,10 @@ private:
 inline constexpr const char* as_template_words =
     "by which tags of objects are those of the template: of one concept in any language, or narrower";
 
-/// The annotation of this id, or of this tag if exactly one has it. Throws Error (input) that names the file.
+/// The annotation with this id, or with this tag if it is unique. Throws Error (input) that names the file.
 const Annotation& find_annotation(const AnnotationSet& set, const std::string& name, const std::string& file);
 
-/// How the table (table.cpp) makes an operation; defined in the file of its name.
+/// Used by the table (table.cpp) to create operations; each operation is defined in the file of its name.
 template <class Work>
 std::unique_ptr<Operation> make() {
     return std::make_unique<Work>();

@@ -26,7 +26,7 @@ Json copy_of(const JsonValue& value) {
     return cell;
 }
 
-/// The single values of a record; those of records within it by both names.
+/// Adds the single values of a record; names of nested records are joined by '.'.
 void add_cells(const JsonValue& record, const std::string& before, Cells& cells) {
     for (const auto& [key, value] : record.GetObject()) {
         const std::string name = before + key.GetString();
@@ -50,7 +50,7 @@ std::optional<double> finite_in(const JsonValue& object, const char* name) {
     return member != nullptr && member->IsNumber() ? std::optional(member->GetDouble()) : std::nullopt;
 }
 
-/// Of each face the values of its polygon.
+/// Value per triangle, taken from its polygon.
 std::vector<double> of_triangles(const std::vector<double>& of_polygons, const MeshFile& mesh) {
     if (mesh.triangle_polygon.empty()) return of_polygons;
     std::vector<double> values;
@@ -59,7 +59,7 @@ std::vector<double> of_triangles(const std::vector<double>& of_polygons, const M
     return values;
 }
 
-/// Of each element the mean of the finite values that were added; NaN without any.
+/// Mean of the finite values added for each element; NaN if there are none.
 class Means {
 public:
     explicit Means(std::size_t elements) : sums_(elements, 0), counts_(elements, 0) {}
@@ -78,7 +78,7 @@ private:
 
 constexpr std::size_t origins = 3;
 
-/// Of each vertex the origin that most of its faces have; of equally many the first.
+/// For each vertex, the most frequent origin of its faces; ties go to the lowest.
 std::vector<double> origin_of_vertices(const MeshFile& file) {
     std::vector<std::array<std::size_t, origins>> votes(file.mesh.number_of_vertices(), {0, 0, 0});
     for (const Face face : file.mesh.faces())
@@ -271,7 +271,7 @@ void PageNames::add(const std::string& object, const AnnotationSet* set) {
     if (set == nullptr) return;
     for (std::size_t i = 0; i < set->annotations.size(); ++i) {
         const std::string& tag = set->annotations[i].tag;
-        // What several objects have names none of them.
+        // A tag of several objects links to none.
         if (const auto [found, fresh] = annotations_.try_emplace(tag, place, static_cast<int>(i)); !fresh)
             found->second = {-1, -1};
     }
@@ -348,7 +348,7 @@ std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh) {
 PageMap simplified_map(const PageMap& map, const std::vector<Index>& to, std::size_t vertices) {
     PageMap made{map.name, map.label, {}, map.categories};
     if (!map.categories.empty()) {
-        // What most of the vertices that became one had; of equally many the first.
+        // Majority vote of the merged vertices; ties go to the lowest category.
         const std::size_t count = map.categories.size();
         std::vector<std::uint32_t> votes(vertices * count, 0);
         for (std::size_t i = 0; i < map.values.size(); ++i)

@@ -11,7 +11,7 @@ namespace {
 
 std::string first_word_of(const std::string& name) { return name.substr(0, name.find(' ')); }
 
-/// "0.05 to 1", "one of a, b", "a whole number".
+/// Allowed values as text: "0.05 to 1", "one of a, b", "a whole number".
 std::string allowed_for_page(const Option& option) {
     if (const auto* range = std::get_if<Range>(&option.rule))
         return ostraka::digits(range->min, 6) + " to " + ostraka::digits(range->max, 6);
@@ -28,7 +28,7 @@ std::string initial_for_page(const Option& option) {
     return value ? digits(*value) : option.initial;
 }
 
-/// Lines of at most 120 characters.
+/// Wraps text to lines of at most 120 characters.
 std::string wrapped(const std::string& text, const std::string& indent = {}) {
     std::string result, line;
     std::size_t at = 0;
@@ -95,7 +95,7 @@ std::string operation_section(const OperationEntry& entry) {
     return page + "- `notes`: texts\n";
 }
 
-/// Text that troff sets as it stands.
+/// Escapes text for troff.
 std::string troff(const std::string& text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {

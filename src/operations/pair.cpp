@@ -1,4 +1,4 @@
-// pair: two fragments fitted together by the break they share.
+// pair: registers two fragments along their common fracture.
 #include "operations.h"
 
 #include "ostraka/fracture/break_pair.h"
@@ -29,7 +29,7 @@ struct PairFragments final : Operation {
     }
 
     void run(Context& context, Report& report) override {
-        // What is there under a name that is used here is replaced or, if an earlier run wrote it, removed: it is no input.
+        // Existing files with these names are replaced or, if written by an earlier run, removed; they must not be inputs.
         if (const Path folder = output.file(); is_folder(folder))
             context.check_outputs({folder / "first.ply", folder / "second.ply", folder / "pair.json"});
         const FragmentFile &a = read(first), &b = read(second);

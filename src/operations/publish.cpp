@@ -1,4 +1,4 @@
-// publish: an annotated object as a folder that any web server serves: IIIF manifest, GLB with features, annotations, a page.
+// publish: an annotated object as a static web folder: IIIF manifest, GLB with features, annotations, a page.
 #include "annotated_scene.h"
 #include "operations.h"
 
@@ -19,7 +19,7 @@ namespace ostraka {
 
 namespace {
 
-/// Where a viewer that draws the GLB has a point of the mesh: the node that shows it turns and scales.
+/// Maps points of the mesh to positions in a viewer of the GLB, whose node rotates and scales the mesh.
 class ShownPlace {
 public:
     explicit ShownPlace(const std::string& file) {
@@ -41,7 +41,7 @@ private:
     double scale_ = 1;
 };
 
-/// A place on the annotation: of a region the centroid of the face nearest to its middle, of a line its middle vertex.
+/// A position on the annotation: for a region the centroid of the face nearest to its centre, for a line its middle vertex.
 std::optional<Point> place_on(const Mesh& mesh, const Annotation& annotation) {
     if (!annotation.points.empty()) return mesh.point(Vertex(annotation.points.front()));
     if (!annotation.polylines.empty() && !annotation.polylines.front().empty()) {
@@ -97,7 +97,7 @@ struct Publish final : AnnotatedMeshOperation {
         Page page(name);
         PageObject shown;
         shown.name = name;
-        const AlongEdges along_edges(on, known);  // free outlines are seen on the mesh cut along them
+        const AlongEdges along_edges(on, known);  // free outlines are shown on the mesh cut along them
         shown.mesh = &along_edges.mesh();
         shown.annotations = &along_edges.annotations();
         page.add(shown);
@@ -111,7 +111,7 @@ struct Publish final : AnnotatedMeshOperation {
 
     [[nodiscard]] std::string at(const std::string& place) const { return address + (address.ends_with('/') ? "" : "/") + place; }
 
-    /// IIIF Presentation API 4: one Scene, the GLB painted into it, and a comment at a place of each annotation.
+    /// IIIF Presentation API 4: one Scene with the GLB painted into it, and one comment at a position of each annotation.
     Json manifest(const Mesh& on, const AnnotationSet& known, const std::string& name, const ShownPlace& place,
                   std::size_t& placed) const {
         Json document;

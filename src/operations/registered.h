@@ -1,4 +1,4 @@
-// Two meshes that were given to an operation, registered.
+// Registers two meshes given to an operation.
 #pragma once
 
 #include "operations.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// What is wrong with a mesh is said with the name of its file.
+/// Registers `source` to `target`; errors about a mesh name its file.
 inline MeshRegistration registered(const MeshInput& source, const MeshInput& target,
                                    const MeshRegistrationOptions& options = {}) {
     try {

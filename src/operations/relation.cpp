@@ -18,11 +18,11 @@ namespace ostraka {
 
 namespace {
 
-/// What all of them read and tell.
+/// Inputs and reports shared by the operations.
 struct RelationOperation : AnnotatedMeshOperation {
     void describe_graph(Parameters& p) { p.input("graph", Kind::graph, graph, "graph (.graph.json)"); }
     void describe_output(Parameters& p) { p.output("output", Kind::graph, output, "graph to write (.graph.json)"); }
-    /// The table of relationships, with what became of each where they were checked.
+    /// Declares the table of relationships; with `checked` also the verdict on each.
     static void describe_relationships(ReportLayout& report, bool checked = false) {
         std::vector<Field> columns{integer("id", "id")};
         if (checked) columns.push_back(text("verdict", "verdict"));
@@ -39,7 +39,7 @@ struct RelationOperation : AnnotatedMeshOperation {
         return relations;
     }
 
-    /// All that a file holds of the relationship, and how people read it.
+    /// Adds a row with the file content of the relationship, and its text for people.
     Report::Row report_result(Report& report, const Relationship& relationship) const {
         Report::Row row = report.row("relationships");
         JsonValue entry = relationship_to_json(relationship, report.allocator());
@@ -66,7 +66,7 @@ struct RelationOperation : AnnotatedMeshOperation {
         return joined(members, relationship.directed ? " > " : ", ");
     }
 
-    /// The type, of "equal attributes" with the attribute, of constraints with the weight.
+    /// The type; with the attribute for "equal attributes", and with the weight for constraints.
     static std::string type_of(const Relationship& relationship) {
         std::string text = relationship.type;
         if (!relationship.parameters.attribute.empty()) text += ": " + relationship.parameters.attribute;
@@ -212,7 +212,7 @@ struct RelationAdd final : RelationOperation {
         std::vector<std::string> members;
     };
 
-    /// What the command line states: one relationship, or several in the form "TYPE: A, B".
+    /// The relationships stated on the command line: one, or several in the form "TYPE: A, B".
     [[nodiscard]] std::vector<Stated> stated() const {
         if (several.empty()) return {{type, members}};
         const auto trimmed = [](std::string_view text) {
@@ -396,7 +396,7 @@ struct RelationEdit final : RelationOperation {
             }
             changed.constraint = object.MemberCount() == 0 ? std::string() : to_compact_text(object);
         }
-        // It is the person's who changed it: another extraction keeps it as it is.
+        // Changed by a person: further extractions must keep it.
         changed.origin = "stated";
         *found = changed;
         check_graph(relations, set(), output.file());
@@ -464,7 +464,7 @@ struct RelationCheckAll final : RelationOperation {
         if (!conforms) report.answer_no();
     }
 
-    /// Those that are broken; how many.
+    /// Reports the violated rules; returns their number.
     std::size_t report_rules(Report& report, const RelationGraph& relations) const {
         const ClassRules& kept = rules.load<ClassRules>(read_class_rules);
         const Vocabulary* words = vocabulary ? &vocabulary.load<Vocabulary>(read_vocabulary) : nullptr;

@@ -78,7 +78,7 @@ struct Render final : Operation {
             how.fit = RenderOptions::Fit::each;
         }
         report.run("readSeconds", reading.seconds());
-        // What is written between the pins of measures is written beside the object if there are labels.
+        // If there are labels, the values of measures are placed beside the object instead of between the pins.
         if (how.labels)
             for (Scene& scene : scenes)
                 for (SceneMarker& marker : scene.markers)
@@ -110,7 +110,7 @@ struct Render final : Operation {
         else write_png(file, rendering.picture);
     }
 
-    /// The viewer goes round once, beginning where the picture was taken from.
+    /// Renders one full revolution of the camera, starting at the view of the picture.
     void write_turn(const std::vector<Scene>& scenes, RenderOptions how, PictureKind kind) const {
         turntable.open();
         const View begin = parse_view(how.view);
@@ -124,7 +124,7 @@ struct Render final : Operation {
     enum class MapOn { automatic, vertex, face };
     enum class ColourBy { automatic, labels, colours, none };
 
-    /// The k-th object; its annotations say what is up in the picture unless the options do.
+    /// Reads the k-th object; its annotations give the up direction unless the options do.
     Scene read(Context& context, std::size_t k, RenderOptions& how) const {
         Scene scene;
         MeshExtras extras;
@@ -134,7 +134,7 @@ struct Render final : Operation {
             scene.mesh = to_soup(file.mesh);
             extras = file.extras;
             triangle_polygon = file.triangle_polygon;
-        } else {  // a picture needs no manifold
+        } else {  // rendering needs no manifold
             TriangulatedSoup triangles = triangulate(meshes.take_polygons(k));
             context.notes(meshes.size() > 1 ? meshes.file(k) : std::string(), triangles.notes);
             scene.mesh = std::move(triangles.soup);
@@ -164,7 +164,7 @@ struct Render final : Operation {
     static void colour_by_labels(Scene& scene, const MeshExtras& extras) {
         std::vector<std::int32_t> labels = extras.face_labels;
         if (labels.empty())
-            for (const auto& [a, b, c] : scene.mesh.triangles) {  // the label of most corners, else of the first
+            for (const auto& [a, b, c] : scene.mesh.triangles) {  // majority label of the corners, else the label of the first
                 const auto& of = extras.vertex_labels;
                 labels.push_back(of[b] == of[c] ? of[b] : of[a]);
             }
@@ -172,7 +172,7 @@ struct Render final : Operation {
         for (const auto label : labels) colours[label];
         std::size_t index = 0;
         for (auto& [label, colour] : colours) {
-            // One label alone tells no part from another.
+            // A single label does not distinguish parts.
             colour = colours.size() > 1 ? category_colour(index) : Rgb{neutral_colour[0], neutral_colour[1], neutral_colour[2]};
             ++index;
             scene.legend.push_back({"label " + std::to_string(label), colour, LegendMark::area});
@@ -183,7 +183,7 @@ struct Render final : Operation {
         for (const auto label : labels) scene.face_colours.push_back(colours[label]);
     }
 
-    /// The colours that the file itself gives, if any are wanted.
+    /// Uses the labels or colours stored in the file, if requested.
     void colour_by_file(Scene& scene, const MeshExtras& extras, const std::string& file) const {
         const bool labels = !extras.face_labels.empty() || !extras.vertex_labels.empty();
         const bool colours = !extras.face_colours.empty() || !extras.vertex_colours.empty();
@@ -220,7 +220,7 @@ struct Render final : Operation {
         }
     }
 
-    /// Empty where no mesh has one.
+    /// File of the first map; empty if there is none.
     [[nodiscard]] std::string first_map() const {
         for (std::size_t k = 0; k < maps.size(); ++k)
             if (maps.has(k)) return maps.file(k);
@@ -243,7 +243,7 @@ struct Render final : Operation {
         return scale;
     }
 
-    /// Of the units that are known.
+    /// Whether the known units differ.
     static bool units_differ(const std::vector<Scene>& scenes) {
         std::set<std::string> units;
         for (const Scene& scene : scenes)
@@ -251,7 +251,7 @@ struct Render final : Operation {
         return units.size() > 1;
     }
 
-    /// As recipes take it, so that pixels of this picture can be picked.
+    /// The camera in the form of recipes, so that pixels of this picture can be selected.
     static JsonValue camera_json(const Pane& pane, const Rendering& picture, JsonAllocator& allocator) {
         const PictureCamera& camera = pane.camera;
         const auto triple = [](const auto& v) { return std::array{v.x(), v.y(), v.z()}; };

@@ -1,4 +1,4 @@
-// report: one HTML page of results, objects in 3D with tables and drawings, that opens anywhere without a network.
+// report: one self-contained HTML page of results: objects in 3D with tables and drawings.
 #include "annotated_scene.h"
 #include "operations.h"
 #include "ostraka/operations/page_results.h"
@@ -22,7 +22,7 @@ namespace ostraka {
 
 namespace {
 
-/// An object of the page as it is read.
+/// An object of the page while it is read.
 struct ShownObject {
     std::string name;
     MeshFile file;
@@ -42,7 +42,7 @@ bool is_document(const std::string& name) {
            !name.ends_with(".template.json");
 }
 
-/// The path as an address relative to the page.
+/// URL of the path relative to the page.
 std::string address_of(const Path& path) {
     std::vector<std::string> parts;
     for (const Path& part : path) parts.push_back(percent_encoded(part.string()));
@@ -101,7 +101,7 @@ struct MakeReport final : Operation {
 
     [[nodiscard]] bool is_collection() const { return beside.size() > 0; }
 
-    /// Without folders and extensions.
+    /// The name without folders and extensions.
     static std::string name_of(const std::string& file) {
         Path path = Path(file).lexically_normal();
         if (path.filename().empty() || path.filename() == ".")
@@ -154,7 +154,7 @@ struct MakeReport final : Operation {
         one.file = read_mesh(file);
         std::vector<std::string> said = one.file.notes;
         std::erase_if(said, [](const std::string& note) { return note.find("properties not kept") != std::string::npos; });
-        context.notes(name, said);  // those are maps here
+        context.notes(name, said);  // additional properties become maps of the page
         one.maps = ply_maps(file, one.file);
         Path annotations = file;
         annotations.replace_extension(".ant.json");
@@ -170,7 +170,7 @@ struct MakeReport final : Operation {
         }
     }
 
-    /// Of a group of assembled fragments: its labels count them from 1.
+    /// Label names of a group of assembled fragments, whose labels count the fragments from 1.
     static std::map<std::int32_t, std::string> label_names(const Path& mesh) {
         std::map<std::int32_t, std::string> known;
         const Path assembly = mesh.parent_path() / "assembly.json";
@@ -197,7 +197,7 @@ struct MakeReport final : Operation {
         for (const Finding& finding : known.findings) made->note(name + ": " + finding.text);
     }
 
-    /// Slices, and the constraints of a deformation, belong to the object before them; what else it says becomes tables.
+    /// Slices, and the constraints of a deformation, are added to the preceding object; other data become tables.
     void read_document(const Json& document, const std::string& name) {
         const std::string format = format_of(document);
         constexpr std::array known{"ostraka-slices",         "ostraka-report",      "ostraka-assembly", "ostraka-reassembly",
@@ -231,8 +231,8 @@ struct MakeReport final : Operation {
         for (PageTable& table : record_tables(*result, stem, shown)) tables.push_back(std::move(table));
     }
 
-    /// Meshes with what lies beside them under their names, templates, tables and drawings that lie in the folder itself, by
-    /// name.
+    /// Adds the meshes of the folder with the files of the same name, and its templates, tables and drawings, sorted by name.
+    /// Subfolders are not searched.
     void read_folder(Context& context, Report& report, const Path& folder) {
         std::vector<std::string> files = files_in(folder);
         std::erase_if(files, [&](const std::string& name) {
@@ -242,7 +242,7 @@ struct MakeReport final : Operation {
         });
         std::sort(files.begin(), files.end());
         const auto stem = [](const std::string& name) { return Path(name).stem().string(); };
-        // Documents by the names of the meshes that they are of; empty: of none.
+        // Documents by the name of their mesh; empty if they have none.
         std::multimap<std::string, std::pair<std::string, Json>> documents;
         std::vector<std::string> others;
         std::set<std::string> meshes;
@@ -280,7 +280,7 @@ struct MakeReport final : Operation {
             }
         };
         for (const std::string& name : others) {
-            if (reassembled && name.find(".placed.") != std::string::npos) continue;  // the groups hold them
+            if (reassembled && name.find(".placed.") != std::string::npos) continue;  // contained in the groups
             read_here(name);
             if (!is_mesh_name(name)) continue;
             read_documents(stem(name));
@@ -289,7 +289,7 @@ struct MakeReport final : Operation {
         read_documents("");
     }
 
-    /// Of a file that happens to lie in a folder; null where it cannot be read.
+    /// Reads a file of a folder; null if it is unreadable.
     Json document_in(const Path& file) {
         try {
             return read_json(file);
@@ -324,7 +324,7 @@ struct MakeReport final : Operation {
 
     // ---- the page ----
 
-    /// The object that was read goes into the page, or into a file of its own beside it.
+    /// Adds the current object to the page, or writes it to a file of its own beside the page.
     void finish(Context& context, Report& report) {
         if (!current) return;
         ShownObject one = std::move(*current);
@@ -363,7 +363,7 @@ struct MakeReport final : Operation {
         return std::filesystem::absolute(folder / "").lexically_normal().lexically_relative(around);
     }
 
-    /// Sizes and measures of the objects of a collection.
+    /// Adds size and measures of an object to the overview of the collection.
     void add_to_overview(const ShownObject& one, std::size_t place) {
         if (overview.columns.empty()) {
             overview.title = "objects";
@@ -422,7 +422,7 @@ struct MakeReport final : Operation {
             shown.maps = std::move(one.maps);
             if (one.set) shown.annotations = &*one.set;
         }
-        std::optional<AlongEdges> along_edges;  // free outlines are seen on the mesh cut along them
+        std::optional<AlongEdges> along_edges;  // free outlines are shown on the mesh cut along them
         if (shown.annotations != nullptr) along_edges.emplace(*shown.mesh, *shown.annotations);
         if (along_edges && along_edges->cut()) {
             for (PageMap& map : shown.maps) {
@@ -438,7 +438,7 @@ struct MakeReport final : Operation {
         if (small != nullptr) *small = thumbnail(*shown.mesh, shown.annotations, "240x180");
     }
 
-    /// For the eye only: measures keep the values of the whole object.
+    /// Simplifies the mesh for display only: measures keep the values of the original.
     BoundMesh simplified(ShownObject& one, PageObject& shown) const {
         MeshFile copy;
         copy.mesh = one.file.mesh;
@@ -473,7 +473,7 @@ struct MakeReport final : Operation {
     std::string title, unit;
     std::uint64_t limit = 200'000;
     std::optional<Page> made;
-    std::optional<ShownObject> current;  ///< what follows belongs to it
+    std::optional<ShownObject> current;  ///< the object to which the following files belong
     std::size_t places = 0, drawings = 0;
     PageNames names;
     PageTable overview;  ///< of a collection

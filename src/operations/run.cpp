@@ -1,4 +1,4 @@
-// run: the steps of a study file; replay: the same again, compared.
+// run: executes the steps of a study file; replay: repeats a run and compares the results.
 #include "operations.h"
 
 #include "ostraka/core/child_process.h"
@@ -15,7 +15,7 @@ namespace ostraka {
 
 namespace {
 
-/// How many instances are in which state, step by step.
+/// Reports the number of instances per state, for each step.
 void report_steps(Report& report, const StudyPlan& plan, const std::vector<InstanceResult>& results) {
     std::map<InstanceState, std::size_t> all;
     for (std::size_t s = 0; s < plan.study.steps.size(); ++s) {
@@ -39,7 +39,7 @@ void report_steps(Report& report, const StudyPlan& plan, const std::vector<Insta
                                                                                              all[InstanceState::skipped]);
 }
 
-/// The words of a program, each apart from the next; those that are known only when it runs by their names.
+/// The words of a program, quoted; words known only at run time are shown by their names.
 std::string program_text(const StudyPlan& plan, const StudyInstance& instance) {
     std::string text;
     auto input = instance.inputs.begin();
@@ -54,7 +54,7 @@ std::string program_text(const StudyPlan& plan, const StudyInstance& instance) {
     return text;
 }
 
-/// Programs that steps start and that are not the toolkit's own: they are shown before anything runs.
+/// Lists the external programs that steps start, before anything runs.
 void show_programs(Context& context, Report& report, const StudyPlan& plan, bool allowed) {
     for (const StudyInstance& instance : plan.instances) {
         if (instance.program.empty() || is_own_program(instance.program.front())) continue;
@@ -101,7 +101,7 @@ struct Run final : Operation {
         static_cast<void>(share_from_text(shard));
     }
 
-    [[nodiscard]] double memory_needed(double /*input_bytes*/) const override { return 0; }  // steps are judged one by one
+    [[nodiscard]] double memory_needed(double /*input_bytes*/) const override { return 0; }  // memory is checked for each step
 
     void run(Context& context, Report& report) override {
         RunStudyOptions options;
@@ -116,7 +116,7 @@ struct Run final : Operation {
         reading.quick = quick;
         reading.set = set;
         reading.reads.assign(reads.begin(), reads.end());
-        reading.allow_programs = allow_programs || dry_run;  // a dry run shows them
+        reading.allow_programs = allow_programs || dry_run;  // a dry run lists them
         std::optional<StudyPlan> plan;
         context.record([&] { plan.emplace(read_study(file, find_operation, reading)); });
         check_collected(*plan);
@@ -162,7 +162,7 @@ struct Run final : Operation {
     }
 
 private:
-    /// Of the steps that were asked for, and of those that they need.
+    /// Checks the programs of the requested steps and of the steps they depend on.
     void check_programs(const StudyPlan& plan, const RunStudyOptions& options) const {
         std::set<std::size_t> asked;
         std::vector<std::size_t> next;
@@ -198,7 +198,7 @@ private:
     std::string explain, shard, programs;
 };
 
-/// Of a report all but what may differ between two runs.
+/// The report without the parts that may differ between identical runs.
 std::string lasting_report(const Path& folder) {
     const Path file = folder / "report.json";
     if (!file_exists(file)) return {};
@@ -234,7 +234,7 @@ struct Replay final : Operation {
         reading.set = request.set;
         reading.set_from_file = true;
         reading.folder = inputs.empty() ? (folder / request.study_folder).lexically_normal() : Path(inputs);
-        // The folder that the run itself names is read only where the caller names it too.
+        // The folder named by the run itself is read only if the caller names it too.
         reading.reads_folder = !inputs.empty();
         reading.reads.assign(reads.begin(), reads.end());
         reading.reads.push_back(folder);

@@ -14,7 +14,7 @@ const std::vector<std::string>& threshold_names() {
     return names;
 }
 
-/// A quantity by its name, or a file.
+/// Throws unless `of` is the name of a quantity, or a file.
 void check_threshold(const std::string& of) {
     const auto& names = threshold_names();
     if (std::find(names.begin(), names.end(), of) != names.end() || !extension(of).empty() || file_exists(of)) return;
@@ -95,12 +95,12 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// The JSON of a step as its options say it.
+/// Writes the JSON of a step from its options.
 class StepWriter {
 public:
     StepWriter(const SelectStep& step, JsonAllocator& allocator) : step_(step), a_(allocator) {}
 
-    /// What is selected: the tool, made larger or smaller, or all but that.
+    /// The selection: that of the tool, grown, shrunk or inverted.
     [[nodiscard]] JsonValue selected() const {
         JsonValue result = tool();
         if (step_.grow > 0 && step_.shrink > 0) fail_usage("both --grow and --shrink", "give one of them");
@@ -130,7 +130,7 @@ private:
             fail_usage("--" + option + " takes " + std::to_string(count) + " numbers, not " + std::to_string(values.size()),
                        "separate them by commas, without blanks");
     }
-    /// Two points or vectors of one list.
+    /// Splits a list of numbers into two points or vectors.
     [[nodiscard]] JsonValue halves(const Numbers& values, const char* option, std::size_t count, const char* first,
                                    const char* second) const {
         check_count(values, option, 2 * count);
@@ -152,7 +152,7 @@ private:
         add_members(value, a_, "picture", std::array{width, height});
         return value;
     }
-    /// What is drawn in the camera's picture.
+    /// A shape drawn in the picture of the camera.
     [[nodiscard]] JsonValue drawn(JsonValue shape) const {
         JsonValue value = object("camera", camera());
         for (auto& member : shape.GetObject()) add_members(value, a_, member.name.GetString(), std::move(member.value));
@@ -202,7 +202,7 @@ private:
         return value;
     }
 
-    /// The expression that one tool stands for.
+    /// The selection expression of the given tool.
     [[nodiscard]] JsonValue tool() const {
         std::vector<std::string> given;
         JsonValue result(rapidjson::kObjectType);

@@ -1,37 +1,37 @@
-// One step of a recipe, given by options.
+// One step of a recipe, specified by options.
 #pragma once
 
 #include "operations.h"
 
 namespace ostraka {
 
-/// All that the options say of a step.
+/// The options that specify a step.
 struct SelectStep {
-    // tools, of which exactly one is given
-    std::string expression;  ///< as recipes have it
+    // tools; exactly one is given
+    std::string expression;  ///< a selection in the JSON form of recipes
     bool all = false;
     std::vector<double> rectangle, polygon, box, sphere, halfspace, nearest;
     std::string threshold, component;
     std::optional<int> segment;
     std::vector<std::string> path, lasso, brush, vertices;
     std::vector<int> faces, labels;
-    // how
+    // modifiers
     bool through = false, closed = false, stroke = false, invert = false, quantiles = false;
     std::string seed, metric = "euclidean", frame = "mesh";
     std::optional<double> radius, above, below;
     double scale = 0, smoothing = 0.26;
     int grow = 0, shrink = 0;
-    // the camera
+    // camera
     std::string camera_text, view = "30,20", up, projection = "orthographic", size = "1200x900";
     double zoom = 1;
-    // what for
+    // resulting annotation
     std::string tag, action = "make";
     std::optional<std::string> type, outline;
     std::vector<int> colour;
     std::optional<int> id;
 
     void describe(OptionList& visit);
-    /// The step, taken on this set. Throws Error (usage) for options that make no step.
+    /// Returns the step to apply to this set. Throws Error (usage) if the options do not specify a valid step.
     [[nodiscard]] Json step(const AnnotationSet& set) const;
 };
 

@@ -1,4 +1,4 @@
-// slice: an object cut into slices, described and drawn.
+// slice: cuts an object into slices, describes and draws them.
 #include "operations.h"
 #include "slice_report.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 enum class SliceForm { json, csv, sheet, mesh, profile };
 
-/// What is written: one form by the ending of the name; all of them into a folder, which is a name without one.
+/// The output: one format, chosen by the file extension, or all formats if the name has none and denotes a folder.
 class SliceOutput final : public FolderOutput {
 public:
     void check() const override {
@@ -32,7 +32,7 @@ public:
         return is_folder(sources[i].file) || extension(sources[i].file).empty();
     }
 
-    /// Makes the folders.
+    /// Lists the files to write, and creates their folders.
     [[nodiscard]] std::vector<std::pair<SliceForm, Path>> files(bool with_profile) const {
         std::vector<std::pair<SliceForm, Path>> list;
         for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -168,10 +168,10 @@ struct SliceObject final : Operation {
         return slice_frame({plane[0], plane[1], plane[2]}, normal);
     }
 
-    /// The mesh, cut along the outlines of what is sliced where these are free.
+    /// The mesh, cut along the outlines of the sliced part if these are free.
     [[nodiscard]] const Mesh& on() const { return along_edges ? along_edges->mesh() : mesh->mesh; }
 
-    /// Unit, upward direction and faces: as asked for, else as the annotations say.
+    /// Sets unit, up direction and faces from the options, or else from the annotations.
     void read_part() {
         unit_of_lengths = unit;
         std::array<double, 3> upward{0, 0, 1};
@@ -204,7 +204,7 @@ struct SliceObject final : Operation {
                 const auto along = direction_of(direction, "--direction");
                 options.up = {along[0], along[1], along[2]};
             }
-            // A slice crosses about three times the square root of the faces, with points and descriptors for each.
+            // A slice crosses about 3 sqrt(number of faces) edges, with points and descriptors for each.
             const double crossed = 3 * std::sqrt(static_cast<double>(on().number_of_faces()));
             require_memory(200 * crossed * static_cast<double>(count.value_or(50)),
                            std::to_string(count.value_or(50)) + " slices", "ask for fewer (--count)");
@@ -237,7 +237,7 @@ struct SliceObject final : Operation {
         }
     }
 
-    /// Nothing is drawn where nothing was met.
+    /// Whether any plane meets the mesh; otherwise nothing is drawn.
     static bool is_drawable(const std::string& name, const CutObject& cut, Report& report) {
         if (!cut.met()) report.note("no plane meets the mesh: " + name + " is not written");
         return cut.met();
@@ -245,7 +245,7 @@ struct SliceObject final : Operation {
 
     [[nodiscard]] std::string name_of_drawing() const { return title.empty() ? mesh.file_name() : title; }
 
-    /// The slices drawn: all, or as many as asked for, spread evenly.
+    /// The slices to draw: all, or the requested number, evenly distributed.
     [[nodiscard]] SliceSheet sheet(const CutObject& cut) const {
         const std::size_t n = cut.slices.size(), maximum = static_cast<std::size_t>(drawn);
         SliceSheet content;
@@ -268,7 +268,7 @@ struct SliceObject final : Operation {
         return content;
     }
 
-    /// Of what was not turned only where it was asked for.
+    /// Draws the profile; of an object that is not a surface of revolution only if requested.
     void draw_profile(const Path& file, bool asked, const CutObject& cut, Report& report) const {
         const double turn = angle ? *angle * M_PI / 180 : std::numeric_limits<double>::quiet_NaN();
         const SliceFrame axis = direction == "rotation" ? cut.frames[0] : median_frame(cut);
@@ -313,9 +313,9 @@ struct SliceObject final : Operation {
     bool axes = false;
     TubeOptions tube_options;
 
-    // Found by `read_part`.
+    // Set by `read_part`.
     std::optional<AlongEdges> along_edges;
-    std::vector<Index> faces;  ///< of the part; empty: all
+    std::vector<Index> faces;  ///< faces of the part; empty: all
     Vector upwards{0, 0, 1};
     bool up_known = false;
     std::string unit_of_lengths;

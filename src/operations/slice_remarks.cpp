@@ -1,4 +1,4 @@
-// What `ostraka slice` says beside its tables.
+// Remarks that `ostraka slice` adds to its tables.
 #include "slice_report.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace ostraka {
 
 namespace {
 
-/// "3 of 50 slices, at height 1.5 to 1.7, 3, ": those of which something holds; empty if none.
+/// "3 of 50 slices, at height 1.5 to 1.7, 3, ": the slices for which `holds` is true; empty if there are none.
 template <class Holds>
 std::string slices_where(const std::vector<Slice>& slices, const Holds& holds) {
     std::size_t count = 0, runs = 0;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double slice_degree = M_PI / 180;
 
-/// What people see of the descriptors, in this order: the descriptor, its title, digits.
+/// Descriptors shown to people, in this order: name, title, number of digits.
 struct ShownDescriptor {
     std::string_view name, title;
     int digits;
@@ -49,7 +49,7 @@ Field descriptor_field(const NamedDescriptor& entry) {
 std::vector<double> slice_triple(const Vector& v) { return {v.x(), v.y(), v.z()}; }
 std::vector<double> slice_triple(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-/// Numbers that are not finite are null.
+/// JSON list; numbers that are not finite become null.
 JsonValue slice_list(const std::vector<double>& values, JsonAllocator& allocator) {
     std::vector<std::optional<double>> list;
     for (const double x : values) list.push_back(std::isfinite(x) ? std::optional(x) : std::nullopt);

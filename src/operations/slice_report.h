@@ -1,4 +1,4 @@
-// What slices tell: in reports, as a table, as colours, in words.
+// Output of slices: reports, tables, colours, remarks.
 #pragma once
 
 #include "ostraka/axis/object_slices.h"
@@ -10,31 +10,31 @@
 
 namespace ostraka {
 
-/// What is reported of a cut object.
+/// The results of slicing that are reported.
 struct SliceFindings {
     const CutObject& cut;
     std::string unit;
-    bool one_plane = false;  ///< it was given as such: there is no tube, and heights are over it
+    bool one_plane = false;  ///< a single plane was given: there is no tube, and heights are relative to the plane
     std::vector<ComparedAxis> axes;
     ThicknessHomogeneity thickness;
     Tube tube;
 };
 
-/// The values and tables that `add_slices` adds: the members of a slices file (slices.schema.json).
+/// Declares the values and tables that `add_slices` fills: the members of a slices file (slices.schema.json).
 void declare_slices(ReportLayout& layout);
 void add_slices(Report& report, const SliceFindings& found);
 
-/// Completeness and every descriptor, a row a slice.
+/// Completeness and all descriptors, one row per slice.
 std::string slice_table(const CutObject& cut, const std::string& unit);
 
-/// "height", and the descriptors that slice_table has.
+/// "height" and the descriptors of slice_table.
 std::vector<std::string> slice_quantities();
-/// Faces by what the nearest slice has of one of these, those that are cut darker; grey where there is none within half the
-/// distance to the next slice, or no value.
+/// Colours faces by a quantity of the nearest slice; faces crossed by a slice are darker. Grey if there is no slice within half
+/// the spacing, or no value.
 std::vector<Colour> slice_colours(const Mesh& mesh, const CutObject& cut, const std::string& quantity);
 
-/// What a reader has to know of the slices: planes that miss, open contours, parts that cross or are oriented wrongly, and at
-/// which heights. `one_plane`: it was given as such.
+/// Remarks on the slices: planes that miss the object, open contours, crossing or wrongly oriented parts, each with the
+/// heights. `one_plane`: a single plane was given.
 std::vector<std::string> slice_remarks(const CutObject& cut, bool one_plane);
 
 }  // namespace ostraka

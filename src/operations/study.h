@@ -1,4 +1,4 @@
-// What every study has: a collection, the folder it writes to, and answers that are known.
+// Common to all studies: a collection, the output folder, and known answers.
 #pragma once
 
 #include "operations.h"
@@ -9,25 +9,26 @@ namespace ostraka {
 
 class StudyFiles {
 public:
-    /// The slots and --plots; with `labels` also --truth, --truth-column and the members result.truth.
+    /// Declares the slots and --plots; with `labels` also --truth, --truth-column and the members result.truth.
     void describe(Parameters& p, bool labels,
                   const std::string& collections = "folder of meshes, or a list of objects (.study.json)");
-    /// Throws Error (usage) where the output folder is the collection's own.
+    /// Throws Error (usage) if the output folder is the folder of the collection.
     void check() const;
-    /// Reads the collection (of a part of the work only its objects, unless `all`) and its labels, notes what they say, records
-    /// both in the provenance, opens the folder. Throws as `read_collection`, `read_labels` and `set_labels` do.
+    /// Reads the collection (only the objects of the shard, unless `all`) and its labels, reports their notes, records both in
+    /// the provenance, and opens the output folder. Throws as `read_collection`, `read_labels` and `set_labels` do.
     Collection read(Context& context, bool all = false) const;
 
-    /// Where results of single objects are kept from run to run; `kind` is a folder in the output folder.
+    /// Store of per-object results that persists between runs; `kind` is a folder in the output folder.
     [[nodiscard]] ResultStore store(const std::string& kind = "objects") const {
         return ResultStore(output.path() / kind, share_from_text(shard_));
     }
-    /// Whether this run does a part of the objects only (--shard): then it says what became of them, and nothing is gathered.
+    /// Whether this run processes one shard of the objects only (--shard): then it reports their state, and no results are
+    /// gathered.
     bool ends_with_part(Report& report, const std::vector<ObjectResult>& results) const;
     [[nodiscard]] bool is_part() const { return !share_from_text(shard_).is_whole(); }
     [[nodiscard]] const std::string& shard() const { return shard_; }
     [[nodiscard]] Path in(const std::string& name) const { return output.in(name); }
-    /// A plot in the output folder, with the ending that was asked for.
+    /// Path of a plot in the output folder, with the extension of the requested format.
     [[nodiscard]] Path plot(const std::string& name) const {
         return in(name + (plots_ == PlotFormat::png ? ".png" : plots_ == PlotFormat::pdf ? ".pdf" : ".svg"));
     }
@@ -50,7 +51,7 @@ struct StudyOperation : Operation {
     StudyFiles files;
 };
 
-/// Which part of the objects a study looks at.
+/// The part of each object that a study examines.
 class StudyPart {
 public:
     void describe(Parameters& p) {
@@ -69,23 +70,23 @@ private:
     VocabularyOption vocabulary_;
 };
 
-/// The table result.failed: the objects that failed or were left out, also as notes. Returns how many.
+/// Fills the table result.failed with the objects that failed or were left out, also as notes. Returns their number.
 std::size_t report_failures(Report& report, const Collection& collection, const std::vector<ObjectResult>& results);
 
-/// How many of the objects that were studied have a known answer.
+/// The number of studied objects whose answer is known.
 struct KnownAnswers {
     std::size_t labelled = 0, objects = 0, kinds = 0;
 
     explicit KnownAnswers(const std::vector<std::string>& labels);
-    /// Scores against the truth mean nothing for fewer than two objects, or objects of one kind.
+    /// Whether scores are meaningful: at least two labelled objects, of at least two kinds.
     [[nodiscard]] bool scorable() const { return labelled >= 2 && kinds >= 2; }
-    /// A line, "answers are known of 4 of 9 objects"; none where no answer is known.
+    /// Adds the line "answers are known of 4 of 9 objects"; nothing if no answer is known.
     void report_result(Report& report) const;
-    /// The member "truth" of a report; none where no answer is known.
+    /// Adds the member "truth"; nothing if no answer is known.
     void add_to(Report& report) const;
 };
 
-/// `document_of` these, checked against the schema KIND.
+/// Writes `document_of` the arguments, after validation against the schema KIND.
 void write_study_report(const Path& file, const std::string& kind, const JsonValue& result, const Provenance& provenance);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// study landmarks: shapes of landmarks superimposed, their mean and how they vary.
+// study landmarks: generalised Procrustes analysis of landmarks: mean shape and variation.
 #include "study.h"
 
 #include "ostraka/collection/landmark_shapes.h"
@@ -65,7 +65,7 @@ struct StudyLandmarks final : StudyOperation {
         report.table(table);
     }
 
-    /// Names them, and takes them out where that is wanted.
+    /// Reports odd specimens, and removes them if requested.
     void report_odd(Report& report, LandmarkShapes& shapes) const {
         std::vector<OddSpecimen> odd = odd_specimens(shapes);
         if (leave_odd_out && odd.size() < shapes.objects.size()) {
@@ -80,7 +80,7 @@ struct StudyLandmarks final : StudyOperation {
         }
     }
 
-    /// The table of objects and the plot of the first two components.
+    /// Writes the table of objects and the plot of the first two components.
     void write(const LandmarkShapes& shapes, const GeneralisedProcrustes& shape, const PrincipalComponents& principal) const {
         const Eigen::MatrixXd& scores = principal.scores;
         const Eigen::Index count = scores.cols();

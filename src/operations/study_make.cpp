@@ -1,4 +1,4 @@
-// study make: collections whose answers are known.
+// study make: synthetic collections with known answers.
 #include "operations.h"
 
 #include "ostraka/annotation/colouring.h"
@@ -15,11 +15,11 @@ namespace ostraka {
 
 namespace {
 
-/// The folder that all of them fill.
+/// The output folder, common to all of them.
 struct StudyMake : Operation {
     void describe_folder(Parameters& p, const std::string& help) { p.output("folder", Kind::collection, folder, help); }
 
-    /// Makes the folder, which holds no objects yet, and each of them, several at a time.
+    /// Creates the folder, which must not contain objects yet, and makes the objects in parallel.
     template <class MakeOne>
     void make_each(const std::string& phase, std::size_t count, const MakeOne& make_one) const {
         check_new_collection(folder.path());
@@ -41,11 +41,12 @@ struct StudyMake : Operation {
     FolderOutput folder;
 };
 
-/// Those that make statuettes.
+/// Common to the operations that make statuettes.
 struct StudyMakeStatuettes : StudyMake {
     static std::string name_of(std::size_t i, std::size_t count) { return "statuette-" + padded(i + 1, count); }
-    /// Generates one of a population. Sizes that give no sound surface (arms that touch the head, say) are drawn again, as those
-    /// of the same place in the population of another seed; then `drawn` changes. Throws as generate_statuette after ten times.
+    /// Generates the i-th statuette of a population. If its dimensions give no valid surface (for instance arms that touch the
+    /// head), they are drawn again from the same population with another seed, and `drawn` changes. After ten attempts, throws
+    /// as generate_statuette does.
     template <class Population>
     static Statuette generate_one(Population population, std::size_t i, StatuetteParameters& drawn) {
         constexpr int attempts = 10;
@@ -60,7 +61,7 @@ struct StudyMakeStatuettes : StudyMake {
         }
     }
 
-    /// All of a population, as they were drawn in the end. Says which were drawn again.
+    /// Makes the whole population and returns the parameters used. Notes report which were drawn again.
     template <class Population>
     std::vector<StatuetteParameters> make_population(Context& context, const Population& population, bool coloured,
                                                      const std::function<void(std::size_t, const Statuette&)>& look = {}) const {
@@ -80,7 +81,7 @@ struct StudyMakeStatuettes : StudyMake {
         return list;
     }
 
-    /// Writes mesh and annotations, whose provenance is what the one statuette was made of.
+    /// Writes mesh and annotations; their provenance holds the parameters of the statuette.
     void write_one(const std::string& name, const Statuette& statuette, const StatuetteParameters& parameters,
                    const std::string& command, bool coloured) const {
         const Provenance provenance{command, list_options(parameters), {}};
@@ -97,7 +98,7 @@ struct StudyMakeStatuettes : StudyMake {
     }
 };
 
-/// The measures that `study proportions` takes on these statuettes. The two arms of each are equally long.
+/// The measures that `study proportions` takes on these statuettes. Both arms of a statuette have the same length.
 constexpr const char* statuette_measures = R"({
   "format": "ostraka-measures",
   "version": 1,
@@ -222,7 +223,7 @@ struct StudyMakeMoulds final : StudyMake {
         for (std::size_t part = 0; part < parts.size(); ++part) report.row("", {part, parts[part]});
     }
 
-    /// Its parts, and "head" for all of them but the body and the neck's stump.
+    /// Annotates the parts, and "head" for all of them except the body and the stump of the neck.
     static AnnotationSet annotate_head(const HeadCast& made, const std::vector<std::int32_t>& labels) {
         std::map<std::int32_t, std::string> names;
         const std::vector<std::string> parts = head_part_names();

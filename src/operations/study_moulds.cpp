@@ -1,4 +1,4 @@
-// study moulds: which heads come from one mould.
+// study moulds: groups heads by the mould they come from.
 #include "study.h"
 
 #include "ostraka/collection/mould_study.h"
@@ -100,7 +100,7 @@ struct StudyMoulds final : StudyOperation {
         if (failed > 0) report.line(std::to_string(failed) + " objects were left out");
     }
 
-    /// Returns the heads that are alone in their group.
+    /// Returns the heads that form a group of their own.
     [[nodiscard]] std::string report_groups(Report& report, const MouldStudy& study,
                                             const std::vector<std::string>& answers) const {
         std::string single;
@@ -127,7 +127,7 @@ struct StudyMoulds final : StudyOperation {
         auto& allocator = document.GetAllocator();
         JsonValue result(report.result(), allocator), failed(result["failed"], allocator);
         result.EraseMember("failed");
-        add_members(result, allocator, "failed", std::move(failed));  // the last one in the file
+        add_members(result, allocator, "failed", std::move(failed));  // last member of the file
         add_members(document, allocator, "provenance", provenance.to_json(allocator), "result", std::move(result));
         validate(document, "mould-study", "moulds.json");
         write_json(files.in("moulds.json"), document);
@@ -148,7 +148,7 @@ struct StudyMoulds final : StudyOperation {
         write_file(files.in(name + ".csv"), table.csv());
     }
 
-    /// One row a group.
+    /// One row per group.
     static TextTable group_table(const MouldStudy& study) {
         TextTable table({"group", "heads", "distance within", "nearest group", "distance to it", "silhouette", "stability",
                          "dissolved", "members"});
@@ -166,7 +166,7 @@ struct StudyMoulds final : StudyOperation {
         return table;
     }
 
-    /// One row a head.
+    /// One row per head.
     [[nodiscard]] TextTable head_table(const MouldStudy& study, const std::vector<std::string>& answers,
                                        const KnownAnswers& known) const {
         const bool sizes = compare.consistent.shrinkage > 0;
@@ -188,7 +188,7 @@ struct StudyMoulds final : StudyOperation {
         return table;
     }
 
-    /// Every similarity, method and epsilon.
+    /// One row per similarity, method and epsilon.
     [[nodiscard]] TextTable choice_table(const MouldStudy& study, const std::vector<std::string>& answers,
                                          const KnownAnswers& known) const {
         std::vector<std::string> columns{"similarity", "method", "epsilon", "value", "groups", "silhouette"};
@@ -243,7 +243,7 @@ struct StudyMoulds final : StudyOperation {
         tree.tree = study.groups.tree;
         tree.names = names;
         tree.groups = study.groups.labels;
-        if (group.method != GroupOptions::Method::embedding) {  // whose epsilon is no distance of this tree
+        if (group.method != GroupOptions::Method::embedding) {  // epsilon of an embedding is not a distance in this tree
             tree.cut = study.groups.epsilon;
             tree.cut_label = "epsilon " + significant(study.groups.epsilon, 3);
         }

@@ -1,4 +1,4 @@
-// study proportions: which proportions of a collection are fixed.
+// study proportions: finds the proportions that are fixed in a collection.
 #include "study.h"
 
 #include "ostraka/collection/proportion_graph.h"
@@ -14,13 +14,13 @@ namespace ostraka {
 
 namespace {
 
-/// "low to high", two columns in the CSV.
+/// Interval as "low to high"; two columns in the CSV.
 TableCell interval_cell(const std::optional<Interval>& interval, double factor, int digits_shown) {
     if (!interval) return {"-", {"", ""}};
     const double low = factor * interval->low, high = factor * interval->high;
     return {significant(low, digits_shown) + " to " + significant(high, digits_shown), {digits(low), digits(high)}};
 }
-/// The same of shares, which are percentages for people.
+/// The same for a share, shown as percentages.
 TableCell share_interval_cell(const std::optional<Interval>& interval) {
     if (!interval) return {"-", {"", ""}};
     return {fixed(100 * interval->low, 1) + " to " + percent(interval->high), {digits(interval->low), digits(interval->high)}};
@@ -78,7 +78,7 @@ TextTable verdict_table(const ProportionStudy& study, double false_discoveries) 
     return table;
 }
 
-/// Coefficients of variation with their intervals, a colour a verdict.
+/// Coefficients of variation with their intervals, coloured by verdict.
 Plot variation_plot(const ProportionStudy& study, const std::string& title) {
     Plot plot{title, {""}, {"coefficient of variation, %"}, {}};
     std::vector<const RatioRow*> rows = by_deviation(study);

@@ -72,7 +72,7 @@ struct StudySegments final : Operation {
         output.write(std::move(set), surface, mesh.file());
     }
 
-    /// Clusters without a segment, and those with several.
+    /// Reports clusters without a segment, and clusters with several.
     void report_clusters(Report& report, const SliceSegments& segments) const {
         std::string gone, again;
         std::size_t count = 0;

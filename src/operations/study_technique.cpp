@@ -1,4 +1,4 @@
-// study technique: which objects of a collection are wheel-made, which hand-made.
+// study technique: classifies the objects of a collection as wheel-made or hand-made.
 #include "study_technique_files.h"
 
 #include "ostraka/collection/technique_objects.h"
@@ -62,7 +62,7 @@ struct StudyOfTechnique final : StudyOperation {
         if (study.learned) report_learned(report, study);
         else report_divided(report, study, known);
         report_answers(report, study);
-        // Whether they can be distinguished is the question, and without known answers whether there are two groups at all.
+        // The answer is whether the classes can be distinguished or, without known answers, whether there are two groups.
         if (!study.separated) report.answer_no();
     }
 
@@ -113,7 +113,7 @@ struct StudyOfTechnique final : StudyOperation {
         row("descriptors", std::move(descriptors))("words", each.words);
     }
 
-    /// What was learned from the labels: the scores, and whether the answering classifier distinguishes them.
+    /// Reports what was learnt from the labels: the scores, and whether the chosen classifier separates the classes.
     static void report_learned(Report& report, const TechniqueStudy& study) {
         report.line("F1 of " + printable(study.positive) +
                     " when left out: means over the repeats of the cross-validation; from, to: 95 % over objects drawn anew");

@@ -68,7 +68,7 @@ void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study
 
 namespace {
 
-/// Objects by two descriptors, in classes by label (or answer, where no labels are known).
+/// Scatter plot of objects by two descriptors, coloured by label (or by answer, if no labels are known).
 void draw_technique_scatter(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects,
                             const std::string& file, const std::string& title, const std::string& x, const std::string& y,
                             bool logarithmic) {
@@ -82,7 +82,7 @@ void draw_technique_scatter(const StudyFiles& files, const TechniqueStudy& study
             const double a = objects[i].measures.value(x), b = objects[i].measures.value(y);
             if (number != c || !std::isfinite(a) || !std::isfinite(b) || b <= 0 || (a <= 0 && logarithmic)) continue;
             series.points.push_back({a, b});
-            // Names of those to look at only.
+            // Name only the objects that need attention.
             series.labels.push_back(study.answers[i].wrong() || study.answers[i].unlike ? objects[i].name : "");
         }
         if (!series.points.empty()) plot.series.push_back(std::move(series));
@@ -133,7 +133,7 @@ void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const 
         const auto& name = each.classifier.name;
         if (!each.validated || (name != "roundness" && name != "eccentricity" && name != "both" && name != "outside")) continue;
         PlotSeries curve{.name = name + " (area " + fixed(each.roc.area, 3) + ")", .marked = false};
-        // Thinner from curve to curve, so that each is seen where they coincide.
+        // Decreasing line width keeps coinciding curves visible.
         curve.thickness = 7.5 - 2 * static_cast<double>(roc.series.size());
         for (const RocPoint& point : each.roc.points)
             curve.points.push_back({point.false_positive_rate, point.true_positive_rate});

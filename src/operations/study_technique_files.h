@@ -1,4 +1,4 @@
-// What a study of technique writes into its folder: tables and plots.
+// Tables and plots that a study of technique writes into its folder.
 #pragma once
 
 #include "study.h"
@@ -7,11 +7,11 @@
 
 namespace ostraka {
 
-/// Words for the classifier or descriptor that answers.
+/// Text that names the classifier or descriptor whose answers are used.
 std::string answering_words(const TechniqueStudy& study);
-/// descriptors, classifiers, divisions, answers: .md, .csv, .tex
+/// Writes the tables descriptors, classifiers, divisions and answers as .md, .csv and .tex.
 void write_technique_tables(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects);
-/// Plots roundness, eccentricity and ovality; with known answers classifiers and roc.
+/// Plots roundness, eccentricity and ovality; with known answers also classifiers and ROC curves.
 void draw_technique(const StudyFiles& files, const TechniqueStudy& study, const std::vector<TechniqueObject>& objects);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The one table of operations. A line here, and a file of the operation's name, is all that a new one needs.
+// The table of operations. A new operation needs a line here and a file of its name.
 #include "ostraka/operations/table.h"
 
 #include "ostraka/core/nearest_name.h"

@@ -1,4 +1,4 @@
-// template classify: which class objects belong to.
+// template classify: the class to which objects belong.
 #include "operations.h"
 
 #include "ostraka/shape_classes/member_file.h"
@@ -38,7 +38,7 @@ struct TemplateClassify final : Operation {
         for (std::size_t i = 0; i < files.size(); ++i, progress.advance()) {
             if (is_class(i)) continue;
             answers.push_back(answer_of(context, i, first));
-            if (answer && answers.size() >= kept + 1 + kept / 32) {  // at most a thirty-second is lost: bytes in all O(n log n)
+            if (answer && answers.size() >= kept + 1 + kept / 32) {  // at most 1/32 is lost; O(n log n) bytes in total
                 keep(answers);
                 kept = answers.size();
             }
@@ -50,7 +50,7 @@ struct TemplateClassify final : Operation {
             report.answer_no();
     }
 
-    /// An object that cannot be read or fitted does not stop the others; the first error is kept.
+    /// Classifies the i-th object. If it cannot be read or fitted, the others are still processed; the first error is kept.
     [[nodiscard]] Classification answer_of(Context& context, std::size_t i, std::optional<Error>& first) const {
         try {
             return decide(object_name(files.file(i)), known.front()->landmarks ? ask_landmarks(context, i) : ask_meshes(i),
@@ -66,7 +66,7 @@ struct TemplateClassify final : Operation {
         }
     }
 
-    /// What is known so far, on the disk now: a run that ends early leaves its answers.
+    /// Writes the answers so far to disk, so that an interrupted run keeps them.
     void keep(const std::vector<Classification>& answers) const {
         OutputTransaction own;
         answer.write(document_of(answers));
@@ -94,7 +94,7 @@ struct TemplateClassify final : Operation {
                 fail_input(files.file(i), "is a class of meshes, or of landmarks, and the first is not",
                            "ask them one after the other");
         }
-        // Those of one name are distinguished by their files.
+        // Classes with the same name are distinguished by their files.
         for (std::size_t i = 0; i < classes.size(); ++i)
             if (std::count_if(known.begin(), known.end(), [&](const auto* k) { return k->learnt.name == classes[i].name; }) > 1)
                 classes[i].name += " (" + class_files[i] + ")";
@@ -164,7 +164,7 @@ struct TemplateClassify final : Operation {
         }
     }
 
-    /// The class whose explanation is told: the one it belongs to, or else the nearest.
+    /// The class whose explanation is shown: the one the object belongs to, or else the nearest.
     static const ClassAnswer* told(const Classification& object) {
         const int k = object.best >= 0 ? object.best : object.nearest;
         return k < 0 ? nullptr : &object.answers[static_cast<std::size_t>(k)];
@@ -182,7 +182,7 @@ struct TemplateClassify final : Operation {
     VocabularyOption vocabulary;
     ClassifyOptions options;
     std::vector<const ClassWithTemplate*> known;
-    std::vector<ShapeClass> classes;  ///< those known, with thresholds moderated by each other
+    std::vector<ShapeClass> classes;  ///< known classes with thresholds adjusted to each other
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// template learn: a class of objects from members of it.
+// template learn: learns a class of objects from its members.
 #include "operations.h"
 
 #include "ostraka/geom/with_points.h"
@@ -95,7 +95,7 @@ struct TemplateLearn final : Operation {
         return result;
     }
 
-    /// All files are members.
+    /// Learns a class of landmarks; all files are members.
     ShapeClass learn_landmarks(Context& context) {
         if (name.empty()) name = "landmarks";
         std::vector<Path> files{known.file()};
@@ -114,12 +114,12 @@ struct TemplateLearn final : Operation {
         return result;
     }
 
-    /// Names the class, makes the folder, and checks that no input stands where a file will be written. Whether the template
-    /// stands there itself.
+    /// Names the class, creates the folder, and checks that no output overwrites an input. Returns whether the template file
+    /// lies in the output folder.
     bool open_for(ShapeClass& learnt) const {
         learnt.name = name;
         learnt.template_file = known.file_name();
-        output.open(0, false);  // one of several classes there
+        output.open(0, false);  // keeps the files of other classes in the folder
         for (const char* ending : {".class.json", ".mean.npy", ".modes.npy"}) static_cast<void>(output.in(name + ending));
         return same_place(output.open() / learnt.template_file, known.file());
     }

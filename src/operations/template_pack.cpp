@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// What a template holds and what is wrong with it; `contents`: for people as well.
+/// Declares the contents and defects of a template; `contents`: show the contents to people too.
 void declare_template(ReportLayout& layout, bool contents) {
     const auto title = [&](const char* text) { return contents ? text : ""; };
     layout.values(text("class"), text("unit"));
@@ -58,7 +58,7 @@ struct TemplatePack final : Operation {
             fail_usage("there is no folder to copy the parts to", "give the template's file, or leave --copy out");
     }
 
-    /// As a part of the template that is written anew.
+    /// Whether the existing file is a part of the template that is rewritten.
     [[nodiscard]] bool is_packed(const Path& place, const Path& part) const {
         if (!file_exists(place)) return false;
         const auto parts_before = read_template(place, options).contents;
@@ -70,7 +70,7 @@ struct TemplatePack final : Operation {
         const Path place(output.file()), folder = place.has_parent_path() ? place.parent_path() : Path(".");
         TemplateFile file{object_class, unit, up.value(), {}};
         std::vector<Path> inputs, outputs{place};
-        std::map<Path, Path> copies;  // and what they are of
+        std::map<Path, Path> copies;  // copy -> original
         for (const std::string& role : template_roles())
             for (std::size_t i = 0; i < parts[role].size(); ++i) {
                 const Path part = inputs.emplace_back(parts[role].path(i));
@@ -85,11 +85,11 @@ struct TemplatePack final : Operation {
             outputs.push_back(here);
         }
         check_outputs(inputs, outputs);
-        // The file as it will be read: names that lead out of the folder are refused here.
+        // Parse the file as readers will: names that lead out of the folder are rejected here.
         if (!place.empty()) static_cast<void>(template_from_json(template_to_json(file, {}), folder, place.string(), options));
         Template known;
         context.record([&] { known = load_template(file, options); });
-        // What is not said of the object is as the annotations say.
+        // Properties of the object that are not given are taken from the annotations.
         if (known.annotations) {
             if (file.object_class.empty()) file.object_class = known.annotations->object_class;
             if (file.unit.empty()) file.unit = known.annotations->unit;

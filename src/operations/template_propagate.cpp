@@ -1,4 +1,4 @@
-// template propagate: a template's annotations on members of its class.
+// template propagate: transfers a template's annotations to members of its class.
 #include "operations.h"
 
 #include "ostraka/geom/with_points.h"
@@ -57,7 +57,7 @@ struct TemplatePropagate final : Operation {
             vocabulary.words().rename_like(renamed.back().annotations, *known->annotations);
             objects.back() = &renamed.back();
         }
-        output.open(0, false);  // other members may have theirs there
+        output.open(0, false);  // keeps the files of other members in the folder
         for (const WholeObject* member : objects)
             for (const char* ending : {".ant.json", ".fitted.ply", ".fitted.ant.json"})
                 static_cast<void>(output.in(member->name + ending));

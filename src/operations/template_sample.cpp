@@ -1,4 +1,4 @@
-// template sample: new members of a class.
+// template sample: draws new members of a class.
 #include "operations.h"
 
 #include "ostraka/geom/with_points.h"
@@ -24,7 +24,7 @@ struct TemplateSample final : Operation {
         if (known.landmarks)
             fail_input(known.learnt.template_file, "is a file of landmarks, and a template with a mesh is needed",
                        "classes of landmarks can be learnt and asked, no more");
-        // Other classes may have theirs there.
+        // Keeps the files of other classes in the folder.
         replace_outputs(output.open(0, false), "template-sample-" + known.learnt.name);
         const Sampling result = sample_class(known.learnt, known.known(), options);
         std::vector<std::string> names;

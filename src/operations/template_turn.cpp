@@ -1,4 +1,4 @@
-// template turn: a whole vessel from its sherds.
+// template turn: a vessel as a surface of revolution, from its sherds.
 #include "operations.h"
 
 #include "ostraka/core/text.h"
@@ -53,7 +53,7 @@ struct TemplateTurn final : Operation {
         const Provenance provenance = context.provenance();
         TemplateFile file{turned.annotations.object_class, unit, turned.annotations.up, {}};
         const WriteOptions how{.comment = provenance.to_line()};
-        // Written in memory first: the template names the checksums of its parts.
+        // Written in memory first, because the template contains the checksums of its parts.
         const auto part = [&](const std::string& role, const std::string& name, const std::function<void(const Path&)>& writer) {
             const Path draft = context.memory(name);
             {

@@ -71,7 +71,7 @@ GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragmen
             agree += join.agree == AxesAgree::yes ? 1 : 0;
         }
         add_members(joins[entries[i]], allocator, "axes", entry);
-        // Of what is not turned, axes say nothing.
+        // For groups that are not surfaces of revolution, axes carry no information.
         if (found.axis.found && join.agree == AxesAgree::no)
             against.push_back(printable(placed[join.first].name) + " and " + printable(placed[join.second].name) +
                               " are joined, but their axes contradict each other: " + number(join.angle, 2) + " degrees and " +

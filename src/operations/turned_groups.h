@@ -1,4 +1,4 @@
-// What groups of joined fragments, and single ones, say of an axis of revolution: for reports.
+// Reports the axes of revolution of groups of joined fragments, and of single fragments.
 #pragma once
 
 #include "ostraka/core/json.h"
@@ -10,15 +10,15 @@
 
 namespace ostraka {
 
-/// The axis of group `g`, added to its entry as "axis", and to those of its joins whether the two agree in it; for people a line
-/// where the group is a turned vessel, or joins contradict each other.
+/// Adds the axis of group `g` to its entry as "axis", and to the entries of its joins whether the axes of the two fragments
+/// agree. Adds a line for people if the group is a revolved vessel or if joins contradict each other.
 GroupAxis report_group_axis(Report& report, const std::vector<Fragment>& fragments, const Reassembly& result, int g,
                             JsonValue& group, JsonValue& joins, JsonAllocator& allocator);
 
-/// Axes of revolution of the fragments that are alone; not found of the others.
+/// Axes of revolution of the fragments that are not joined; the other entries have `found` unset.
 std::vector<GroupAxis> own_axes(const std::vector<Fragment>& fragments, const Reassembly& result);
 
-/// The axis of a fragment that is alone, added to its entry; nothing where it has none.
+/// Adds the axis of an unjoined fragment to its entry, if it has one.
 void report_own_axis(const GroupAxis& found, JsonValue& entry, JsonAllocator& allocator);
 
 }  // namespace ostraka

@@ -22,7 +22,7 @@ struct VocabularyCheck final : Operation {
 
     void run(Context& context, Report& report) override {
         const Path path = file.path();
-        // A file that is no JSON or no RDF at all is a failure, not an answer.
+        // A file that is neither JSON nor RDF is a failure, not a "no".
         const bool skos = is_skos(path);
         const Json* document = skos ? nullptr : &file.load<Json>(read_json);
         std::vector<Finding> findings;
@@ -65,7 +65,8 @@ struct VocabularyShow final : Operation {
         if (!under.empty()) roots = {named_concept(search)};
         look_at_languages(vocabulary, report);
         report.empty_table("concepts");
-        // Depth first with a stack of its own; a concept under several others stands below each, its narrower ones only once.
+        // Depth-first with an explicit stack. A concept with several broader concepts is listed below each; its narrower ones
+        // only once.
         std::vector<std::pair<std::size_t, std::size_t>> stack;
         for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.emplace_back(*root, 0);
         std::vector<bool> seen(vocabulary.concepts.size(), false);
@@ -80,7 +81,7 @@ struct VocabularyShow final : Operation {
         }
         if (const std::string common = joined(texts_of(vocabulary.attributes), "; "); !common.empty())
             report.line("every concept: " + printable(common));
-        // Of those about the concepts shown, and of all.
+        // Rules about the concepts shown, and rules about all concepts.
         const auto about = std::count_if(vocabulary.rules.begin(), vocabulary.rules.end(), [&](const InferenceRule& rule) {
             return rule.concept_id.empty() || seen[*search.find(rule.concept_id)];
         });
@@ -112,7 +113,7 @@ struct VocabularyShow final : Operation {
         row.shown("other languages", others);
     }
 
-    /// Says so where no concept has a label in the language asked for.
+    /// Adds a note if no concept has a label in the requested language.
     void look_at_languages(const Vocabulary& vocabulary, Report& report) const {
         std::set<std::string> known;
         for (const Concept& entry : vocabulary.concepts)
@@ -170,7 +171,7 @@ struct VocabularyConvert final : Operation {
         try {
             write_vocabulary(written, vocabulary);
         } catch (const Error& error) {
-            // What cannot be written stands in the input.
+            // A part that cannot be written is a problem of the input.
             if (error.kind() != ErrorKind::input) throw;
             const bool named = error.where().starts_with(written);
             fail_input(named ? input.file() + error.where().substr(written.size()) : error.where(), error.problem(),

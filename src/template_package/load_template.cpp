@@ -1,4 +1,4 @@
-// A template's parts, each by itself and all together.
+// Checks the parts of a template, separately and together.
 #include "ostraka/coords/coordinate_file.h"
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
@@ -24,7 +24,7 @@ public:
     Loader(TemplateFile file, const TemplateOptions& options) : options_(options) { result_.file = std::move(file); }
 
     Template run() {
-        // In this order: later parts are held against earlier ones.
+        // In this order, since later parts are checked against earlier ones.
         for (const std::string& role : template_roles())
             for (const PackagedFile* part : result_.file.of(role)) attempt(*part);
         if (result_.annotations) contradictions();
@@ -49,7 +49,7 @@ private:
             entry.text = read(part);
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::failure || error.kind() == ErrorKind::cancelled) throw;
-            // The part is named already.
+            // The finding already names the part.
             std::string where = error.where();
             if (where.starts_with(part.file.string())) where.erase(0, part.file.string().size());
             where.erase(0, where.find_first_not_of(", :"));
@@ -146,7 +146,7 @@ private:
     }
 
     std::string read_coordinates(const PackagedFile& part) {
-        // The places of sparse weights belong to the header of the weights, which is read with these.
+        // The index files of sparse weights belong to the header of the weights and are read with them.
         if (part.name.ends_with(".columns.npy") || part.name.ends_with(".rows.npy")) {
             static_cast<void>(read_npy_integers(part.file));
             return "places of sparse weights";
@@ -166,10 +166,10 @@ private:
         return to_string(shape[0]) + " x " + to_string(shape[1]);
     }
 
-    /// Where the weights have their header beside them, it says which mesh and cage they are of.
+    /// If there is a header beside the weights, it names the mesh and the cage.
     void check_header(const PackagedFile& part) {
         if (!file_exists(coordinate_header_file(part.file))) {
-            // The second array of Green coordinates belongs to the header of the first.
+            // The second array of Green coordinates shares the header of the first.
             if (!part.name.ends_with(".normal.npy"))
                 remark(part.name, "has no header " + coordinate_header_file(part.file).filename().string() +
                                       " that says which mesh and cage it is of");
@@ -185,7 +185,7 @@ private:
         if (known && !found) defect(part.name, "its header says that it was computed for another cage");
     }
 
-    /// Of sparse weights as their header has it.
+    /// Shape of the weights; for sparse weights from their header.
     static std::vector<std::size_t> shape_of(const Path& file) {
         if (file_exists(coordinate_header_file(file)))
             if (const CoordinateHeader header = read_coordinate_header(file); header.sparse)
@@ -223,7 +223,8 @@ private:
         return counted(points, "landmark");
     }
 
-    /// The template wins; both are named. Two units are a defect: measures would be taken for others.
+    /// Compares template and annotations. The template's values are used; a remark names both. Different units are a defect,
+    /// since measures would be misread.
     void contradictions() {
         AnnotationSet& set = *result_.annotations;
         const TemplateFile& file = result_.file;

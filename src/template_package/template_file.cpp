@@ -13,7 +13,7 @@ namespace {
 
 using std::to_string;
 
-/// Where a name leads.
+/// Path of a named part.
 Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where, const std::string& at) {
     require_file_name(name, where, at);
     if (allow_outside) return folder / Path(name);
@@ -120,7 +120,7 @@ TemplateFile copy_template(const TemplateFile& file, const Path& folder, const s
         const std::string bytes = read_file(part.file);
         if (!same_place(place, part.file)) {
             write_file(place, bytes);
-            // Coordinates are read with their header, sparse ones with their places as well.
+            // Coordinates are read with their header, sparse ones also with their index files.
             if (extension(part.file) == ".npy")
                 for (const Path& companion :
                      {coordinate_header_file(part.file), sparse_columns_file(part.file), sparse_rows_file(part.file)})

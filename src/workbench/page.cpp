@@ -1,6 +1,6 @@
 #include "ostraka/workbench/server.h"
 
-// As it lies in the project.
+// The page as built in the project.
 asm(".section .rodata\n"
     ".global ostraka_workbench_begin, ostraka_workbench_end\n"
     "ostraka_workbench_begin:\n"

@@ -1,4 +1,4 @@
-// How requests of the page are refused.
+// Rejects requests of the page.
 #pragma once
 
 #include "ostraka/core/error.h"

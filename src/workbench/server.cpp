@@ -1,4 +1,4 @@
-// The only file that knows Boost.Beast.
+// The only file that uses Boost.Beast.
 #include "ostraka/workbench/server.h"
 
 #include "ostraka/core/json_build.h"
@@ -47,7 +47,7 @@ std::string random_token() {
     return token;
 }
 
-/// As long as the texts are, whatever they hold.
+/// Compares in time that depends on the length only, not on the content.
 bool same_secret(std::string_view a, std::string_view b) {
     if (a.size() != b.size()) return false;
     unsigned differing = 0;
@@ -70,7 +70,7 @@ std::string_view value_in(std::string_view text, std::string_view name) {
 
 std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<long>(1000 * seconds)); }
 
-/// A message to a page. Its parts, none of them empty, are sent one after the other.
+/// A message to a page. Its parts, none of them empty, are sent in order.
 struct Outgoing {
     std::vector<std::string> parts;
     bool is_text = true;
@@ -84,7 +84,7 @@ using Message = std::shared_ptr<const Outgoing>;
 
 Message text_message(std::string text) { return std::make_shared<const Outgoing>(Outgoing{{std::move(text)}, true}); }
 
-/// Text, or [bytes of the JSON, 4][JSON, filled up with blanks to a multiple of eight less four][bytes].
+/// Text, or binary: [length of the JSON, 4 bytes][JSON, padded with blanks so that 4 + length is a multiple of 8][bytes].
 Message message_of(Workbench::Reply&& reply) {
     if (reply.bytes.empty()) return text_message(std::move(reply.json));
     std::string& json = reply.json;
@@ -96,14 +96,14 @@ Message message_of(Workbench::Reply&& reply) {
     return std::make_shared<const Outgoing>(Outgoing{{std::move(json), std::move(reply.bytes)}, false});
 }
 
-/// How far a page is behind, for the thread that works.
+/// Unsent data of a page, for the worker thread.
 struct Backlog {
     std::atomic<std::size_t> unsent{0};
     std::atomic<bool> gone{false};
-    std::size_t turn = 0;  ///< when one of its requests was begun last; of the thread that works
+    std::size_t turn = 0;  ///< when one of its requests was last started; used by the worker thread only
 };
 
-/// Whether the request leaves the session as it is: then it is of no use to a page that is gone.
+/// Whether the request leaves the session unchanged: then it is discarded if its page has gone.
 bool only_asks(const std::string& request) {
     static const std::set<std::string> words{"hello",     "scene", "select", "handles", "parts",
                                              "influence", "reach", "grab",   "drag",    "file"};
@@ -127,15 +127,15 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     ServerLimits limits;
     asio::io_context io{1};
     tcp::acceptor acceptor;
-    asio::steady_timer pause{io};  ///< before the next connection is accepted, where one could not be
+    asio::steady_timer pause{io};  ///< delay before accepting again after a failed accept
     std::string token, policy;
     std::uint16_t port = 0;
     std::function<void()> on_first_page;
-    std::atomic<bool> tells{false};  ///< progress that is not told yet
+    std::atomic<bool> tells{false};  ///< a progress message is pending
 
-    // Of the network's thread.
-    std::list<Visit*> unauthenticated;  ///< by age
-    std::list<Visit*> served;           ///< have said the token, and get the page
+    // Used by the network thread only.
+    std::list<Visit*> unauthenticated;  ///< oldest first
+    std::list<Visit*> served;           ///< authenticated; receive the page
     std::set<Peer*> peers;
 
     std::mutex mutex;
@@ -144,12 +144,12 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
         std::weak_ptr<Peer> from;
         std::shared_ptr<Backlog> backlog;
         std::string text;
-        /// What it takes in the queue.
+        /// Size counted in the queue.
         [[nodiscard]] std::size_t bytes() const { return text.size() + 256; }
     };
     std::deque<Request> requests;
-    std::size_t queued = 0;  ///< bytes of them
-    std::size_t turns = 0;   ///< how many were begun
+    std::size_t queued = 0;  ///< total bytes of `requests`
+    std::size_t turns = 0;   ///< number of requests started
     bool ends = false;
 
     void accept();
@@ -171,7 +171,7 @@ struct WorkbenchServer::State : std::enable_shared_from_this<WorkbenchServer::St
     }
 };
 
-/// A page that talks.
+/// A WebSocket connection of a page.
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
     Peer(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
@@ -185,7 +185,7 @@ public:
     void begin(const http::request<http::empty_body>& head) {
         websocket::stream_base::timeout timeout{};
         timeout.handshake_timeout = milliseconds(state_->limits.seconds);
-        timeout.idle_timeout = std::chrono::seconds(60);  // an open page answers pings; what is gone is let go
+        timeout.idle_timeout = std::chrono::seconds(60);  // open pages answer pings; dead connections are closed
         timeout.keep_alive_pings = true;
         stream_.set_option(timeout);
         stream_.read_message_max(state_->limits.message);
@@ -200,17 +200,17 @@ public:
         });
     }
 
-    /// An answer, whose size the backlog holds already.
+    /// Sends an answer whose size the backlog already includes.
     void send(const Message& message) {
         if (!open_) return;
         outgoing_.push_back(message);
         write();
     }
-    /// Progress is of use only at once: a page that is behind is told none.
+    /// Progress is only useful immediately: a page with unsent messages gets none.
     void tell_progress(const Message& message) {
         if (open_ && outgoing_.empty()) add(message);
     }
-    /// That the session is at another step: the last one is enough.
+    /// Reports that the session is at another step; only the latest report is kept.
     void tell_changed(const Message& message) {
         changed_ = message;
         write();
@@ -220,10 +220,10 @@ public:
     void close(const websocket::close_reason& why) {
         if (!open_) return;
         leave();
-        wait(state_->limits.seconds);  // for an answer to the closing, which may not come
+        wait(state_->limits.seconds);  // for the reply to the close frame, which may not come
         stream_.async_close(why, [self = shared_from_this()](error_code) { self->end_wait(); });
     }
-    /// Lets the page go at once, whatever it does.
+    /// Closes the connection immediately.
     void drop() {
         leave();
         end_wait();
@@ -231,7 +231,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t frame = 1U << 18U;  ///< bytes: by these it is seen whether the page still reads
+    static constexpr std::size_t frame = 1U << 18U;  ///< bytes per write; progress between writes shows that the page still reads
 
     void read() {
         stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) { self->took(error); });
@@ -276,7 +276,7 @@ private:
     void wrote(error_code error, std::size_t size, bool is_last) {
         is_writing_ = false;
         if (error) return drop();
-        if (!open_) return outgoing_.clear();  // closes; its time goes on
+        if (!open_) return outgoing_.clear();  // closing; its timer continues
         end_wait();
         const std::size_t before = backlog_->unsent.fetch_sub(size);
         if (before > state_->limits.unsent && before - size <= state_->limits.unsent) state_->wake();
@@ -285,16 +285,16 @@ private:
         if (is_last) outgoing_.pop_front(), part_ = 0;
         write();
     }
-    /// Drops the page after so long, unless this is called or cancelled before.
+    /// Drops the page after this time unless the timer is restarted or cancelled.
     void wait(double seconds) {
         patience_.expires_after(milliseconds(seconds));
         patience_.async_wait([self = shared_from_this()](error_code error) {
             if (!error && self->patience_.expiry() <= std::chrono::steady_clock::now()) self->drop();
         });
     }
-    /// As if it was never called, also where the time is just over.
+    /// Cancels `wait`, even if the time has just expired.
     void end_wait() { patience_.expires_at(asio::steady_timer::time_point::max()); }
-    /// Nothing more is taken from it or sent to it.
+    /// Stops receiving and sending.
     void leave() {
         open_ = false;
         changed_.reset();
@@ -309,12 +309,12 @@ private:
     beast::flat_buffer buffer_;
     std::deque<Message> outgoing_;
     Message changed_;
-    std::size_t part_ = 0, place_ = 0;  ///< what of the first message is sent
+    std::size_t part_ = 0, place_ = 0;  ///< position within the first message
     bool open_ = false, is_writing_ = false;
     std::size_t waiting_ = 0, waiting_bytes_ = 0;
 };
 
-/// One request for the page, or for the way of messages.
+/// One HTTP request, for the page or for a WebSocket upgrade.
 class Visit : public std::enable_shared_from_this<Visit> {
 public:
     Visit(tcp::socket&& socket, std::shared_ptr<WorkbenchServer::State> state)
@@ -383,7 +383,7 @@ private:
         std::make_shared<Peer>(stream_.release_socket(), state_)->begin(upgrade);
     }
 
-    /// `text` stays where it is.
+    /// `text` must outlive the response.
     void answer(http::status status, std::string_view text, const char* type = "text/plain; charset=utf-8") {
         response_.result(status);
         response_.version(11);
@@ -406,7 +406,7 @@ private:
 
     beast::tcp_stream stream_;
     std::shared_ptr<WorkbenchServer::State> state_;
-    std::list<Visit*>* list_;  ///< that it is counted in
+    std::list<Visit*>* list_;  ///< the list that counts this connection
     std::list<Visit*>::iterator place_;
     beast::flat_buffer buffer_{65536};
     http::request_parser<http::empty_body> parser_;
@@ -415,7 +415,7 @@ private:
 
 WorkbenchServer::State::State(Workbench& w, const ServerLimits& l)
     : workbench(w), limits(l), acceptor(io), token(random_token()) {
-    // Scripts and styles of the built page only; three-dimensional shapes are unpacked by WebAssembly.
+    // Allows the scripts and styles of the built page only; WebAssembly decodes the 3D shapes.
     policy = "default-src 'none'; script-src " + inline_hashes(workbench_page(), "script") + " 'wasm-unsafe-eval'; style-src " +
              inline_hashes(workbench_page(), "style") +
              "; img-src data: blob:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -426,7 +426,7 @@ void WorkbenchServer::State::accept() {
         if (!self->acceptor.is_open()) return;
         if (!error) self->take(std::move(socket));
         if (!error) return self->accept();
-        // No descriptor is free, say: to ask again at once would keep a core busy.
+        // For instance no free file descriptor: retrying at once would use a full core.
         self->pause.expires_after(std::chrono::milliseconds(50));
         self->pause.async_wait([self](error_code stopped) {
             if (!stopped) self->accept();
@@ -439,7 +439,7 @@ void WorkbenchServer::State::take(tcp::socket&& socket) {
     std::make_shared<Visit>(std::move(socket), shared_from_this())->begin();
 }
 
-/// False where no more can wait.
+/// Returns false if the queue is full.
 bool WorkbenchServer::State::queue(Request request) {
     {
         const std::lock_guard lock(mutex);
@@ -451,7 +451,7 @@ bool WorkbenchServer::State::queue(Request request) {
     return true;
 }
 
-/// Waits for a request whose page reads what it is sent; pages take turns. None: the server ends.
+/// Waits for a request whose page keeps up with its answers; pages take turns. Returns none if the server ends.
 std::optional<WorkbenchServer::State::Request> WorkbenchServer::State::next() {
     const auto ready = [&](const Request& one) { return one.backlog->gone || one.backlog->unsent <= limits.unsent; };
     std::unique_lock lock(mutex);
@@ -470,7 +470,7 @@ std::optional<WorkbenchServer::State::Request> WorkbenchServer::State::next() {
     return request;
 }
 
-/// The thread that works looks again whether a request is ready.
+/// Makes the worker thread check again whether a request is ready.
 void WorkbenchServer::State::wake() {
     { const std::lock_guard lock(mutex); }
     wakes.notify_one();
@@ -481,7 +481,7 @@ void WorkbenchServer::State::tell_progress(const Message& message) {
     for (Peer* peer : peers) peer->tell_progress(message);
 }
 
-/// `bytes`: of the request.
+/// `bytes`: size of the request.
 void WorkbenchServer::State::answered(const std::weak_ptr<Peer>& from, std::size_t bytes, const Message& message,
                                       const Message& changed) {
     const auto peer = from.lock();
@@ -494,7 +494,7 @@ void WorkbenchServer::State::answered(const std::weak_ptr<Peer>& from, std::size
         if (other != peer.get()) other->tell_changed(changed);
 }
 
-/// The thread that the workbench works on.
+/// Main loop of the worker thread.
 void WorkbenchServer::State::work() {
     workbench.on_progress = [self = shared_from_this()](const std::string& phase, double share) {
         if (self->tells.exchange(true)) return;
@@ -517,7 +517,7 @@ void WorkbenchServer::State::work() {
     }
 }
 
-/// Nobody is waited for: what was begun with them ends when it is next looked at.
+/// Closes all connections without waiting for the pages; their pending operations end when next run.
 void WorkbenchServer::State::drop_all() {
     error_code ignored;
     acceptor.close(ignored);

@@ -89,7 +89,7 @@ Session::~Session() {
     if (lock_ >= 0) ::close(lock_);
 }
 
-/// The folder itself is locked: nothing is left where a process is killed.
+/// Locks the folder itself, so that no lock file remains if the process is killed.
 void Session::lock() {
     lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
@@ -125,11 +125,11 @@ void Session::read() {
     sweep();
 }
 
-/// Each step has a number of its own, which no step to come gets.
+/// Checks that step numbers increase and do not exceed the counter, so that new steps get unused numbers.
 void Session::check_numbers() const {
     std::size_t last = 0;
     for (const SessionStep& step : steps_) {
-        const std::size_t number = std::stoul(step.name.substr(1));  // the schema says how names look
+        const std::size_t number = std::stoul(step.name.substr(1));  // the schema ensures the format of names
         if (number <= last || number > counter_)
             fail_input((folder_ / file_name).string(), "step " + step.name + " is out of order",
                        "begin another session (--session)");
@@ -137,7 +137,7 @@ void Session::check_numbers() const {
     }
 }
 
-/// What a step names lies in the session or where objects are opened from.
+/// Checks that the files of a step lie in the session's folder or in the root.
 void Session::check_files(const SessionStep& step) const {
     const std::string where = (folder_ / file_name).string() + ", step " + step.name;
     const auto check = [&](const std::string& file) {
@@ -159,13 +159,13 @@ void Session::check_file(const std::string& file) const {
                "put it back, or begin another session (--session)");
 }
 
-/// Nothing that will be written or emptied leads out of the folder.
+/// Checks that nothing that will be written or emptied leads out of the folder.
 void Session::check_folders() const {
     for (const char* name : {file_name, "session.study.json", "steps", "documents"})
         require_writable_inside(folder_ / name, folder_);
 }
 
-/// Removes what steps left whose process was killed before they counted.
+/// Removes files of steps whose process was killed before they were recorded.
 void Session::sweep() const {
     for (const char* part : {"steps", "documents"}) {
         std::error_code code;
@@ -219,7 +219,7 @@ Json Session::study() const {
     return document;
 }
 
-// ---- where one is ----
+// ---- position in the history ----
 
 const SessionState& Session::state() const { return place_ == 0 ? begin_ : steps_[place_ - 1].state; }
 
@@ -235,7 +235,7 @@ std::string Session::next_name() const {
 }
 
 void Session::add(SessionStep step) {
-    // What was undone is no longer reached: its files go once the session is written without it.
+    // Undone steps can no longer be reached: their files are removed once the session is written without them.
     std::vector<std::string> gone;
     for (std::size_t i = place_; i < steps_.size(); ++i)
         if (!steps_[i].operation.empty()) gone.push_back(steps_[i].name);
@@ -369,7 +369,7 @@ void Session::change(const JsonValue& request) {
             for (const char* part : {"cage", "annotations"})
                 if (const auto made = parts.find(std::string("deformed ") + part); made != parts.end())
                     parts[part] = made->second;
-            parts.erase("coordinates");  // they are of the shape at rest
+            parts.erase("coordinates");  // coordinates belong to the undeformed shape
             parts.erase("recipe");
         }
         for (const char* part : {"edit", "deformed", "deformed cage", "deformed annotations"}) parts.erase(part);

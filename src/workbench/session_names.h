@@ -1,4 +1,4 @@
-// Names of what a session holds.
+// Names of objects, parts and files of a session.
 #pragma once
 
 #include "request.h"
@@ -10,7 +10,7 @@
 
 namespace ostraka::workbench {
 
-/// The part of an object that an output of this kind becomes; empty: none.
+/// The part of an object that an output of this kind becomes; empty if none.
 inline std::string part_of(Kind kind) {
     switch (kind) {
         case Kind::mesh:
@@ -37,7 +37,7 @@ inline bool is_plain_name(const std::string& name) {
            name.find_first_of("/\\:$") == std::string::npos;
 }
 
-/// A name that no object has yet.
+/// `name`, with a number appended if an object already has it.
 inline std::string free_name(const SessionState& state, const std::string& name) {
     const auto taken = [&](const std::string& one) {
         return std::any_of(state.objects.begin(), state.objects.end(), [&](const SessionObject& o) { return o.name == one; });
@@ -47,7 +47,7 @@ inline std::string free_name(const SessionState& state, const std::string& name)
     return free;
 }
 
-/// Without the endings that files of parts have.
+/// File name without the extension of its part.
 inline std::string stem_of(const std::string& file) {
     const std::string name = Path(file).filename().string();
     for (const std::string_view end : {".ant.json", ".graph.json", ".recipe.json", ".edit.json", ".template.json", ".cage.ply"})

@@ -1,4 +1,4 @@
-// Operations as steps of a session.
+// Runs operations as steps of a session.
 #include "session_names.h"
 
 #include "ostraka/core/json_build.h"
@@ -15,12 +15,12 @@ using workbench::stem_of;
 struct Session::Settings {
     Json with{rapidjson::kObjectType}, keep{rapidjson::kObjectType};
     Json options{rapidjson::kObjectType};
-    std::map<std::string, std::string> outputs;           ///< slot, name of its file
-    std::vector<std::pair<Path, std::string>> documents;  ///< that the request brings along
-    std::size_t object = no_index;                        ///< that most inputs are of
+    std::map<std::string, std::string> outputs;           ///< slot -> file name
+    std::vector<std::pair<Path, std::string>> documents;  ///< documents contained in the request
+    std::size_t object = no_index;                        ///< object of most inputs
 };
 
-/// What a study says for a file: the output of the step that made it, or its name.
+/// How a study refers to a file: as the output of the step that made it, or by its name.
 std::string Session::reference(const std::string& file) const {
     for (std::size_t i = 0; i < place_; ++i) {
         const SessionStep& step = steps_[i];
@@ -32,7 +32,7 @@ std::string Session::reference(const std::string& file) const {
     return file;
 }
 
-/// A mesh whose annotations are read beside it: both under the names that they have to have.
+/// Provides a mesh and its annotations under matching names, so that the annotations are read with the mesh.
 Path Session::with_beside(const SessionObject& object, const std::string& step, Settings& settings) const {
     const Path mesh = (folder_ / object.part("mesh")).lexically_normal();
     const Path annotations = (folder_ / object.part("annotations")).lexically_normal();
@@ -73,7 +73,7 @@ Path Session::resolved(const JsonValue& value, const Slot& input, const std::str
 }
 
 void Session::name_outputs(Call& call, const JsonValue& request, const std::string& step, Settings& settings) const {
-    std::map<std::string, std::string> wanted;  // with the names of their files, where they are given
+    std::map<std::string, std::string> wanted;  // output -> file name, if given
     for (const JsonValue& one : list_in(request, "keep")) {
         if (one.IsString()) wanted[text_of(one)];
         if (!one.IsObject()) continue;
@@ -93,7 +93,7 @@ void Session::name_outputs(Call& call, const JsonValue& request, const std::stri
         makes_mesh = makes_mesh || (slot->role == Role::output && slot->kind == Kind::mesh && slot->needed);
     if (stem.empty()) stem = word;
     else if (makes_mesh) stem += text_in(request, "as") == "deformed" ? "-deformed" : "-" + word;
-    std::map<std::string, std::string> taken;  // name of a file, its slot
+    std::map<std::string, std::string> taken;  // file name -> slot
     for (Slot* slot : call.parameters().slots()) {
         if (slot->role != Role::output) continue;
         const auto own = wanted.find(slot->name);
@@ -187,9 +187,9 @@ Report Session::run(const JsonValue& request, Context& context) {
     };
     std::error_code ignored;
     check_folders();
-    const WriteScope written(folder_);  // also over links that the folder held when it came
+    const WriteScope written(folder_);  // also for links that the folder already held
     for (const auto& [file, text] : settings.documents) require_writable_inside(file, folder_);
-    std::filesystem::remove_all(folder, ignored);  // of a run that was killed
+    std::filesystem::remove_all(folder, ignored);  // left by a killed run
     try {
         make_folder(folder);
         for (const auto& [file, text] : settings.documents) make_folder(file.parent_path()), write_file(file, text);
@@ -217,7 +217,7 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
     const auto is_there = [&](const std::string& name) {
         return file_exists(folder_ / made(name)) || is_folder(folder_ / made(name));
     };
-    // A mesh that is made is a new object, which what is made with it belongs to.
+    // A resulting mesh is a new object; the other outputs belong to it.
     for (const auto& [output, name] : settings.outputs) {
         const Slot* slot = call.parameters().slot(output);
         if (slot->kind != Kind::mesh || !slot->needed || deforms || !is_there(name)) continue;
@@ -242,7 +242,7 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
         }
         now.objects[target].parts[part] = made(name);
         if (part == "cage") now.objects[target].parts.erase("coordinates");
-        // A recipe that does not make the annotations any more is none.
+        // A recipe that no longer reproduces the annotations is removed.
         if (part == "annotations" && !settings.outputs.contains("recipe")) now.objects[target].parts.erase("recipe");
     }
     if (!deforms || target >= now.objects.size()) return;
@@ -250,7 +250,7 @@ void Session::take_outputs(const Call& call, const JsonValue& request, const Set
         if (file.filename().string().ends_with("-edit.json")) now.objects[target].parts["edit"] = relative(file);
 }
 
-/// Meshes that a folder was filled with are objects, with their annotations.
+/// Adds the meshes in an output folder as objects, with their annotations.
 void Session::take_folder(const std::string& folder, SessionState& state) const {
     constexpr std::size_t maximum = 24;
     std::size_t count = 0;

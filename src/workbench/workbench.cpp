@@ -33,7 +33,7 @@ std::string_view bytes_of(const Numbers& numbers) {
     return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(*numbers.data())};
 }
 
-/// Adds bytes at the next multiple of eight and says where they are.
+/// Appends data at the next multiple of eight bytes; returns its offset and size.
 JsonValue keep(std::string& bytes, std::string_view more, JsonAllocator& a) {
     bytes.resize((bytes.size() + 7) / 8 * 8, '\0');
     JsonValue place = json_value(std::array{bytes.size(), more.size()}, a);
@@ -43,25 +43,25 @@ JsonValue keep(std::string& bytes, std::string_view more, JsonAllocator& a) {
 
 }  // namespace
 
-/// A mesh with what is said of it, as it is shown.
+/// A mesh with its associated data, as displayed.
 struct Workbench::Shape {
     std::shared_ptr<const MeshFile> mesh, cage;
     std::optional<AnnotationSet> set;
     std::optional<RelationGraph> graph;
 };
 
-/// What a drag needs: it is kept from one frame to the next.
+/// State of a drag, kept between frames.
 struct Workbench::Deformation {
-    std::size_t place = 0;  ///< of the session
-    std::string of;         ///< the object's name
+    std::size_t place = 0;  ///< step of the session
+    std::string of;         ///< name of the object
     std::shared_ptr<const Shape> rest;
     const AnnotationSet* set = nullptr;
     Coordinates coordinates;
     Json edit;
     std::vector<Index> handles;
-    std::array<double, 3> low{};  ///< of the box of the shape that is shown: positions are relative to it
+    std::array<double, 3> low{};  ///< min corner of the bounding box of the displayed shape; positions are relative to it
     std::unique_ptr<LiveDeformation> live;
-    Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> weights;  ///< as they are drawn with
+    Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> weights;  ///< weights used for drawing
 };
 
 Workbench::Workbench(Path folder, Path root, double memory_limit)
@@ -114,7 +114,7 @@ Workbench::Reply Workbench::answer(std::string_view text) {
     const auto fail = [&](const std::string& problem, const std::string& where, const std::string& remedy) {
         add_members(document, a, "id", id, "ok", false, "error", error_json(problem, where, remedy, a));
     };
-    // A request that was cancelled leaves its watch cancelled: each has its own.
+    // The watch of a cancelled request stays cancelled, so the next request needs a new context.
     if (context_->watch.is_cancelled()) {
         auto fresh = fresh_context();
         const std::lock_guard lock(mutex_);
@@ -159,7 +159,7 @@ Workbench::Reply Workbench::answer(std::string_view text) {
     return reply;
 }
 
-// ---- what there is ----
+// ---- session state ----
 
 void Workbench::add_session(Json& result) const {
     auto& a = result.GetAllocator();
@@ -170,7 +170,7 @@ void Workbench::add_session(Json& result) const {
                 }));
 }
 
-/// Labels of the concepts of the vocabularies that lie where meshes are opened from; one that cannot be read offers none.
+/// Labels of the concepts of all vocabularies in the root, by language; unreadable files are skipped.
 JsonValue Workbench::words(JsonAllocator& a) const {
     JsonValue found(rapidjson::kObjectType);
     std::map<std::string, std::set<std::string>> labels;  // by language
@@ -194,7 +194,7 @@ void Workbench::hello(const JsonValue& /*request*/, Json& result, std::string& /
     add_session(result);
 }
 
-/// Of a file that the session names.
+/// Path of a file named by the session.
 Path Workbench::located(const std::string& file) const { return (session_.folder() / file).lexically_normal(); }
 
 std::shared_ptr<const MeshFile> Workbench::mesh_of(const std::string& file) {
@@ -265,7 +265,7 @@ void Workbench::scene(const JsonValue& request, Json& result, std::string& bytes
     bytes = std::move(content.bytes);
 }
 
-// ---- selecting ----
+// ---- selection ----
 
 void Workbench::select(const JsonValue& request, Json& result, std::string& bytes) {
     const SessionObject* object = session_.state().object();
@@ -284,12 +284,12 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
     if (shape->set && shape->set->up) add_members(recipe, r, "up", *shape->set->up);
     RecipeStart start;
     start.face_labels = shape->mesh->extras.face_labels;
-    if (shape->set) {  // what a selection may name
+    if (shape->set) {  // annotations to which a selection may refer
         start.annotations.annotations = shape->set->annotations;
         start.annotations.up = shape->set->up;
         int id = 0;
         for (const Annotation& one : shape->set->annotations) id = std::max(id, one.id + 1);
-        for (Annotation& one : start.annotations.annotations) one.attributes.clear();  // none is looked at
+        for (Annotation& one : start.annotations.annotations) one.attributes.clear();  // attributes are not used
         recipe["annotations"][0]["id"].SetInt(id);
     }
     const int own = recipe["annotations"][0]["id"].GetInt();
@@ -308,7 +308,7 @@ void Workbench::select(const JsonValue& request, Json& result, std::string& byte
     }
 }
 
-// ---- working ----
+// ---- operations ----
 
 void Workbench::run(const JsonValue& request, Json& result, std::string& /*bytes*/) {
     const Stopwatch watch;
@@ -326,7 +326,7 @@ void Workbench::file(const JsonValue& request, Json& result, std::string& bytes)
     add_members(result, result.GetAllocator(), "name", path.filename().string());
 }
 
-// ---- deforming ----
+// ---- deformation ----
 
 Workbench::Deformation& Workbench::deformation() {
     const SessionObject* object = session_.state().object();
@@ -338,7 +338,7 @@ Workbench::Deformation& Workbench::deformation() {
     fresh->place = session_.place();
     fresh->of = object->name;
     fresh->rest = shape_of(*object, false);
-    // They are the same from drag to drag.
+    // The coordinates stay the same from drag to drag.
     const std::string file = object->part("coordinates");
     static const AnnotationSet none;
     if (deformation_ && deformation_->of == object->name && !deformation_->coordinates.kind.empty() &&
@@ -356,7 +356,7 @@ Workbench::Deformation& Workbench::deformation() {
     return *deformation_;
 }
 
-/// The vertices of the cage that an annotation means: {"annotation": ID, "threshold": NUMBER or "auto-mesh", "auto-cage"}.
+/// Cage vertices that influence an annotation: {"annotation": ID, "threshold": NUMBER or "auto-mesh", "auto-cage"}.
 void Workbench::handles(const JsonValue& request, Json& result, std::string& /*bytes*/) {
     Deformation& drag = deformation();
     const JsonValue *id = find_member(request, "annotation"), *threshold = find_member(request, "threshold");
@@ -371,7 +371,7 @@ void Workbench::handles(const JsonValue& request, Json& result, std::string& /*b
     add_members(result, result.GetAllocator(), "handles", influential(drag.coordinates, rows, least), "threshold", least);
 }
 
-/// Of each control point the annotations (by their places) that mean it: regions that contain no other.
+/// For each cage vertex the indices of the annotations it influences; only regions that contain no other are listed.
 void Workbench::parts(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     const Deformation& drag = deformation();
     std::vector<std::vector<std::size_t>> of(static_cast<std::size_t>(drag.coordinates.vertex.cols()));
@@ -389,7 +389,7 @@ void Workbench::parts(const JsonValue& /*request*/, Json& result, std::string& /
     add_members(result, result.GetAllocator(), "parts", of);
 }
 
-/// Of each vertex how much the handles move it, from 0 to 1: {"handles": [INDEX, ...]}.
+/// Influence of the handles on each vertex, from 0 to 1: {"handles": [INDEX, ...]}.
 void Workbench::influence(const JsonValue& request, Json& result, std::string& bytes) {
     Deformation& drag = deformation();
     const WeightMatrix& weights = drag.coordinates.vertex;
@@ -404,7 +404,8 @@ void Workbench::influence(const JsonValue& request, Json& result, std::string& b
     add_members(result, a, "values", keep(bytes, bytes_of(sums), a));
 }
 
-/// Which constraints the cage cannot meet, before anything is edited: how many there are, and a sentence for each of these.
+/// Constraints that the cage cannot satisfy, before any edit: the number of constraints, and one sentence for each unsatisfied
+/// one.
 void Workbench::reach(const JsonValue& /*request*/, Json& result, std::string& /*bytes*/) {
     const Deformation& drag = deformation();
     if (!drag.rest->graph) fail_request(drag.of + " has no relationships", "state a constraint first");
@@ -416,8 +417,8 @@ void Workbench::reach(const JsonValue& /*request*/, Json& result, std::string& /
     add_members(result, result.GetAllocator(), "constraints", list.size(), "texts", texts);
 }
 
-/// Begins a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. While all handles follow one affine map x -> A x + t, a
-/// vertex v goes to v + (A - I) m + w t, with m and w of its four numbers.
+/// Starts a drag: {"handles": [INDEX, ...], "constraints": BOOLEAN}. Returns four numbers (m, w) per vertex. While all handles
+/// follow one affine map x -> A x + t, vertex v moves to v + (A - I) m + w t.
 void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes) {
     Deformation& drag = deformation();
     const Index count = static_cast<Index>(drag.rest->cage->mesh.number_of_vertices());
@@ -455,8 +456,8 @@ void Workbench::grab(const JsonValue& request, Json& result, std::string& bytes)
                 "weights", keep(bytes, bytes_of(moved), a));
 }
 
-/// The surface while the constraints hold, handles at {"places": [[x, y, z], ...]}, in their order: positions relative to the
-/// box.
+/// Surface that satisfies the constraints with the handles at {"places": [[x, y, z], ...]}, in their order; positions are
+/// relative to the bounding box.
 void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes) {
     if (!deformation_ || !deformation_->live || deformation_->place != session_.place())
         fail_request("nothing has been grabbed", "choose control points and drag them");
@@ -470,7 +471,7 @@ void Workbench::drag(const JsonValue& request, Json& result, std::string& bytes)
     }
     const std::vector<Point>& cage = drag.live->follow(places);
     const double solving = watch.seconds();
-    // In single precision, as it is drawn: half the memory that is read for a picture.
+    // Single precision suffices for display and halves the memory traffic.
     Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> moved(static_cast<Eigen::Index>(cage.size()), 3);
     for (std::size_t i = 0; i < cage.size(); ++i)
         for (int k = 0; k < 3; ++k)

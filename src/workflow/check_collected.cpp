@@ -1,4 +1,4 @@
-// Tables, plots and the page of a study, checked before the first step runs.
+// Checks the tables, plots and the page of a study before the first step runs.
 #include "row_sources.h"
 
 #include "ostraka/core/nearest_name.h"

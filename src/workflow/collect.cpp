@@ -161,7 +161,7 @@ private:
         return text_cell(all);
     }
 
-    /// Rows that agree in the columns without a statistic become one.
+    /// Merges rows that agree in all columns without a statistic.
     void summarise() {
         std::vector<std::string> statistics;
         for (const auto& column : list_in(description_, "columns")) statistics.push_back(text_in(column, "statistic"));
@@ -307,7 +307,7 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
         write_file(write(name), text);
         names.push_back(name);
     };
-    std::map<std::string, std::string> parts;  // of the page
+    std::map<std::string, std::string> parts;  // sections of the page
     std::vector<std::string> order;
     std::map<std::string, StudyTable> tables;
     for (StudyTable& table : collect_tables(plan, results, folder)) {
@@ -331,7 +331,7 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
             names.push_back(name + ".svg");
             parts[name] = "![" + markdown_text(plot.title.empty() ? name : plot.title) + "](" + markdown_file(name) + ".svg)\n";
         }
-    // Titles and texts of a study are plain text, whoever wrote it: no markup of theirs reaches the page.
+    // Titles and texts of a study are plain text: their markup is escaped.
     std::string page = "# " + markdown_text(study.title.empty() ? study.file.filename().string() : study.title) + "\n";
     if (const std::string note = text_in(*study.document, "note"); !note.empty()) page += "\n" + markdown_paragraphs(note) + "\n";
     const auto show = [&](const std::string& name) {

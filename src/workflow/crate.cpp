@@ -13,7 +13,7 @@ constexpr const char* profile = "https://w3id.org/ro/wfrun/process/0.5";
 
 JsonValue id_of(const std::string& id, JsonAllocator& allocator) { return json_object(allocator, "@id", id); }
 
-/// Content by its name (RFC 6920): ni:///sha-256;BASE64URL.
+/// Content-based name (RFC 6920): ni:///sha-256;BASE64URL.
 std::string content_id(const std::string& sha256) {
     static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
     std::string id = "ni:///sha-256;";
@@ -30,7 +30,7 @@ std::string content_id(const std::string& sha256) {
     return id;
 }
 
-/// A name in the crate as a relative URI (RFC 3986): what folders of instances are called stays as it is.
+/// Relative URI (RFC 3986) of a file in the crate; names of instance folders need no escaping.
 std::string uri_of(const Path& file) {
     std::string uri;
     for (const char c : file.generic_string())

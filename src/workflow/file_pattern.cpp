@@ -20,7 +20,7 @@ Path before_wildcards(const Path& pattern) {
 
 namespace {
 
-/// Names in a folder that fit, sorted.
+/// Sorted names in a folder that match the pattern.
 std::vector<std::string> fitting_names(const Path& folder, const std::string& pattern) {
     std::vector<std::string> names;
     std::error_code code;
@@ -43,7 +43,7 @@ std::vector<Path> matching_files(const Path& pattern, const std::function<bool(c
     for (const Path& part : relative) {
         --left;
         std::vector<Path> next;
-        std::set<Path> known;  // folders, links resolved: one that has many names is looked into once
+        std::set<Path> known;  // folders with links resolved, so that each is searched once
         for (const Path& folder : found) {
             check_cancelled();
             if (!is_pattern(part.string())) {

@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t maximum_instances = 100'000, maximum_inputs = 1'000'000;
 
-/// Stands for an output that another instance will have made.
+/// Placeholder for an output of another instance that does not exist yet.
 struct Promised {};
 
-/// A name that folders may have everywhere; another one than that of any other text.
+/// A portable folder name for a label; different labels give different names.
 std::string folder_name(const std::string& label) {
     std::string name;
     bool changed = label.size() > 120;
@@ -33,7 +33,7 @@ std::string file_of(const std::string& step, const std::string& output, const st
     return (output == "output" ? step : step + "-" + output) + ending;
 }
 
-/// Whether a text holds an absolute name, or one that climbs, also behind a sign that programs take for the end of a key.
+/// Whether a text contains an absolute path or one with "..", also after characters that programs treat as separators.
 bool leads_out(const std::string& text) {
     static const std::string signs = "=,:;@";
     std::string part;
@@ -158,7 +158,7 @@ StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::siz
             };
             if (one != nullptr && study.parameter(one->name) == nullptr && !is_place(*one)) {
                 add_output(instance, {"program", word.value, word.place}, *one, word.place, {});
-                instance.program.emplace_back();  // the next of the inputs
+                instance.program.emplace_back();  // filled in from the inputs in order
             } else {
                 for (const StudyReference& reference : text.references())
                     if (study.parameter(reference.name) == nullptr && !is_place(reference))
@@ -190,8 +190,8 @@ StudyInstance StudyPlan::make_instance(std::size_t i, const std::vector<std::siz
     return instance;
 }
 
-/// Words of a program from a file that somebody else may have written name no place outside of the instance's folder and of what
-/// may be read, whatever the program does with them.
+/// Throws if a word of a program names a path outside the instance's folder and the readable folders. Study files may be
+/// untrusted.
 void StudyPlan::check_word(const StudySetting& word, const StudyText& text, const std::string& filled) const {
     const auto is_the_callers = [&](const StudyReference& reference) {
         const StudyParameter* parameter = study.parameter(reference.name);
@@ -201,7 +201,7 @@ void StudyPlan::check_word(const StudySetting& word, const StudyText& text, cons
     if (study.allow_programs || std::any_of(references.begin(), references.end(), is_the_callers)) return;
     const std::size_t equals = filled.starts_with("-") ? filled.find('=') : std::string::npos;
     std::string named = filled.substr(equals == std::string::npos ? 0 : equals + 1);
-    const auto takes = [&](const std::string& mark) {  // at the beginning, and as a folder
+    const auto takes = [&](const std::string& mark) {  // as a prefix, and only as a whole folder name
         if (!named.starts_with(mark) || (named.size() > mark.size() && named[mark.size()] != '/')) return false;
         named.erase(0, mark.size());
         return true;
@@ -357,7 +357,7 @@ void StudyPlan::add_output(StudyInstance& instance, const StudySetting& setting,
                        R"(let step ')" + reference.name + R"(' have "keep": {")" + reference.member +
                            R"(": "NAME.ply"}, and its annotations as "NAME.ant.json")");
     }
-    const bool keep = step.operation == nullptr;  // a program reads files
+    const bool keep = step.operation == nullptr;  // programs read files
     const auto add = [&](std::size_t source) {
         if (other.operation != nullptr) want(source, reference.member, keep);
         instance.inputs.push_back({setting.name, label, {}, source, reference.member, on_disk});
@@ -395,7 +395,7 @@ void StudyPlan::make_outputs(StudyInstance& instance) {
     };
     for (const Slot* slot : call.parameters().slots()) {
         if (slot->role != Role::output || instance.outputs.contains(slot->name)) continue;
-        // What takes the place of an input never replaces a file of the user's.
+        // An output that updates an input never overwrites a file of the user.
         const bool made = slot->needed || slot->is_positional ||
                           (slot->updated != nullptr && (slot->updated->needed || given(slot->updated->name)));
         if (made) instance.outputs[slot->name] = file_of(step.name, slot->name, call.usual_ending(slot->name));
@@ -453,7 +453,7 @@ void StudyPlan::check(const StudyInstance& instance) const {
                                                      : input.output)};
         });
         made.check();
-        for (const std::string& output : instance.kept) {  // the name is one that such a file can have
+        for (const std::string& output : instance.kept) {  // checks that the name is valid for such a file
             Slot& slot = made.slot(output);
             if (slot.fills_folder(0)) continue;
             slot.sources = {{instance.outputs.at(output), {}}};

@@ -58,7 +58,7 @@ std::optional<StudyRecord> parsed_record(const Path& file) {
         record.ended = text_in(run, "ended");
         return record;
     } catch (const Error&) {
-        return {};  // damaged: as if it had not run
+        return {};  // damaged: treated as missing
     }
 }
 
@@ -76,7 +76,7 @@ std::string FileChecksums::file(const Path& file) {
         if (const auto known = known_.find(file); known != known_.end()) return known->second.sha256;
     }
     check_readable(file);
-    const auto stamp = stamp_of(file);  // before it is read: what is written meanwhile shows
+    const auto stamp = stamp_of(file);  // taken before reading, so that concurrent writes are detected
     std::string sum = sha256_of_file(file);
     const std::lock_guard lock(mutex_);
     if (!is_memory(file)) known_[file] = {sum, stamp};
@@ -118,7 +118,7 @@ std::vector<Path> FileChecksums::changed() {
     std::vector<Path> files;
     for (const auto& [file, known] : known_) {
         if (is_memory(file)) continue;
-        // A file that was touched, or written again as it was, has not changed.
+        // A file that was touched or rewritten with the same content has not changed.
         const bool is_same = stamp_of(file) == known.stamp || (file_exists(file) && sha256_of_file(file) == known.sha256);
         if (known.differs || !is_same) files.push_back(file);
     }

@@ -1,4 +1,4 @@
-// Where the rows of a study's tables come from.
+// Sources of the rows of a study's tables.
 #pragma once
 
 #include "ostraka/workflow/plan.h"
@@ -11,10 +11,10 @@ struct RowSource {
     std::string table;
 };
 
-/// Steps that a quick run leaves out stand in the file all the same.
+/// Whether a quick run omits this step of the file.
 bool is_left_out(const Study& study, const std::string& step);
 
-/// What "rows" of a table names; `place`: of the table in the file. Throws Error (input) where there is no such step.
+/// Sources named in "rows" of a table; `place`: place of the table in the file. Throws Error (input) if a step does not exist.
 std::vector<RowSource> row_sources(const Study& study, const JsonValue& table, const std::string& place);
 
 }  // namespace ostraka

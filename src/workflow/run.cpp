@@ -35,17 +35,17 @@ std::string now_text() {
     return text;
 }
 
-/// An instance under way or done.
+/// State of an instance.
 struct Work {
     enum class Stage { waiting, queued, running, final } stage = Stage::waiting;
     bool selected = false;
-    bool again = false;               ///< runs although it is done: what it made is needed in memory
-    std::size_t open_needs = 0;       ///< instances that it needs and that are not final
-    std::size_t open_takers = 0;      ///< instances that need it and are not final
+    bool again = false;               ///< runs although it is done: its outputs are needed in memory
+    std::size_t open_needs = 0;       ///< number of unfinished instances that it needs
+    std::size_t open_takers = 0;      ///< number of unfinished instances that need it
     std::vector<std::size_t> takers;  ///< instances that need it
     std::map<std::string, Object> objects;
-    std::unique_ptr<Context> context;  ///< that makes the objects
-    double expected = -1;              ///< seconds, of an earlier run
+    std::unique_ptr<Context> context;  ///< context in which the objects are made
+    double expected = -1;              ///< duration of an earlier run in seconds; negative: unknown
     std::size_t input_bytes = 0;
 };
 
@@ -113,7 +113,7 @@ private:
     const StudyInstance& instance(std::size_t i) const { return plan_.instances[i]; }
     Path folder_of(std::size_t i) const { return folder_ / instance(i).folder; }
 
-    /// Those asked for, and what they need.
+    /// Selects the requested instances and their dependencies.
     void select() {
         std::vector<std::size_t> wanted;
         std::vector<bool> is_taken(works_.size(), false);
@@ -143,7 +143,8 @@ private:
         return known != outputs.end() && known->second.kept;
     }
 
-    /// What becomes of an instance whose needs are final: nothing to do, skipped, queued, or it waits for one that runs again.
+    /// Decides about an instance whose dependencies are finished: up to date, skipped, queued, or waiting for one that runs
+    /// again.
     void consider(std::size_t i, std::unique_lock<std::mutex>& lock) {
         Work& work = works_[i];
         InstanceResult& result = results_[i];
@@ -161,9 +162,9 @@ private:
         }
         if (!work.again) {
             try {
-                lock.unlock();  // checksums of large files take their time
+                lock.unlock();  // checksums of large files take time
                 const auto known = read_record(folder_of(i));
-                // Where nothing is known, files are read by those who need them, and their checksums come from that.
+                // Without a record, files are read by the instances that need them, which also yields their checksums.
                 std::vector<std::pair<std::string, std::string>> depends;
                 if (known) depends = dependencies_of(i);
                 std::string why = why_again(plan_, known, depends, instance(i), folder_, checksums_);
@@ -191,12 +192,12 @@ private:
             if (other.stage != Work::Stage::final) continue;
             other.stage = Work::Stage::waiting;
             other.again = true;
-            // What it takes is kept until it has run once more.
+            // Keep its inputs until it has run again.
             for (const std::size_t need : instance(input.instance).needs) ++works_[need].open_takers;
             results_[input.instance].why = "what it makes is needed again by " + instance(i).title(plan_.study);
             to_consider_.insert(input.instance);
         }
-        if (!complete) return;  // considered again when they are done
+        if (!complete) return;  // will be considered again
         work.stage = Work::Stage::queued;
         queue_.push_back(i);
     }
@@ -239,11 +240,11 @@ private:
         works_[i].context.reset();
     }
 
-    /// Starts one that is queued, if threads and memory are free.
+    /// Starts a queued instance if threads and memory are available.
     bool start_next() {
         if (queue_.empty() || running_ >= static_cast<std::size_t>(threads())) return false;
         const std::size_t i = queue_.front();
-        // A mesh in memory with its trees comes to about a dozen times its file.
+        // A mesh in memory with its search trees takes about a dozen times the size of its file.
         const Watch* watch = current_watch();
         const double limit = watch != nullptr ? watch->memory_limit : 0;
         if (running_ > 0 && limit > 0 && resident_memory() + 12 * static_cast<double>(works_[i].input_bytes) > limit)
@@ -257,7 +258,7 @@ private:
         work.context = std::make_unique<Context>();
         work.context->share_objects(root_);
         work.context->watch.memory_limit = limit;
-        // One that runs a second time may have ended without having been joined yet.
+        // The earlier thread of an instance that runs again may have ended without being joined.
         if (const auto before = workers_.find(i); before != workers_.end()) {
             std::erase(ended_, i);
             before->second.join();
@@ -317,21 +318,20 @@ private:
         changed_.notify_all();
     }
 
-    /// Whether another process has done the instance while this one waited for its folder; fills the record.
+    /// Whether another process completed the instance while this one waited for its folder; fills the record.
     bool was_done_meanwhile(std::size_t i, StudyRecord& record) {
         const auto known = read_record(folder_of(i));
         if (!known) return false;
         for (const auto& [output, made] : known->outputs) {
             checksums_.forget(folder_of(i) / made.file);
-            if (!made.kept) return false;  // it is in the memory of the other process
+            if (!made.kept) return false;  // exists only in the memory of the other process
         }
         if (!why_again(plan_, known, dependencies_of(i), instance(i), folder_, checksums_).empty()) return false;
         record = *known;
         return true;
     }
 
-    /// Instances that took an input which has changed since the study began, or while it was read, do not count: what they made
-    /// may be of the one or the other.
+    /// Fails instances with an input that changed during the study, since their outputs may mix old and new content.
     void fail_changed() {
         std::set<Path> changed;
         for (const auto& [file, stamp] : stamps_)
@@ -366,12 +366,12 @@ private:
                       const Stopwatch& clock) {
         const StudyInstance& one = instance(i);
         const Path folder = folder_of(i);
-        // Folders of a run that was complete are begun anew; those of one that was killed keep what a study has done already.
+        // Output folders of a completed run are removed; those of a killed run keep the results of studies.
         if (const auto before = read_record(folder))
             for (const auto& [output, was] : before->outputs)
                 if (std::error_code code; was.kept && was.is_folder) std::filesystem::remove_all(folder / was.file, code);
         Call call = plan_.call(one, [&](const StudyInput& input) { return source_of(input); });
-        std::set<std::string> written;  // by the operation itself
+        std::set<std::string> written;  // outputs written by the operation itself
         for (const auto& [output, file] : one.outputs) {
             Slot& slot = call.slot(output);
             const bool taken = std::any_of(works_[i].takers.begin(), works_[i].takers.end(), [&](std::size_t taker) {
@@ -398,7 +398,7 @@ private:
             made.kept = one.kept.contains(output);
             made.is_folder = call.slot(output).fills_folder(0);
             if (written.contains(output)) continue;
-            if (call.slot(output).sources.empty() || !call.slot(output).sources.front().object) {  // it had nothing to make
+            if (call.slot(output).sources.empty() || !call.slot(output).sources.front().object) {  // it was not made
                 record.outputs.erase(output);
                 continue;
             }
@@ -424,7 +424,8 @@ private:
         keep(i, record, clock);
     }
 
-    /// Whether the file is an input of the instance, or the output of another one that it takes: its record says so already.
+    /// Whether the file is an input of the instance, or an output of another instance that it uses; the record then covers it
+    /// already.
     bool is_own_input(const StudyInstance& one, const Path& file) {
         return std::any_of(one.inputs.begin(), one.inputs.end(), [&](const StudyInput& input) {
             if (input.instance == no_instance) return input.file == file;
@@ -433,7 +434,7 @@ private:
             return outputs.contains(input.output) && file_of(input) == file;
         });
     }
-    /// The name of a file in the run folder, relative to it; empty for others.
+    /// The path of a file relative to the run folder; empty for files elsewhere.
     std::string within_run(const Path& file) const {
         const auto full = [](const Path& path) { return std::filesystem::absolute(path).lexically_normal(); };
         const Path relative = full(file).lexically_relative(full(folder_));
@@ -462,7 +463,7 @@ private:
     void do_program(std::size_t i, const Watch& watch, int share, StudyRecord& record, const Stopwatch& clock) {
         const StudyInstance& one = instance(i);
         const Path folder = std::filesystem::absolute(folder_of(i));
-        empty_folder(folder);  // of what an earlier run left
+        empty_folder(folder);  // removes the files of an earlier run
         const auto words = plan_.words(
             one,
             [&](const StudyInput& input) {
@@ -504,7 +505,7 @@ private:
         keep(i, record, clock);
     }
 
-    /// The record stands last: without it the instance runs again.
+    /// Writes the record last: without it the instance runs again.
     void keep(std::size_t i, StudyRecord& record, const Stopwatch& clock) {
         const Path folder = folder_of(i);
         const auto before = read_record(folder);
@@ -513,7 +514,7 @@ private:
         record.ended = now_text();
         write_record(folder, plan_, instance(i), record);
         if (!before) return;
-        for (const auto& [output, was] : before->outputs) {  // under another name
+        for (const auto& [output, was] : before->outputs) {  // remove outputs of the earlier run that now have other names
             const bool again = std::any_of(record.outputs.begin(), record.outputs.end(),
                                            [&](const auto& made) { return made.second.kept && made.second.file == was.file; });
             if (was.kept && !again && !was.is_folder && file_exists(folder / was.file)) remove_file(folder / was.file);
@@ -565,9 +566,9 @@ private:
     std::vector<Work> works_;
     std::vector<InstanceResult> results_;
     FileChecksums checksums_;
-    Context root_;  ///< keeps what files hold as long as an instance may need it
+    Context root_;  ///< caches objects read from files as long as an instance may need them
     std::map<Path, std::size_t> file_uses_;
-    std::map<Path, std::optional<FileStamp>> stamps_;  ///< of the inputs, as the run begins
+    std::map<Path, std::optional<FileStamp>> stamps_;  ///< stamps of the inputs at the start of the run
     std::set<std::size_t> to_consider_;
     std::vector<std::size_t> queue_, ended_;
     std::map<std::size_t, std::thread> workers_;

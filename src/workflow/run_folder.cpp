@@ -15,7 +15,7 @@ namespace ostraka {
 
 FolderLock::FolderLock(const Path& folder, const std::function<bool()>& stop)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    // Where the file system knows no locks, nobody waits.
+    // Without file-system support for locks, do not wait.
     while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && !stop()) {
         waited_ = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -35,7 +35,7 @@ void empty_folder(const Path& folder) {
 }
 
 namespace {
-/// An entry of a folder that is checked already: only a link can lead out, or be something else than it seems.
+/// Checks an entry of a folder that has already been checked: only a link can lead elsewhere or hide its type.
 void check_entry(const Path& entry, const Path& run_folder) {
     std::error_code code;
     const auto type = std::filesystem::symlink_status(entry, code).type();
@@ -43,7 +43,7 @@ void check_entry(const Path& entry, const Path& run_folder) {
     if (type != Type::not_found && type != Type::regular && type != Type::directory) require_writable_inside(entry, run_folder);
 }
 
-/// What is written for all instances together.
+/// Names of the files written for all instances together.
 std::vector<std::string> collected_names(const StudyPlan& plan) {
     std::vector<std::string> names{"page.md", "run.json", "run.study.json", "ro-crate-metadata.json"};
     const auto add = [&](const char* what, const std::vector<const char*>& endings) {

@@ -1,4 +1,4 @@
-// Folders of a run: locked, emptied, and checked for what leads out of them.
+// Run folders: locking, emptying, and checking for paths that lead out of them.
 #pragma once
 
 #include "ostraka/workflow/run.h"
@@ -7,10 +7,10 @@
 
 namespace ostraka {
 
-/// Folder of an instance that no other process works in while this lives.
+/// Locks an instance's folder against other processes during its lifetime.
 class FolderLock {
 public:
-    /// Waits as long as another process has it, until `stop` says otherwise.
+    /// Waits for the lock until `stop` returns true.
     FolderLock(const Path& folder, const std::function<bool()>& stop);
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
@@ -22,7 +22,7 @@ private:
     bool waited_ = false;
 };
 
-/// Removes what a folder holds, and leaves the folder, which is locked.
+/// Removes the content of a folder but keeps the folder, which is locked.
 void empty_folder(const Path& folder);
 
 }  // namespace ostraka

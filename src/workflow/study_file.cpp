@@ -24,10 +24,10 @@ bool is_name(const std::string& name) {
     });
 }
 
-/// Places that words of programs name.
+/// Names of places to which words of programs may refer.
 bool is_reserved(const std::string& name) { return name == "folder" || name == "study"; }
 
-/// A JSON pointer's step (RFC 6901).
+/// A reference token of a JSON pointer (RFC 6901).
 std::string pointer_word(const std::string& name) {
     std::string text;
     for (const char c : printable(name, 60))
@@ -59,7 +59,7 @@ ParameterValue case_value(const JsonValue& value, std::size_t number) {
     return made;
 }
 
-/// Named as any other file of the study: relative to its folder.
+/// The file relative to the study's folder, like all other files of the study.
 ParameterValue file_value(const Study& study, const Path& found) {
     const Path file = study.relative(found);
     ParameterValue made;
@@ -95,7 +95,7 @@ StudyParameter read_parameter(const Study& study, const std::string& name, const
         const JsonValue* given = find_member(value, "step");
         const std::int64_t step = given == nullptr ? 1 : given->GetInt64();
         if (to < from) fail_input(study.at(place), "ends before it begins", "give 'to' a number that is not below 'from'");
-        const std::int64_t last = (to - from) / step;  // the schema's bounds keep it from overflowing
+        const std::int64_t last = (to - from) / step;  // the schema's bounds prevent overflow
         if (last >= maximum_values)
             fail_input(study.at(place), "has more than " + std::to_string(maximum_values) + " values", "give fewer");
         for (std::int64_t i = 0; i <= last; ++i)
@@ -111,7 +111,7 @@ StudyParameter read_parameter(const Study& study, const std::string& name, const
     return parameter;
 }
 
-/// "NAME=VALUE,VALUE" of the command line as the file would say it.
+/// Converts "NAME=VALUE,VALUE" of the command line to the form of the file.
 std::pair<std::string, Json> given_parameter(const std::string& word) {
     const std::size_t equals = word.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == word.size())
@@ -181,7 +181,7 @@ private:
         take("parameters", true);
         if (options.quick) {
             take("quick", false);
-        } else if (const JsonValue* quick = find_member(*study_.document, "quick")) {  // a wrong name is one in any run
+        } else if (const JsonValue* quick = find_member(*study_.document, "quick")) {  // wrong names are errors in any run
             for (const auto& member : quick->GetObject())
                 if (const std::string name = text_of(member.name); !values.contains(name))
                     refuse_name("/quick/" + pointer_word(name), "there is no parameter '" + printable(name, 60) + "'", name,
@@ -213,7 +213,7 @@ private:
         }
     }
 
-    /// What the caller names as the value of a parameter may be read.
+    /// Allows reading of files that the caller gave as parameter values.
     void allow_given(const JsonValue& value) {
         if (value.IsString()) study_.readable.push_back(study_.folder / text_of(value));
         if (value.IsArray())
@@ -301,7 +301,7 @@ private:
             }
     }
 
-    /// Which steps and parameters a step takes; references to what is not there are refused.
+    /// Determines the steps and parameters that a step uses; rejects references to unknown names.
     void read_references(StudyStep& step) {
         step.parameters.assign(study_.parameters.size(), false);
         const auto take = [&](const StudyText& text, const std::string& place, bool may_be_step) {
@@ -394,7 +394,7 @@ private:
         step.gathers.push_back(study_.step(reference.name));
     }
 
-    /// In quick runs; what takes their outputs is left out as well.
+    /// Removes slow steps, and all steps that use their outputs, for quick runs.
     void leave_out_slow() {
         std::set<std::string> out;
         for (bool more = true; more;) {
@@ -420,7 +420,7 @@ private:
         if (study_.steps.empty()) fail_input(study_.at("/steps"), "all steps are slow", "run it without --quick");
     }
 
-    /// Each step behind those that it needs; parameters of those that it takes one instance of become its own.
+    /// Sorts the steps topologically. A step inherits the parameters of steps of which it uses one instance.
     void order() {
         enum class Mark { unseen, open, done };
         std::vector<Mark> marks(study_.steps.size(), Mark::unseen);

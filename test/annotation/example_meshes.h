@@ -22,7 +22,7 @@ inline Mesh grid(Index n, double scale = 1) {
     return build_mesh(soup);
 }
 
-/// Spheres from an octahedron split `levels` times; one at each centre, in this order.
+/// Spheres from an octahedron subdivided `levels` times; one per centre, in this order.
 inline Mesh spheres(int levels, const std::vector<std::array<double, 3>>& centres = {{0, 0, 0}}, double radius = 1) {
     TriangleSoup one;
     one.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

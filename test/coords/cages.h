@@ -1,4 +1,4 @@
-// Cages that tests share, and points in all places of them.
+// Cages shared by tests, and test points around them.
 #pragma once
 
 #include "meshes.h"
@@ -56,8 +56,8 @@ inline std::vector<Cage> cages() {
     return list;
 }
 
-/// Points on the vertices, edges and faces of a cage and from 1e-9 to 1e-3 of the diagonal from them on both sides, and anywhere
-/// in the box and around it.
+/// Points on the vertices, edges and faces of a cage, at distances of 1e-9 to 1e-3 of the diagonal on both sides, and random
+/// points in the box and around it.
 inline std::vector<Point> places(const Mesh& cage) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -91,7 +91,7 @@ inline std::vector<Point> places(const Mesh& cage) {
     return points;
 }
 
-/// How often the cage goes around p: the sum of the solid angles (van Oosterom and Strackee 1983) over the full one.
+/// Winding number of the cage around p: the sum of the solid angles (van Oosterom and Strackee 1983) divided by 4 pi.
 inline double winding_number(const Mesh& cage, const Point& p) {
     long double sum = 0;
     for (const Face f : cage.faces()) {
@@ -111,7 +111,7 @@ inline double winding_number(const Mesh& cage, const Point& p) {
     return static_cast<double>(sum / (4 * std::numbers::pi_v<long double>));
 }
 
-/// Distance from the cage as a share of its diagonal.
+/// Distance from the cage, relative to its diagonal.
 inline double distance(const Mesh& cage, const Point& p) {
     const double diagonal = box_diagonal(cage);
     double minimum = INFINITY;

@@ -1,4 +1,4 @@
-// The folders in which runs take place, and what must not happen outside them.
+// The folders in which runs take place, and the checks that nothing outside them is affected.
 #pragma once
 
 #include "subjects.h"
@@ -8,11 +8,11 @@
 
 namespace ostraka::fuzz {
 
-/// seeds/ (what runs begin with), said (what the run had to say), and home/, where runs can write: work/ (the folder of the run
-/// under way), canaries/ (what nobody may touch), tmp/ (for temporary files).
+/// seeds/ (initial files), said (output of the run), and home/, where runs can write: work/ (the folder of the current run),
+/// canaries/ (must not be changed), tmp/ (temporary files).
 class Arena {
 public:
-    /// Makes it anew, in the system's folder for temporary files, with canaries and seeds.
+    /// Creates the folders in the system's folder for temporary files, with canaries and seeds.
     explicit Arena(const Path& project);
     ~Arena();
     Arena(const Arena&) = delete;
@@ -20,9 +20,9 @@ public:
 
     [[nodiscard]] Path seeds() const { return above_ / "seeds"; }
 
-    /// Runs a subject with some of its files changed.
+    /// Runs a subject with some of its files mutated.
     Verdict run(const Subject& subject, const std::vector<Change>& changes, double seconds);
-    /// The beginning of what the last run had to say.
+    /// The beginning of the output of the last run.
     [[nodiscard]] std::string said() const;
 
 private:
@@ -34,8 +34,8 @@ private:
     void judge(Verdict& verdict);
 
     Path root_, above_, home_;
-    std::string canaries_;  ///< as they are
-    double idle_ = 0;       ///< bytes
+    std::string canaries_;  ///< original content
+    double idle_ = 0;       ///< idle memory in bytes
 };
 
 }  // namespace ostraka::fuzz

@@ -1,4 +1,4 @@
-// One run: in a process of its own, with limits, where it can write nowhere but into the folder of all runs.
+// One run: in a separate process with limits, which can write only into the folder of all runs.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka::fuzz {
 
-/// How what is under way is stopped. Safe for several threads.
+/// Cancels the current run. Thread-safe.
 class Stopper {
 public:
     void set(std::function<void()> stop) {
@@ -21,51 +21,51 @@ public:
         if (stop_) stop_();
     }
 
-    double memory = 0;  ///< bytes that the process may occupy
+    double memory = 0;  ///< max memory of the process in bytes
 
 private:
     std::mutex mutex_;
     std::function<void()> stop_;
 };
 
-/// What a run does in its folder, which is the current one; returns all that it has to say.
+/// The work of a run in the current folder; returns its output.
 using Act = std::function<std::string(Stopper&)>;
 
 enum class Outcome {
     accepted,
-    refused,   ///< with an Error
-    stopped,   ///< it took long, and ended when it was told to
-    crash,     ///< a signal, or an exception that is no Error
-    hang,      ///< it took long, and did not end when it was told to
-    memory,    ///< it took more than it may
-    touched,   ///< something outside the folder was changed
-    betrayed,  ///< something outside the folder was read and told
+    refused,   ///< failed with an Error
+    stopped,   ///< exceeded the time limit, but ended when cancelled
+    crash,     ///< ended by a signal, or by an exception other than Error
+    hang,      ///< exceeded the time limit, and did not end when cancelled
+    memory,    ///< exceeded the memory limit
+    touched,   ///< changed a file outside the folder
+    betrayed,  ///< disclosed a file outside the folder
 };
 std::string to_string(Outcome outcome);
 inline bool is_finding(Outcome outcome) { return outcome > Outcome::stopped; }
 
 struct Verdict {
     Outcome outcome = Outcome::accepted;
-    std::string detail;  ///< in words
+    std::string detail;  ///< description
     double seconds = 0;
-    double peak = 0;  ///< bytes that the process occupied at most
+    double peak = 0;  ///< peak memory of the process in bytes
 };
 
 struct Limits {
-    double seconds = 10;  ///< of the processor, before it is told to stop
-    double memory = 0;    ///< bytes, what the process itself takes included
+    double seconds = 10;  ///< processor time after which it is cancelled
+    double memory = 0;    ///< bytes, including the base memory of the process
 };
 
-/// Whether memory is limited and measured: sanitizers take too much of their own.
+/// Whether memory is limited and measured; not under sanitizers, which need too much themselves.
 bool measures_memory();
 
-/// Whether the system can keep a process from writing elsewhere (Linux's Landlock).
+/// Whether the system can restrict where a process writes (Linux's Landlock).
 bool can_confine();
 
-/// Runs it in `folder`; it may write below `home` alone. What it says goes to `said`, a file.
+/// Runs it in `folder`; it may write below `home` only. Its output is written to the file `said`.
 Verdict run_child(const Act& act, const Path& folder, const Path& home, const Path& said, const Limits& limits);
 
-/// Bytes that a process occupies which does nothing.
+/// Memory of an idle process in bytes.
 double idle_memory();
 
 }  // namespace ostraka::fuzz

@@ -1,4 +1,4 @@
-// Numbers that look random and are the same for a seed on every machine.
+// Pseudorandom numbers that depend on the seed only, not on the machine.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace ostraka::fuzz {
 class Dice {
 public:
     explicit Dice(std::uint64_t seed) : state_(seed) {}
-    /// The dice of one run: that of another run of the same seed has nothing to do with it.
+    /// The generator of one run, independent of those of other runs with the same seed.
     Dice(std::uint64_t seed, std::uint64_t run) : state_(Dice(seed).next() ^ Dice(run + 0x5DEECE66DU).next()) {}
 
     std::uint64_t next() {

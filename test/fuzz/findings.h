@@ -1,4 +1,4 @@
-// What was found, as a file that can be run once more: which files of a subject became what.
+// A finding as a reproducible file: the mutations of the files of a subject.
 #pragma once
 
 #include "mutations.h"
@@ -14,7 +14,7 @@ struct Finding {
 };
 
 void write_finding(const Path& file, const Finding& finding);
-/// Throws Error (input) for what write_finding has not written.
+/// Throws Error (input) if the file was not written by write_finding.
 Finding read_finding(const Path& file);
 
 }  // namespace ostraka::fuzz

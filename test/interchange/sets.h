@@ -1,4 +1,4 @@
-// Sets of annotations that formats must carry whole, and how two sets are compared.
+// Annotation sets that formats must represent completely, and the comparison of sets.
 #pragma once
 
 #include "annotation/example_meshes.h"
@@ -8,7 +8,7 @@
 
 namespace ostraka::example {
 
-/// Texts that other formats take for markup, scripts, formulas, separators or line ends.
+/// Texts that other formats could interpret as markup, scripts, formulas, separators or line ends.
 inline std::vector<std::string> wild_texts() {
     return {"plain",
             "with \"quotes\" and 'others'",
@@ -60,8 +60,8 @@ inline Attribute semantic(int id, const std::string& name, const std::string& no
     return attribute;
 }
 
-/// Points, lines, overlapping regions, the whole; every kind of attribute; wild texts everywhere. On `spheres(3)` or a mesh
-/// with as many faces.
+/// Points, lines, overlapping regions, the whole; every kind of attribute; difficult texts everywhere. Requires `spheres(3)` or
+/// a mesh with as many faces.
 inline AnnotationSet wild_set(const Mesh& mesh) {
     AnnotationSet set;
     set.object_class = "class \"of\" <things>";
@@ -84,7 +84,7 @@ inline AnnotationSet wild_set(const Mesh& mesh) {
     }
     add(AnnotationType::point, id++, "several").points = {7, 3, 11};
     Annotation& line = add(AnnotationType::line, id++, "way, with a comma");
-    // Straight on, from face to face.
+    // Straight across faces.
     Halfedge h = mesh.halfedge(Vertex(0));
     std::vector<Index> way{mesh.source(h)};
     for (int k = 0; k < 6; ++k, h = mesh.next(mesh.opposite(mesh.next(h)))) way.push_back(mesh.target(h));
@@ -148,12 +148,12 @@ inline AnnotationSet copy_of(const AnnotationSet& set) {
     return copy;
 }
 
-/// A set as the file that would hold it: two sets are the same if these texts are.
+/// Text of the set's file; sets are equal if their texts are.
 inline std::string as_file(const AnnotationSet& set, const Mesh& mesh) {
     return to_text(annotations_to_json(set, mesh, "m.ply", {}));
 }
 
-/// `part` finds what `whole` must not hold outside of quoted data.
+/// Checks that `whole` does not contain `part` outside of quoted data.
 inline std::size_t occurrences(const std::string& whole, const std::string& part) {
     std::size_t count = 0;
     for (std::size_t at = whole.find(part); at != std::string::npos; at = whole.find(part, at + 1)) ++count;

@@ -1,4 +1,4 @@
-// Small meshes with everything a file may hold.
+// Small meshes with all data that a file may hold.
 #pragma once
 
 #include "ostraka/io/mesh_file.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka::test {
 
-/// An octahedron, its vertices in an order in which faces meet them first.
+/// An octahedron with its vertices in the order in which the faces refer to them.
 inline TriangleSoup octahedron() {
     TriangleSoup soup;
     soup.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
@@ -15,7 +15,7 @@ inline TriangleSoup octahedron() {
     return soup;
 }
 
-/// A torus of `around` x `along` quadrilaterals cut in two, with coordinates that need all their digits.
+/// A torus of `around` x `along` quadrilaterals cut into triangles, whose coordinates need full precision.
 inline TriangleSoup torus(Index around, Index along) {
     TriangleSoup soup;
     for (Index i = 0; i < around; ++i)
@@ -33,7 +33,7 @@ inline TriangleSoup torus(Index around, Index along) {
     return soup;
 }
 
-/// Different values everywhere.
+/// Distinct values for all elements.
 inline MeshExtras full_extras(const TriangleSoup& soup) {
     MeshExtras extras;
     for (std::size_t v = 0; v < soup.points.size(); ++v) {

@@ -1,4 +1,4 @@
-// Polygons in the plane that are hard to cut.
+// Planar polygons that are difficult to triangulate.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace ostraka::test {
 
 using FlatPolygon = std::vector<std::array<double, 2>>;
 
-/// Out along a spiral of some turns and back beside it.
+/// A band along a spiral of several turns.
 inline FlatPolygon spiral(int steps, double turns) {
     FlatPolygon outer, inner;
     for (int i = 0; i < steps; ++i) {
@@ -33,7 +33,7 @@ inline FlatPolygon comb(int teeth) {
     return points;
 }
 
-/// A star polygon {count/step} that runs around several times.
+/// A star polygon {count/step}, which winds several times.
 inline std::vector<std::array<double, 3>> regular_star(int count, int step) {
     std::vector<std::array<double, 3>> points;
     for (int i = 0; i < count; ++i)

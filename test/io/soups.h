@@ -11,7 +11,7 @@ namespace ostraka::soups {
 
 using Place = std::array<double, 3>;
 
-/// Axis-aligned cube of 12 triangles, outward.
+/// Axis-aligned cube of 12 triangles, oriented outwards.
 inline TriangleSoup cube(Place low = {0, 0, 0}, double side = 1) {
     TriangleSoup s;
     for (int i = 0; i < 8; ++i)
@@ -21,7 +21,7 @@ inline TriangleSoup cube(Place low = {0, 0, 0}, double side = 1) {
     return s;
 }
 
-/// Both soups, the second's indices shifted.
+/// The union of both soups, with shifted indices of the second.
 inline TriangleSoup both(TriangleSoup a, const TriangleSoup& b) {
     const auto shift = static_cast<Index>(a.points.size());
     a.points.insert(a.points.end(), b.points.begin(), b.points.end());
@@ -29,7 +29,7 @@ inline TriangleSoup both(TriangleSoup a, const TriangleSoup& b) {
     return a;
 }
 
-/// Exactly equal points joined.
+/// Merges exactly equal points.
 inline TriangleSoup welded(const TriangleSoup& s) {
     TriangleSoup r;
     std::map<Place, Index> known;
@@ -43,7 +43,7 @@ inline TriangleSoup welded(const TriangleSoup& s) {
     return r;
 }
 
-/// Sphere of `rings` x `sectors`, outward, poles included.
+/// Sphere of `rings` x `sectors` with poles, oriented outwards.
 inline TriangleSoup sphere(int rings = 12, int sectors = 24, double radius = 1, Place centre = {0, 0, 0}) {
     TriangleSoup s;
     const double pi = std::numbers::pi;
@@ -84,7 +84,7 @@ inline TriangleSoup torus(int n = 24, int m = 12, double big = 2, double small =
     return s;
 }
 
-/// Strip of n quads with half a turn: one side, one border.
+/// Moebius strip of n quads: one side, one border.
 inline TriangleSoup moebius(int n = 24) {
     TriangleSoup s;
     for (int i = 0; i < n; ++i) {

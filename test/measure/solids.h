@@ -1,4 +1,4 @@
-// Solids that are measured, turned and moved.
+// Solids to measure, and rigid motions of them.
 #pragma once
 
 #include "meshes.h"
@@ -12,7 +12,7 @@ namespace ostraka::test {
 
 using Eigen::Vector3d;
 
-/// Vertices moved by a rotation and a translation.
+/// Applies a rotation and a translation to the vertices.
 inline TriangleSoup moved(TriangleSoup soup, const Eigen::Matrix3d& rotation, const Vector3d& translation) {
     for (auto& p : soup.points) {
         const Vector3d q = rotation * Vector3d(p[0], p[1], p[2]) + translation;

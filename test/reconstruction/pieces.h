@@ -1,4 +1,4 @@
-// A body, its landmarks, and fragments of it.
+// A body with landmarks, and fragments of it.
 #pragma once
 
 #include "meshes.h"
@@ -13,7 +13,7 @@
 
 namespace ostraka::test {
 
-/// Where a place of the unit sphere is on a body with a head: waves, so that no turn leaves it as it is.
+/// Maps a point of the unit sphere to a body with a head and waves, so that no rotation leaves it unchanged.
 inline Eigen::Vector3d body_place(const Eigen::Vector3d& p) {
     return (1 + 0.15 * std::sin(3 * p.x() + 1) * std::cos(2 * p.y()) + 0.1 * p.z() * p.x()) *
            Eigen::Vector3d(p.x(), 1.2 * p.y(), 1.8 * p.z());
@@ -40,7 +40,7 @@ inline Annotation landmark(int id, const std::string& tag, Index vertex) {
     return one;
 }
 
-/// Twelve vertices evenly over the list as landmarks.
+/// Forty vertices spread over the index range as landmarks.
 inline AnnotationSet landmarks_of(const Mesh& mesh) {
     AnnotationSet set;
     const auto n = static_cast<Index>(mesh.number_of_vertices());
@@ -49,7 +49,7 @@ inline AnnotationSet landmarks_of(const Mesh& mesh) {
     return set;
 }
 
-/// A fragment of `whole` around a place, with the landmarks that it has.
+/// A fragment of `whole` around a point, with its landmarks.
 struct Cut {
     Fragment fragment;
     BrokenPiece piece;

@@ -1,4 +1,4 @@
-// Heads and shapes that the tests of registration share.
+// Heads and shapes shared by the tests of registration.
 #pragma once
 
 #include "meshes.h"
@@ -9,7 +9,7 @@
 
 namespace ostraka::test {
 
-/// A cast of mould `mould`, upright.
+/// An upright cast of mould `mould`.
 inline HeadCast head(std::uint64_t mould, std::uint64_t seed, std::uint64_t vertices = 4000) {
     ArchetypeOptions archetype;
     archetype.seed = mould;
@@ -33,7 +33,7 @@ inline Motion motion(double scale = 1, double far = 100) {
     return m;
 }
 
-/// Angle between two rotations, degrees.
+/// Angle between two rotations in degrees.
 inline double rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
     return Eigen::AngleAxisd(a.transpose() * b).angle() * 180 / 3.14159265358979323846;
 }

@@ -1,4 +1,4 @@
-// Objects for the tests of pictures.
+// Objects for the tests of rendering.
 #pragma once
 
 #include "ostraka/render/render.h"
@@ -36,7 +36,7 @@ inline Scene sphere(int count) {
     return scene;
 }
 
-/// [-1, 1]^3, two triangles a side: front (-y), back, left (-x), right, bottom, top.
+/// [-1, 1]^3, two triangles per side: front (-y), back, left (-x), right, bottom, top.
 inline Scene cube() {
     Scene scene;
     for (int i = 0; i < 8; ++i) scene.mesh.points.push_back({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
@@ -56,14 +56,14 @@ inline Scene moved(Scene scene, double size, const std::array<double, 3>& by) {
     return scene;
 }
 
-/// Area in pixels, by the coverage.
+/// Area in pixels, from the coverage.
 inline double covered(const Picture& picture) {
     double sum = 0;
     for (const std::uint32_t pixel : picture.argb) sum += (pixel >> 24) / 255.0;
     return sum;
 }
 
-/// Pixels whose channels differ by more than rounding does.
+/// Number of pixels whose channels differ by more than rounding errors.
 inline double differing_pixels(const Picture& a, const Picture& b) {
     double count = 0;
     for (std::size_t i = 0; i < a.argb.size(); ++i) {

@@ -1,4 +1,4 @@
-// Sherds of a pot whose profile is a formula.
+// Sherds of a pot with an analytic profile.
 #pragma once
 
 #include "ostraka/fracture/fragment.h"

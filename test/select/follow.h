@@ -19,7 +19,7 @@ inline Annotation select(const std::string& type, const std::string& expression,
         .annotations.at(0);
 }
 
-/// The faces that are taken whole.
+/// The faces selected as a whole.
 inline std::vector<Index> faces_of(const std::string& expression, const Mesh& mesh, const std::string& head = "") {
     return follow(R"({"id": 0, "tag": "t", "type": "region", "outline": "edges", "select": )" + expression + "}", mesh, head)
         .annotations.at(0)
@@ -30,7 +30,7 @@ inline double area_of(const std::string& expression, const Mesh& mesh) {
     return measure_region(mesh, faces_of(expression, mesh)).area;
 }
 
-/// The steps are refused with an error that names the file, the place and the trouble, and that has a remedy.
+/// Expects that the steps are rejected with an error that names the file, the place and the problem, and has a remedy.
 inline void expect_refused(const std::string& steps, const Mesh& mesh, const std::string& pointer, const std::string& what,
                            RecipeStart start = {}) {
     try {

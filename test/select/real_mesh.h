@@ -8,7 +8,7 @@ namespace ostraka::test {
 
 inline const char* const scan_archive = "/usr/share/doc/libcgal-dev/data.tar.gz";
 
-/// A mesh of the CGAL distribution's data (package libcgal-demo); nothing where the archive is not there.
+/// A mesh from the CGAL distribution (package libcgal-demo); empty if the archive is missing.
 inline std::optional<Mesh> scan(const std::string& name) {
     if (!std::filesystem::exists(scan_archive)) return std::nullopt;
     const Scratch scratch;

@@ -1,4 +1,4 @@
-// A synthetic object in a cage, and constraints on its parts in a line each.
+// A synthetic object in a cage, with short definitions of constraints on its parts.
 #pragma once
 
 #include "annotation/example_meshes.h"

@@ -1,4 +1,4 @@
-// A class made by rule: a tower of two halves whose heights and width are drawn, as a template with measures and a proportion.
+// A synthetic class: towers of two halves with random heights and width, as a template with measures and a proportion.
 #pragma once
 
 #include "meshes.h"
@@ -15,7 +15,7 @@ struct Tower {
     [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
 };
 
-/// What a class says of an object.
+/// A class's answer about an object.
 inline ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object) {
     LearnOptions how;
     how.modes.sizes = learnt.sizes;
@@ -44,7 +44,7 @@ inline Annotation half(const Mesh& mesh, int id, const std::string& tag, bool up
     return annotation;
 }
 
-/// A box of 6 x 6 x 6 cells; the proportion of its halves may be anything from 0.2 to `maximum`.
+/// A box of 6 x 6 x 6 cells; the permitted proportion of its halves is 0.2 to `maximum`.
 inline Tower tower(double maximum = 5) {
     Tower tower;
     TriangleSoup soup = box(6);
@@ -69,7 +69,7 @@ inline Tower tower(double maximum = 5) {
     return tower;
 }
 
-/// The tower with the heights of its halves and its width given, turned and moved by `motion`.
+/// The tower with the given width and heights of its halves, moved by `motion`.
 inline WholeObject member_of(const Tower& tower, const std::string& name, double base, double top, double width,
                              const Motion& motion = {}) {
     WholeObject member;

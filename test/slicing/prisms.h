@@ -1,4 +1,4 @@
-// Walls over plane figures, so that slices are known exactly.
+// Walls over planar figures, whose slices are known exactly.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -12,7 +12,7 @@ namespace ostraka::test {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-/// Upright walls from z = 0 to 1 over polygons (outer ones counter-clockwise, holes clockwise), without floor and lid.
+/// Vertical walls from z = 0 to 1 over polygons (outer ones counter-clockwise, holes clockwise), without floor and lid.
 inline Mesh walls(const std::vector<Polygon>& polygons) {
     TriangleSoup soup;
     for (const auto& polygon : polygons) {
@@ -50,7 +50,7 @@ inline Polygon ellipse(int corners, double a, double b, const Eigen::Vector2d& c
     return polygon;
 }
 
-/// Every side cut into `pieces`, of uneven lengths.
+/// Divides every side into `pieces` of unequal lengths.
 inline Polygon refined(const Polygon& polygon, int pieces) {
     Polygon finer;
     for (std::size_t i = 0; i < polygon.size(); ++i)

@@ -1,4 +1,4 @@
-// One example of each kind of constraint and each way to use it, with points that break it.
+// An example of each kind of constraint and each way of using it, with points that violate it.
 #pragma once
 
 #include "ostraka/solver/constraint.h"
@@ -14,8 +14,8 @@ struct Example {
     std::vector<int> ids;
     ConstraintParameters parameters;
     Points rest, points;
-    bool rotates = true;  ///< rotates with its points and parameters; displacement forms only move
-    bool closest = true;  ///< closest of all admissible rows, as against all motions of the points as they are
+    bool rotates = true;  ///< equivariant under rotations of points and parameters; displacement forms only under translations
+    bool closest = true;  ///< projection is the closest of all admissible points, not only of rigid motions of the given points
 };
 
 inline Points random_points(int count, unsigned seed, double size = 1) {
@@ -33,7 +33,7 @@ inline std::vector<int> first_ids(int count) {
     return ids;
 }
 
-/// Closest point of a sphere that `rotation` leaves where it is.
+/// Closest point on a sphere.
 inline Eigen::Vector3d onto_sphere(const Eigen::Vector3d& p, const Eigen::Vector3d& centre, double radius) {
     const Eigen::Vector3d v = p - centre;
     return v.norm() > 0 ? Eigen::Vector3d(centre + radius * v.normalized())
@@ -214,7 +214,7 @@ inline std::vector<Example> examples() {
     range(add("PolylineLength, shorter", "PolylineLength", 6), 0.1, 0.2);
     add("EqualLengths", "EqualLengths", 8);
     add("EqualLength", "EqualLength", 7).parameters.split = 3;
-    // New examples come last, since the points of each depend on how many come before.
+    // Append new examples at the end, since the points of each depend on the number of preceding ones.
     {
         Example& e = add("AxisOnLine, shares of the next station", "AxisOnLine", 6);
         e.parameters.direction = tilted;
@@ -283,7 +283,7 @@ inline std::unique_ptr<Constraint> make(const Example& e, double weight = 1) {
     return make_constraint(e.kind, e.ids, weight, e.parameters, e.rest);
 }
 
-/// Points, rest state and parameters, turned and then moved.
+/// Points, rest state and parameters, rotated and then translated.
 inline Example moved(Example e, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& by) {
     const auto move = [&](Points& p) { p = (rotation * p).colwise() + by; };
     move(e.rest);

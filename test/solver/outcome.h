@@ -1,4 +1,4 @@
-// What constraints make of points.
+// Results of constraints for given points.
 #pragma once
 
 #include "examples.h"
@@ -30,7 +30,7 @@ inline double squared_distance(const Constraint& c, const Points& a, const Point
     return (a - b).leftCols(c.map().rows - c.map().observed).squaredNorm();
 }
 
-/// B over the constraint's own ids, dense.
+/// B restricted to the constraint's own ids, dense.
 inline Eigen::MatrixXd matrix_of(const Constraint& c) {
     const auto& map = c.map();
     Eigen::MatrixXd b = Eigen::MatrixXd::Zero(map.rows, static_cast<Eigen::Index>(c.ids().size()));

@@ -1,4 +1,4 @@
-// What tests of studies share.
+// Shared by the tests of studies.
 #pragma once
 
 #include "ostraka/core/parallel.h"
@@ -8,7 +8,7 @@
 
 namespace ostraka::test {
 
-/// A study file whose members these are.
+/// A study file with these members.
 inline std::string study_text_of(const std::string& members) {
     return R"({"format": "ostraka-study", "version": 1, )" + members + "}";
 }
@@ -29,7 +29,7 @@ inline std::size_t count(const std::vector<InstanceResult>& results, InstanceSta
     return n;
 }
 
-/// A teapot of two resolutions, annotated and transferred.
+/// A teapot at two resolutions, annotated and transferred.
 inline const char* const teapot_study = R"("title": "A teapot",
   "parameters": {"vertices": [2500, 4000], "spikes": "prune"},
   "quick": {"vertices": [2500]},

@@ -193,7 +193,7 @@ function Toolbar() {
 }
 
 export function App() {
-  void state.turn.value; // another object of a collection: everything anew
+  void state.turn.value; // another object of a collection: recompute everything
   const about = page.objects[state.object.value];
   const { simplified } = about ?? {};
   const ready = state.ready.value || !view;

@@ -1,4 +1,4 @@
-// The index of a collection: a card for each object, found by name, tag and number; one is read when it is chosen.
+// The index of a collection: one card per object, searchable by name, tag and number; an object is read when it is selected.
 import { signal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { openEntry } from "./content";
@@ -11,7 +11,7 @@ const by = signal("");
 const from = signal("");
 const to = signal("");
 
-/** Numbers that tables have of the objects: their names, and for each object the number. */
+/** Numeric columns of the tables: for each column name, the number of each object. */
 function quantities(): Map<string, Map<number, number>> {
   const found = new Map<string, Map<number, number>>();
   for (const table of index!.data.tables) {

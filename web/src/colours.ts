@@ -1,4 +1,4 @@
-// Colours of values, between those that the command gives.
+// Interpolates colours of values between those given by the command.
 
 type Colour = [number, number, number];
 

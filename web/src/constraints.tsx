@@ -1,4 +1,4 @@
-// What became of the constraints of a deformation, and whether an object conforms to the rules and relationships of its class.
+// Results of the constraints of a deformation, and conformance of an object to the rules and relationships of its class.
 import { choose, chosen, numberText, object, page, withUnit, word } from "./state";
 
 type Answer = "holds" | "broken" | "unknown";
@@ -28,7 +28,7 @@ function Members({ members }: { members: number[] }) {
   );
 }
 
-/** What is broken stands first; what holds is folded away. */
+/** Violations are listed first; satisfied entries are collapsed. */
 export function Conformance() {
   const { conformance = [] } = page.objects[object.value];
   if (conformance.length === 0) return null;

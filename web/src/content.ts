@@ -1,4 +1,4 @@
-// Contents: shown, opened from an index, named by the address.
+// Contents of the page: displaying them, opening them from an index, and restoring them from the address.
 import * as THREE from "three";
 import { readEntry, type Blobs, type Content, type PageObject, type Shown } from "./data";
 import { DrawnObject, dotMaterial, flatMaterial, readShape, type Shape } from "./geometry";
@@ -6,7 +6,7 @@ import { setScene, view } from "./picture";
 import * as state from "./state";
 import { View } from "./view";
 
-/** What the address says after '#': entry of a collection, object, annotation, map, camera. */
+/** Reads the part of the address after '#': entry of a collection, object, annotation, map, camera. */
 export async function readAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
   const whole = (key: string, count: number, otherwise: number) => {
@@ -35,11 +35,11 @@ export function address(): string {
   return "#" + parts.toString();
 }
 
-/** Shapes that were sent once, by their keys. */
+/** Shapes already received, by key. */
 const known = new Map<string, Shape>();
 export const knownShapes = () => [...known.keys()];
 
-/** Packed in the page, or exact from a server. */
+/** Reads a shape: packed in the page, or exact from a server. */
 async function shapeOf(of: Shown, blobs: Blobs): Promise<Shape> {
   if (of.geometry !== undefined) return readShape(blobs.get(of.geometry));
   const { key, positions, triangles } = of.shape!;
@@ -52,7 +52,7 @@ async function shapeOf(of: Shown, blobs: Blobs): Promise<Shape> {
   }
   return known.get(key)!;
 }
-/** Forgets the shapes that nothing shows any more. */
+/** Removes cached shapes that are no longer shown. */
 function forget(objects: PageObject[]) {
   const used = new Set(objects.flatMap((one) => [one.shape?.key, one.cage?.shape?.key]));
   for (const key of known.keys()) if (!used.has(key)) known.delete(key);
@@ -75,7 +75,7 @@ async function cageOf(one: DrawnObject, content: Content): Promise<THREE.Object3
   return group;
 }
 
-/** Shows a content: that of the page, or of an object of a collection. */
+/** Displays a content: that of the page, or of an object of a collection. */
 export async function showContent(content: Content, keepsCamera = false) {
   const objects = await Promise.all(
     content.data.objects.map(async (about, i) => new DrawnObject(i, about, await shapeOf(about, content.blobs), content.blobs)),
@@ -88,7 +88,7 @@ export async function showContent(content: Content, keepsCamera = false) {
   try {
     if (!made && objects.length > 0) made = new View(matchMedia("(prefers-reduced-motion: reduce)").matches);
   } catch {
-    made = undefined; // no WebGL: the tables are there all the same
+    made = undefined; // without WebGL the tables are still shown
   }
   made?.setObjects(objects, keepsCamera);
   setScene(made, objects);
@@ -113,7 +113,7 @@ export async function openEntry(entry: number) {
   }
 }
 
-/** Where in the index the reader was. */
+/** Scroll position of the index. */
 let place = 0;
 
 export async function closeEntry() {

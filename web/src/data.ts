@@ -9,9 +9,9 @@ export interface Measure {
   unit: string;
   uncertainty?: number;
   stale?: boolean;
-  /** Pins, in the object's coordinates less `origin`. */
+  /** Pins, in the object's coordinates minus `origin`. */
   pins: [number, number, number][];
-  /** What it runs along, of a tape along edges. */
+  /** For a tape along edges: its path. */
   way?: [number, number, number][];
 }
 
@@ -26,46 +26,46 @@ export interface Annotation {
   type: "region" | "line" | "point";
   colour: [number, number, number];
   note?: string;
-  /** Index in `annotations` of the smallest one that contains it; -1: none. */
+  /** Index in `annotations` of the smallest annotation that contains it; -1: none. */
   parent: number;
   attributes: Attribute[];
   measures: Measure[];
-  /** Of a region: how many triangles, and which blob lists them. */
+  /** For regions: number of triangles, and the blob that lists them. */
   faces?: { count: number; blob: number };
-  /** Of lines and points: vertices of the mesh that is shown. */
+  /** For lines and points: vertices of the displayed mesh. */
   lines?: number[][];
   points?: number[];
-  /** Of what runs through the triangles: places a little off the surface, relative to the object's box. */
+  /** For curves inside triangles: points slightly above the surface, relative to the object's box. */
   curves?: [number, number, number][][];
 }
 
-/** A number for each vertex, as 16 bit steps between `minimum` and `maximum`; 65535: no value. */
+/** One number per vertex, in 16-bit steps between `minimum` and `maximum`; 65535: no value. */
 export interface ValueMap {
   name: string;
   label: string;
   blob: number;
   minimum: number;
   maximum: number;
-  /** What the colours and the histogram go over; what lies beyond has the colour of the end. */
+  /** Range of the colours and the histogram; values outside it get the colour of the nearest end. */
   from: number;
   to: number;
-  /** At even steps from `from` to `to`: those of the command's own pictures. */
+  /** At equal steps from `from` to `to`; the same colours as in the command's pictures. */
   colours: [number, number, number][];
   histogram: number[];
-  /** The steps are indices in this list, if it is there: names instead of numbers. `histogram` has an entry for each. */
+  /** If present, the steps are indices into this list of names. `histogram` has one entry per category. */
   categories?: { text: string; colour: [number, number, number] }[];
 }
 
-/** What a plane cuts out of an object. */
+/** A planar section of an object. */
 export interface Slice {
   height: number;
-  /** The plane's frame, in the object's coordinates less `origin`. */
+  /** The plane's frame, in the object's coordinates minus `origin`. */
   origin: [number, number, number];
   u: [number, number, number];
   v: [number, number, number];
   /** In the order of `Slices.columns`. */
   values: (number | null)[];
-  /** Their points lie one after the other in `Slices.blob`. */
+  /** Their points are stored consecutively in `Slices.blob`. */
   contours: { points: number; closed: boolean; hole: boolean }[];
 }
 
@@ -74,30 +74,30 @@ export interface Slices {
   columns: { name: string; title: string; unit: string }[];
   /** By ascending height. */
   levels: Slice[];
-  /** Along u and v, two 32 bit floats for each point of all contours of all levels. */
+  /** Coordinates along u and v: two 32-bit floats per point of all contours of all levels. */
   blob: number;
-  /** The heights between which the object is tubular. */
+  /** Range of heights in which the object is tubular. */
   tube?: [number, number];
 }
 
-/** What became of a constraint in a deformation. */
+/** Result of a constraint in a deformation. */
 export interface Constraint {
   type: string;
   /** Indices in `annotations`. */
   members: number[];
   weight: number;
   hard: boolean;
-  /** Verdicts before and after, in words, and whether it holds after; undefined: it cannot be told. */
+  /** Verdicts before and after as text, and whether the constraint is satisfied after; undefined: unknown. */
   before: string;
   verdict: string;
   holds?: boolean;
   text: string;
   deviations: { quantity: string; before: number | null; value: number | null; tolerance: number | null; unit: string }[];
-  /** Of the solver: how far the points are from where the constraint puts them. */
+  /** From the solver: distance of the points from their projections onto the constraint. */
   residual?: { mean: number; largest: number };
 }
 
-/** A shape: packed in a blob, or exact (32 bit floats relative to the box, triangles), which may have been sent before. */
+/** A shape: packed in a blob, or exact (32-bit floats relative to the box, triangles); it may have been sent before. */
 export interface Shown {
   geometry?: number;
   shape?: { key: string; positions?: number; triangles?: number };
@@ -106,7 +106,7 @@ export interface Shown {
 export interface PageObject extends Shown {
   name: string;
   unit: string;
-  /** Vertices and triangles of the object; of what is shown, if that is less. */
+  /** Numbers of vertices and triangles of the object, and of the displayed mesh if that is simplified. */
   vertices: number;
   faces: number;
   simplified?: { vertices: number; deviation: number };
@@ -116,18 +116,18 @@ export interface PageObject extends Shown {
   annotations: Annotation[];
   maps: ValueMap[];
   cage?: Shown & { vertices: number; origin: [number, number, number] };
-  /** The rows of a drawing of the relationships: annotations under what contains them. */
+  /** Rows of the drawing of relationships: each annotation below the one that contains it. */
   tree: { annotation: number; depth: number }[];
   relations: Relation[];
   constraints?: Constraint[];
-  /** What 'relation check' says: rules of the class, relations, constraints, canons (proportions). */
+  /** Results of 'relation check': rules of the class, relations, constraints, canons (proportions). */
   conformance?: { kind: "rule" | "relation" | "constraint" | "canon"; name: string; members: number[]; holds?: boolean; text: string }[];
-  /** Constraints that cannot hold together, in words. */
+  /** Sets of constraints that cannot be satisfied together, as text. */
   conflicts?: string[];
   slices?: Slices;
-  /** Indices in `annotations` of the parts that a slider moves apart (the fragments of an assembly). */
+  /** Indices in `annotations` of the parts that a slider moves apart (fragments of an assembly). */
   parts?: number[];
-  /** Objects of one number have the same triangles: one turns into the other. */
+  /** Objects with the same number have the same triangles and can be blended into each other. */
   blend?: number;
 }
 
@@ -141,7 +141,7 @@ export interface Relation {
   weight: number;
   holds?: boolean;
   text: string;
-  /** Beside the tree, from inside; undefined: the tree says it. */
+  /** Column beside the tree, from inside; undefined: expressed by the tree itself. */
   lane?: number;
 }
 
@@ -156,21 +156,21 @@ export interface Table {
   note: string;
   columns: Column[];
   rows: (string | number | null)[][];
-  /** For each row the object that it is of (-1: none), and the annotation of it (-1: none). */
+  /** For each row the index of its object and of its annotation (-1: none). */
   objects?: number[];
   annotations?: number[];
 }
 
-/** A drawing made by the command: SVG, drawn as a picture, so that nothing in it can run. */
+/** A drawing made by the command: an SVG shown as an image, so that its scripts cannot run. */
 export interface Drawing {
   title: string;
   blob: number;
 }
 
-/** An object of a collection, read when it is asked for. */
+/** An object of a collection, read on demand. */
 export interface Entry {
   name: string;
-  /** Beside the page: a script that calls `ostrakaObject(file, data, bytes)` with a page of this one object. */
+  /** Beside the page: a script that calls `ostrakaObject(file, data, bytes)` with the page of this object. */
   file: string;
   /** Beside the page: a PNG. */
   thumbnail: string;
@@ -181,7 +181,7 @@ export interface Entry {
 
 export interface PageData {
   version: number;
-  /** Of a collection: then `objects` is empty, and the objects that rows of tables name are indices here. */
+  /** For a collection: `objects` is empty, and table rows refer to indices of this list. */
   collection?: Entry[];
   title: string;
   notes: string[];
@@ -192,7 +192,7 @@ export interface PageData {
   blobs: [number, number][];
 }
 
-/** Bytes of the page: one deflated, base64 text. */
+/** Binary data of the page: deflated and base64-encoded. */
 export class Blobs {
   constructor(
     private readonly bytes: Uint8Array,
@@ -231,7 +231,7 @@ export function readPage(): Promise<Content> {
   return unpack(JSON.parse(text("ostraka-data")) as PageData, text("ostraka-bytes"));
 }
 
-/** An object of a collection. Its file is a script that calls `ostrakaObject`. */
+/** Reads an object of a collection. Its file is a script that calls `ostrakaObject`. */
 export function readEntry(file: string): Promise<Content> {
   return new Promise((done, failed) => {
     const script = document.createElement("script");
@@ -240,7 +240,7 @@ export function readEntry(file: string): Promise<Content> {
     };
     const ended = () => {
       script.remove();
-      failed(new Error(file)); // unless it has called
+      failed(new Error(file)); // unless the script has called
     };
     script.onload = ended;
     script.onerror = ended;
@@ -249,7 +249,7 @@ export function readEntry(file: string): Promise<Content> {
   });
 }
 
-/** The triangles of a region: pairs of a gap and a run, as numbers of seven bits a byte. */
+/** Decodes the triangles of a region: pairs of a gap and a run length, as integers with seven bits per byte. */
 export function readRuns(bytes: Uint8Array): Uint32Array {
   const list: number[] = [];
   let place = 0;

@@ -1,4 +1,4 @@
-// What is known of the chosen annotation.
+// Details of the selected annotation.
 import { swatch } from "./legend";
 import { choose, chosen, numberText, object, page, withUnit, word } from "./state";
 

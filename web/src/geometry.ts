@@ -1,4 +1,4 @@
-// Objects as they are drawn: triangles with a colour of their own, regions, lines and points on them.
+// Drawable objects: triangles with one colour each, regions, and lines and points on the surface.
 import * as THREE from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { MeshBVH } from "three-mesh-bvh";
@@ -10,7 +10,7 @@ export interface Shape {
   triangles: Uint32Array;
 }
 
-/** Of the GLB files that the command writes: one mesh of one primitive, both streams packed. */
+/** Reads GLB files written by the command: one mesh with one primitive, both streams compressed. */
 export async function readShape(bytes: Uint8Array): Promise<Shape> {
   await MeshoptDecoder.ready;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -67,7 +67,7 @@ function normalsOf(positions: Float32Array, triangles: Uint32Array): Float32Arra
   return normals;
 }
 
-/** The entries of `values` (three for each vertex) of these vertices. */
+/** The entries of `values` (three per vertex) for these vertices. */
 function gathered(values: Float32Array, vertices: Uint32Array): Float32Array {
   const made = new Float32Array(3 * vertices.length);
   for (let i = 0; i < vertices.length; ++i) {
@@ -79,7 +79,7 @@ function gathered(values: Float32Array, vertices: Uint32Array): Float32Array {
   return made;
 }
 
-/** Triangles by the set of regions that they lie in: a number for each, and the regions of each number. */
+/** Groups triangles by the set of regions that contain them: a set number per triangle, and the regions of each set. */
 function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: Uint32Array; members: number[][] } {
   const of = new Uint32Array(triangles);
   const members: number[][] = [[]];
@@ -98,7 +98,7 @@ function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: 
   return { of, members };
 }
 
-/** Vertices that are drawn: one for each vertex and set of regions that meets there, so that each has one colour. */
+/** Duplicates vertices so that each one has one colour: one per vertex and set of regions that meets there. */
 function splitVertices(vertices: number, triangles: Uint32Array, sets: Uint32Array): { source: Uint32Array; set: Uint32Array; index: Uint32Array } {
   const first = new Int32Array(vertices).fill(-1);
   const source: number[] = [];
@@ -121,7 +121,7 @@ function splitVertices(vertices: number, triangles: Uint32Array, sets: Uint32Arr
   return { source: Uint32Array.from(source), set: Uint32Array.from(set), index };
 }
 
-/** What all materials share. */
+/** Uniforms shared by all materials. */
 export const shared = {
   blend: { value: 0 },
   explode: { value: 0 },
@@ -137,8 +137,8 @@ uniform vec4 clip;
 in vec3 place;
 `;
 
-/** A shader of its own: it is compiled in a fraction of the time that those of the library take. Colours are sRGB; light is added in
- * their squares, which is near enough to linear light. */
+/** A custom shader, which compiles much faster than those of the library. Colours are sRGB; light is added to their squares, which
+ * approximates linear light. */
 const surface = new THREE.RawShaderMaterial({
   glslVersion: THREE.GLSL3,
   side: THREE.DoubleSide,
@@ -189,7 +189,7 @@ const surface = new THREE.RawShaderMaterial({
     }`,
 });
 
-/** Lines, dots and bands of one colour. */
+/** Material for lines, points and bands of one colour. */
 export function flatMaterial(colour: [number, number, number], dot = 0, through = false): THREE.RawShaderMaterial {
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
@@ -222,7 +222,7 @@ export function flatMaterial(colour: [number, number, number], dot = 0, through 
   });
 }
 
-/** Dots with a colour each. */
+/** Material for points with individual colours. */
 export function dotMaterial(size: number): THREE.RawShaderMaterial {
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
@@ -254,7 +254,7 @@ export function dotMaterial(size: number): THREE.RawShaderMaterial {
 
 const clay: [number, number, number] = [201, 184, 160];
 
-/** A plane's contours as bands, so that they are as wide as is seen well from every side. */
+/** Contours of a plane as bands, so that they are wide enough from every direction. */
 function bandsOf(slice: Slice, points: Float32Array, begin: number, half: number): THREE.BufferGeometry {
   const [origin, u, v] = [slice.origin, slice.u, slice.v].map((x) => new THREE.Vector3(...x));
   const normal = u.clone().cross(v).normalize();
@@ -284,16 +284,16 @@ export class DrawnObject {
   readonly group = new THREE.Group();
   readonly mesh: THREE.Mesh;
   readonly regions: (Uint32Array | undefined)[];
-  /** Annotations whose type is line or point, by their index. */
+  /** Annotations of type line or point, by index. */
   readonly marks = new Map<number, THREE.Object3D>();
   readonly pins = new THREE.Group();
   readonly chosen = new THREE.Group();
   /** The smallest visible region of each triangle; -1: none. */
   readonly top: Int32Array;
   cage: THREE.Object3D | undefined;
-  /** Where the vertices are now, as far as they are blended and moved apart. */
+  /** Current vertex positions, including blending and moving apart. */
   private readonly current: Float32Array;
-  /** Of each vertex how it goes as the parts are moved apart; undefined: there are none. */
+  /** Displacement of each vertex when the parts are moved apart; undefined: there are no parts. */
   private readonly apart: Float32Array | undefined;
   private moved = { blend: 0, explode: 0 };
   private slice: THREE.Mesh | undefined;
@@ -301,7 +301,7 @@ export class DrawnObject {
   private readonly normals: Float32Array;
   private readonly sets: ReturnType<typeof setsOf>;
   private readonly split: ReturnType<typeof splitVertices>;
-  /** Where the vertices are in the object that this one turns into. */
+  /** Vertex positions of the object that this one is blended into. */
   private other: Float32Array | undefined;
   private partner: DrawnObject | undefined;
 
@@ -340,7 +340,7 @@ export class DrawnObject {
     });
   }
 
-  /** Made when it is first asked for: triangles keep their numbers. */
+  /** Built on first use; triangles keep their numbers. */
   get bvh(): MeshBVH {
     if (!this.bvhMade) {
       const indexed = new THREE.BufferGeometry();
@@ -351,12 +351,12 @@ export class DrawnObject {
     return this.bvhMade;
   }
 
-  /** Where a vertex is now. */
+  /** Current position of a vertex. */
   vertex(index: number): THREE.Vector3 {
     return new THREE.Vector3().fromArray(this.current, 3 * index);
   }
 
-  /** From the middle of all to the middle of each part. */
+  /** Displacements from the common centre to the centre of each part. */
   private partMoves(): Float32Array | undefined {
     const { parts } = this.about;
     if (!parts) return undefined;
@@ -373,7 +373,7 @@ export class DrawnObject {
     return moves;
   }
 
-  /** What is asked of places from now on is asked of the shape that is drawn. */
+  /** Sets blending and separation; later position queries refer to the shape displayed then. */
   moveTo(blend: number, explode: number) {
     const wanted = { blend: this.other ? blend : 0, explode: this.apart ? explode : 0 };
     if (wanted.blend === this.moved.blend && wanted.explode === this.moved.explode) return false;
@@ -389,7 +389,7 @@ export class DrawnObject {
     return true;
   }
 
-  /** The contours of a level of the slices; undefined: none. */
+  /** Shows the contours of a level of the slices; undefined: none. */
   showSlice(level: number | undefined) {
     if (this.slice) {
       this.slice.geometry.dispose();
@@ -404,7 +404,7 @@ export class DrawnObject {
     this.group.add(this.slice);
   }
 
-  /** Along u and v, of all contours of all levels. */
+  /** Coordinates along u and v of all contours of all levels. */
   slicePoints(): Float32Array {
     return new Float32Array(this.blobs.get(this.about.slices!.blob).slice().buffer);
   }
@@ -428,7 +428,7 @@ export class DrawnObject {
     return group;
   }
 
-  /** What runs through the triangles, darker than its region so that it is seen on it. */
+  /** Draws curves inside triangles, darker than their region so that they are visible on it. */
   private curves(curves: [number, number, number][][], colour: [number, number, number], type: string): THREE.Object3D {
     if (type === "point") {
       const geometry = new THREE.BufferGeometry().setFromPoints(curves.map(([p]) => new THREE.Vector3(...p)));
@@ -447,13 +447,13 @@ export class DrawnObject {
     return new THREE.Points(geometry, material);
   }
 
-  /** A little away from the surface, so that lines and points are not half within it. */
+  /** Offsets points slightly from the surface, so that lines and points are not half hidden. */
   private lift(): (v: number) => THREE.Vector3 {
     const step = 0.002 * Math.hypot(...this.about.size);
     return (v) => new THREE.Vector3().fromArray(this.normals, 3 * v).multiplyScalar(step);
   }
 
-  /** The shape that `blend` leads to; the same triangles. */
+  /** Sets the shape to blend into, which has the same triangles. */
   blendTo(other: DrawnObject | undefined) {
     if (this.partner === other) return;
     this.partner = other;
@@ -466,7 +466,7 @@ export class DrawnObject {
     geometry.setAttribute("otherNormal", other ? of(other.normals) : geometry.getAttribute("normal"));
   }
 
-  /** How much each vertex follows the handles that are dragged: four numbers each, or none. */
+  /** Sets how much each vertex follows the dragged handles: four numbers per vertex, or none. */
   follows(weights: Float32Array | undefined) {
     const { geometry } = this.mesh;
     if (!weights) {
@@ -480,7 +480,7 @@ export class DrawnObject {
     geometry.setAttribute("drag", new THREE.BufferAttribute(made, 4));
   }
 
-  /** Other places of the vertices, until the object is shown anew. */
+  /** Sets temporary vertex positions, until the object is displayed again. */
   moveVertices(positions: Float32Array) {
     const attribute = this.mesh.geometry.getAttribute("position") as THREE.BufferAttribute;
     const places = attribute.array as Float32Array;
@@ -495,7 +495,7 @@ export class DrawnObject {
   }
 
   private cloud: THREE.Points | undefined;
-  /** Drawn as a surface, by its edges, or by its vertices. */
+  /** Sets the style: surface, edges or vertices. */
   style(kind: "surface" | "edges" | "points") {
     surface.wireframe = kind === "edges";
     this.mesh.visible = kind !== "points";
@@ -508,7 +508,7 @@ export class DrawnObject {
     if (this.cloud) this.cloud.visible = kind === "points";
   }
 
-  /** Colours by a number of each vertex, from 0 (as clay is) to 1 (red). */
+  /** Colours by one number per vertex, from 0 (clay colour) to 1 (red). */
   paintValues(values: Float32Array) {
     const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
     const colours = colour.array as Uint8Array;
@@ -519,10 +519,10 @@ export class DrawnObject {
     colour.needsUpdate = true;
   }
 
-  /** Colours by annotations, those that are shown; smaller ones over larger ones. `chosen`: the others are paler. */
+  /** Colours by the visible annotations, smaller ones over larger ones. `chosen`: the others are paler. */
   paint(isShown: (annotation: number) => boolean, chosen = -1) {
     const { about, sets, split } = this;
-    // Of each set the smallest region that is shown.
+    // For each set the smallest visible region.
     const topOf = sets.members.map((regions) => {
       let best = -1;
       for (const i of regions) if (isShown(i) && (best < 0 || this.regions[i]!.length < this.regions[best]!.length)) best = i;
@@ -550,7 +550,7 @@ export class DrawnObject {
     for (const [i, mark] of this.marks) mark.visible = isShown(i);
   }
 
-  /** Colours by a map; what has no value is grey. */
+  /** Colours by a map; grey without a value. */
   paintMap(map: number, colourOf: (share: number) => [number, number, number]) {
     const values = this.mapValues(map);
     const colour = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
@@ -559,7 +559,7 @@ export class DrawnObject {
     const { source } = this.split;
     const { minimum, maximum, from, to, categories } = this.about.maps[map];
     const none = [128, 128, 128];
-    // Of categories a step is a place in the list.
+    // For categories a step is an index into the list.
     const table = categories ? categories.map((c) => c.colour) : Array.from({ length: 256 }, (_, i) => colourOf(i / 255));
     const scale = categories ? 1 : (255 * (maximum - minimum)) / 65534 / (to - from || 1);
     const offset = categories ? 0 : (255 * (minimum - from)) / (to - from || 1);
@@ -580,7 +580,7 @@ export class DrawnObject {
     return new Uint16Array(bytes.slice().buffer);
   }
 
-  /** What a map says at a vertex, a number or the name of a category; undefined: nothing. */
+  /** Value of a map at a vertex: a number or the name of a category; undefined: no value. */
   mapValue(map: number, vertex: number): number | string | undefined {
     const { minimum, maximum, categories } = this.about.maps[map];
     const step = this.mapValues(map)[vertex];
@@ -588,7 +588,7 @@ export class DrawnObject {
     return categories ? categories[step].text : minimum + (step / 65534) * (maximum - minimum);
   }
 
-  /** All shown regions on a triangle, the smallest first. */
+  /** All visible regions on a triangle, the smallest first. */
   annotationsOn(face: number): number[] {
     const found: number[] = [];
     this.regions.forEach((faces, i) => {

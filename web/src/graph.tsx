@@ -1,4 +1,4 @@
-// Relationships drawn: annotations as the tree of what contains what, and a bracket for each other relationship.
+// A drawing of relationships: annotations as a containment tree, and one bracket for each other relationship.
 import { useState } from "preact/hooks";
 import { choose, chosen, object, page, word } from "./state";
 
@@ -12,7 +12,7 @@ export function Graph() {
   const [off, setOff] = useState<ReadonlySet<string>>(new Set());
   if (types.length === 0) return null;
   const { tree: rows } = page.objects[object.value];
-  /** The row of what contains the one of row i. */
+  /** Row of the annotation that contains the one of row i. */
   const above = (i: number) => rows.findIndex((one) => one.annotation === annotations[rows[i].annotation].parent);
   const placeOf = new Map(rows.map((one, i) => [one.annotation, i]));
   const list = relations
@@ -42,7 +42,7 @@ export function Graph() {
         ))}
       </div>
       <div class="scroll" tabIndex={0} role="region" aria-label={word("relations")}>
-        {/* The list of the chosen annotation's relationships says the same in words. */}
+        {/* The list of the selected annotation's relationships gives the same information as text. */}
         <svg class="graph" width={width} height={rows.length * row + 8} aria-hidden="true">
           {list.map(({ relation, low, high }, i) => {
             const x = names + lane * (lanes[i] + 0.5);

@@ -1,4 +1,4 @@
-// Annotations as a tree of what contains what: shown, hidden, alone, chosen.
+// Annotations as a containment tree: to show, hide, isolate or select.
 import { chosen, choose, hidden, isShown, labels, object, page, search, show, word } from "./state";
 
 function below(annotation: number): number[] {

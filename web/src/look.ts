@@ -1,4 +1,4 @@
-// Theme, language and patterns, as the reader chose them.
+// Theme, language and patterns selected by the reader.
 import { effect } from "@preact/signals";
 import { shared } from "./geometry";
 import { view } from "./picture";

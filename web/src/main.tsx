@@ -15,7 +15,7 @@ async function start() {
   followLook();
   window.addEventListener("hashchange", () => void readAddress());
   render(<App />, document.getElementById("app")!);
-  // For tests of this page, which ask where things are drawn.
+  // For tests of this page, which query positions on the screen.
   Object.defineProperty(window, "ostraka", { value: { state, get view() { return view; }, get objects() { return drawn; } } });
 }
 

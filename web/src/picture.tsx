@@ -1,4 +1,4 @@
-// The objects in 3D, with names and measures over them, and what the pointer and the keys do there.
+// The 3D view with labels and measures, and the actions of pointer and keys on it.
 import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as THREE from "three";
@@ -18,7 +18,7 @@ export function setScene(made: View | undefined, objects: DrawnObject[]) {
 
 const anchors = new Map<string, THREE.Vector3[]>();
 
-/** Places of an annotation, the one nearest to its middle first; of a region where no smaller one covers it. */
+/** Anchor points of an annotation, the one nearest to its centre first; for a region where no smaller one covers it. */
 function anchorsOf(of: DrawnObject, annotation: number): THREE.Vector3[] {
   const one = of.about.annotations[annotation];
   const faces = of.regions[annotation];
@@ -45,7 +45,7 @@ interface Label {
   strong: boolean;
 }
 
-/** Names beside the object, on both sides, in the order of their places: leader lines do not cross. */
+/** Positions of labels on both sides of the object, sorted so that leader lines do not cross. */
 function labelPlaces(width: number, height: number): Label[] {
   if (!view || !state.labels.value) return [];
   const list: Label[] = [];
@@ -82,7 +82,7 @@ function labelPlaces(width: number, height: number): Label[] {
   return list;
 }
 
-/** Lines of measures: of the chosen annotation, and what was measured by hand. */
+/** Lines of measures: those of the selected annotation, and interactive ones. */
 function rulers(): { from: { x: number; y: number }; to: { x: number; y: number }; text: string; ends: [boolean, boolean] }[] {
   if (!view) return [];
   const list: ReturnType<typeof rulers> = [];
@@ -186,7 +186,7 @@ export function repaint() {
   const chosen = state.chosen.value;
   for (const o of state.panes.value) {
     const of = drawn[o];
-    if (!of) return; // another content is on its way
+    if (!of) return; // another content is being loaded
     const map = state.map.value;
     if (map >= 0 && map < of.about.maps.length)
       of.paintMap(map, (share) => colourOf(share, of.about.maps[map].colours));
@@ -206,7 +206,7 @@ export function Picture() {
     const canvas = view.canvas;
     holder.current.prepend(canvas);
     const svg = overlay.current;
-    // The tree that tells what is in sight is made once the first picture is there.
+    // The BVH for visibility is built after the first frame.
     let soon = true;
     view.onMove = () => {
       state.moves.value += 1;
@@ -242,7 +242,7 @@ export function Picture() {
       return { x: event.clientX - box.left, y: event.clientY - box.top };
     };
     let waiting = false;
-    // The canvas outlives what is shown around it.
+    // The canvas outlives the components around it.
     const listens = new AbortController();
     const { signal } = listens;
     canvas.addEventListener("pointermove", (event) => {
@@ -277,7 +277,7 @@ export function Picture() {
   );
 }
 
-/** The smallest annotation under a place of the canvas that is shown, and those around it. */
+/** The smallest visible annotation at a position of the canvas, and those that contain it. */
 export function hover(x: number, y: number) {
   const hit = view?.pick(x, y);
   if (!hit) {
@@ -304,7 +304,7 @@ export function click(x: number, y: number) {
     return;
   }
   const list = drawn[hit.object].annotationsOn(hit.face).filter((i) => state.isShown(hit.object, i));
-  // Clicked again, what is around it is chosen.
+  // A second click selects the containing annotation.
   const at = hit.object === state.object.value ? list.indexOf(state.chosen.value) : -1;
   state.choose(list[at + 1] ?? (at >= 0 ? list[0] : -1), hit.object);
 }

@@ -1,4 +1,4 @@
-// A table's numbers as a scatter plot: a point for each row; both are marked together.
+// Scatter plot of two table columns: one point per row, highlighted together with its row.
 import { useState } from "preact/hooks";
 import type { Table } from "./data";
 import { isRowChosen, numberText, word } from "./state";
@@ -7,14 +7,14 @@ const width = 460;
 const high = 300;
 const edge = { left: 64, right: 14, top: 12, bottom: 44 };
 
-/** What an axis goes over. */
+/** Range of an axis. */
 export const range = (values: number[]): [number, number] => {
   const low = Math.min(...values);
   const top = Math.max(...values);
   return low < top ? [low, top] : [low - 0.5, top + 0.5];
 };
 
-/** Columns whose numbers differ. */
+/** Numeric columns that are not constant. */
 export function numericColumns(table: Table): number[] {
   return table.columns
     .map((_, c) => c)

@@ -1,4 +1,4 @@
-// Slices of the shown object: a height to choose, its contour in 3D and flat, and a descriptor over the height.
+// Slices of the displayed object: a height slider, the contour in 3D and in its plane, and a descriptor over the height.
 import { signal } from "@preact/signals";
 import type { Slice, Slices as Data } from "./data";
 import { drawn } from "./picture";

@@ -1,4 +1,4 @@
-// What the page shows, as signals: every part of it follows them.
+// The state of the page as signals, from which all its parts are derived.
 import { computed, signal } from "@preact/signals";
 import type { Blobs, Content, Language, PageData, Table } from "./data";
 import messages from "./messages.json";
@@ -9,7 +9,7 @@ const stored = (key: string) => {
   try {
     return localStorage.getItem(key);
   } catch {
-    return null; // some browsers keep nothing for local files
+    return null; // some browsers provide no storage for local files
   }
 };
 const keep = (key: string, value: string) => {
@@ -42,10 +42,10 @@ const whole = computed(() => new Intl.NumberFormat(language.value));
 export const numberText = (x: number) => (Number.isInteger(x) ? whole.value.format(x) : format.value.format(x));
 export const withUnit = (x: number, unit: string) => numberText(x) + (unit ? " " + unit : "");
 
-/** What is shown: the page's content, or that of an object of a collection. */
+/** The displayed content: that of the page, or that of an object of a collection. */
 export let page: PageData;
 export let blobs: Blobs;
-/** Counts what was shown before: what follows it is made anew. */
+/** Number of contents displayed so far; whatever depends on it is recomputed. */
 export const turn = signal(0);
 export function setContent(content: Content) {
   page = content.data;
@@ -55,7 +55,7 @@ export function setContent(content: Content) {
 }
 
 const defaults: (() => void)[] = [];
-/** A signal that begins anew with each content. */
+/** A signal that is reset with each content. */
 function fresh<T>(value: T) {
   const made = signal(value);
   defaults.push(() => (made.value = value));
@@ -65,7 +65,7 @@ function fresh<T>(value: T) {
 export const object = fresh(0);
 export const sideBySide = fresh(false);
 export const chosen = fresh(-1);
-/** Of a table, what is marked though it is of no object. */
+/** The highlighted table row, if it belongs to no object. */
 export const marked = fresh<{ table: string; row: number }>({ table: "", row: -1 });
 export const hovered = fresh<{ object: number; annotations: number[]; vertex: number; x: number; y: number } | undefined>(undefined);
 export const hidden = fresh<ReadonlySet<string>>(new Set());
@@ -73,24 +73,24 @@ export const search = fresh("");
 export const map = fresh(-1);
 export const blend = fresh(0);
 export const explode = fresh(0);
-/** Level of the slices of the shown object; -1: none is drawn. */
+/** Displayed level of the slices; -1: none. */
 export const level = fresh(-1);
 export const clip = fresh(1);
 export const clipAxis = signal(2);
 export const patterns = signal(false);
 export const labels = signal(true);
 export const cage = signal(true);
-/** Whether a click chooses what is there; not while a tool has the pointer. */
+/** Whether a click selects; false while a tool uses the pointer. */
 export const clicks = signal(true);
 export const measuring = signal(false);
 export const measured = fresh<{ object: number; places: { x: number; y: number; z: number }[] }>({ object: -1, places: [] });
 export const message = signal("");
-/** Counts the pictures that were drawn: what is drawn over them follows it. */
+/** Number of frames drawn; overlays are updated with it. */
 export const moves = signal(0);
-/** The first picture is there: the rest of the page may follow. */
+/** Whether the first frame has been drawn, so that the rest of the page may follow. */
 export const ready = signal(false);
 
-/** The index of a collection, if the page is one, and which of its objects is open; -1: none. */
+/** The index of a collection, if the page is one, and the index of its open object; -1: none. */
 export let index: Content | undefined;
 export const setIndex = (content: Content) => {
   index = content;
@@ -118,7 +118,7 @@ export function choose(annotation: number, of = object.value) {
   marked.value = { table: "", row: -1 };
 }
 
-/** Whether a row of a table is what is chosen. */
+/** Whether a table row is selected. */
 export function isRowChosen(table: Table, row: number): boolean {
   const o = table.objects?.[row] ?? -1;
   const a = table.annotations?.[row] ?? -1;
@@ -135,7 +135,7 @@ export const panes = computed(() => {
   return page.objects.map((_, i) => i).slice(first, first + 4);
 });
 
-/** The object that the chosen one turns into. */
+/** The object that the selected one is blended into. */
 export const blendPartner = computed(() => {
   const group = page.objects[object.value]?.blend;
   if (group === undefined) return -1;

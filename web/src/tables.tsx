@@ -1,4 +1,4 @@
-// Tables and drawings that the command made; a row of an annotation chooses it, and is marked where it is chosen.
+// Tables and drawings made by the command. Clicking a row selects its annotation; the row of the selected annotation is highlighted.
 import { useEffect, useMemo } from "preact/hooks";
 import type { Blobs, Drawing, Table } from "./data";
 import { openEntry } from "./content";
@@ -6,7 +6,7 @@ import { Plot } from "./plots";
 import { choose, isRowChosen, marked, numberText, page, word } from "./state";
 
 function TableView({ table }: { table: Table }) {
-  /** Marks a row, and shows what it is of. */
+  /** Highlights a row, and shows its object or annotation. */
   const go = (r: number) => {
     const o = table.objects?.[r] ?? -1;
     if (o >= 0 && !page.collection) return choose(table.annotations?.[r] ?? -1, o);
@@ -60,7 +60,7 @@ function TableView({ table }: { table: Table }) {
 }
 
 function DrawingView({ drawing, blobs }: { drawing: Drawing; blobs: Blobs }) {
-  // As a picture: scripts and links within an SVG do nothing there.
+  // As an image: scripts and links in an SVG are inactive.
   const address = useMemo(
     () => URL.createObjectURL(new Blob([blobs.get(drawing.blob) as BlobPart], { type: "image/svg+xml" })),
     [drawing],

@@ -1,4 +1,4 @@
-// The picture: one canvas, one camera, a pane for each object shown.
+// The 3D view: one canvas, one camera, one pane per displayed object.
 import CameraControls from "camera-controls";
 import * as THREE from "three";
 import { shared, type DrawnObject } from "./geometry";
@@ -15,22 +15,22 @@ export const sixViews = [
   ["bottom", 0, -89.9],
 ] as const;
 
-/** What is under the pointer. */
+/** The object and face under the pointer. */
 export interface Hit {
   object: number;
   face: number;
-  /** The corner of the face nearest to the place. */
+  /** The corner of the face nearest to the point. */
   vertex: number;
   point: THREE.Vector3;
 }
 
-/** Without a graphics card smooth edges cost most of the time of a picture. */
+/** Without a graphics card, antialiasing takes most of the rendering time. */
 function drawsInSoftware(gl: WebGL2RenderingContext): boolean {
   const about = gl.getExtension("WEBGL_debug_renderer_info");
   return /swiftshader|llvmpipe|software|basic render/i.test(about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "");
 }
 
-/** A canvas with its context: one that smooths edges only where a graphics card does it. */
+/** A canvas with its context; antialiased only with a graphics card. */
 function makeCanvas(): { canvas: HTMLCanvasElement; context: WebGL2RenderingContext } {
   for (const antialias of [false, true]) {
     const canvas = document.createElement("canvas");
@@ -42,7 +42,7 @@ function makeCanvas(): { canvas: HTMLCanvasElement; context: WebGL2RenderingCont
   throw new Error("no WebGL 2");
 }
 
-/** Half the width and height of what a pane shows, before any zoom: what is a unit large fits. */
+/** Half width and height of a pane at zoom 1: an object of size 1 fits. */
 function halfSizes(aspect: number): [number, number] {
   return aspect > 1 ? [aspect, 1] : [1, 1 / aspect];
 }
@@ -60,9 +60,9 @@ export class View {
   /** Drawn with the object of each pane. */
   private layers: DrawnObject[] = [];
   private frames: { centre: THREE.Vector3; scale: number; turn: THREE.Quaternion }[] = [];
-  /** The first view has been fitted to the canvas. */
+  /** Whether the first view has been fitted to the canvas. */
   private placed = false;
-  /** The first picture is there. */
+  /** Whether the first frame has been drawn. */
   private seen = false;
   private wanted = true;
   private running = false;
@@ -77,7 +77,7 @@ export class View {
     this.canvas = canvas;
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
-    this.renderer.debug.checkShaderErrors = false; // asking waits until they are made
+    this.renderer.debug.checkShaderErrors = false; // the check would wait for compilation
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -20, 20);
     this.camera.up.set(0, 0, 1);
     this.controls = new CameraControls(this.camera, canvas);
@@ -86,12 +86,11 @@ export class View {
     this.controls.smoothTime = reducedMotion ? 0.001 : 0.12;
     this.controls.draggingSmoothTime = reducedMotion ? 0.001 : 0.06;
     this.controls.dollyToCursor = true;
-    // Pictures are drawn on demand, so what the pointer, the wheel, fingers or a command start must wake the drawing:
-    // "update" comes only from within it.
+    // Frames are drawn on demand, so pointer, wheel, touch and command events must trigger drawing: "update" is only sent while drawing.
     for (const event of ["controlstart", "control", "transitionstart"] as const) this.controls.addEventListener(event, () => this.draw());
   }
 
-  /** What there is to see, instead of what there was. */
+  /** Replaces the displayed objects. */
   setObjects(objects: DrawnObject[], keepsCamera = false) {
     for (const one of this.objects) {
       this.scene.remove(one.group);
@@ -110,7 +109,7 @@ export class View {
     if (!this.placed) this.home(false);
   }
 
-  /** Where an object stands by itself. */
+  /** Places an object by itself. */
   private stand(one: DrawnObject) {
     const { centre, scale, turn } = this.frames[one.index];
     one.group.quaternion.copy(turn);
@@ -119,7 +118,7 @@ export class View {
     one.group.updateMatrixWorld(true);
   }
 
-  /** Other objects are drawn with this one, where their coordinates put them beside it. */
+  /** Draws other objects together with this one, positioned by their coordinates. */
   showWith(of: DrawnObject, layers: DrawnObject[]) {
     for (const one of this.layers) this.stand(one);
     this.layers = layers;
@@ -133,14 +132,14 @@ export class View {
     this.draw();
   }
 
-  /** Takes its objects back from where they were shown meanwhile. */
+  /** Takes the objects back from another display. */
   adopt() {
     for (const one of this.objects) this.scene.add(one.group);
     this.scene.updateMatrixWorld(true);
     this.draw();
   }
 
-  /** Objects of one place are drawn in one frame, so that a difference is seen; others each in the middle. */
+  /** Objects with the same position share one frame, so that differences are visible; others are centred. */
   private frame() {
     const boxes = this.objects.map((one) => {
       const { origin, size } = one.about;
@@ -175,7 +174,7 @@ export class View {
     this.draw();
   }
 
-  /** So that the boxes of what is shown fill the panes in the first view. */
+  /** Zoom at which the boxes of the displayed objects fill the panes. */
   private homeZoom(): number {
     const back = new THREE.Vector3(1.5, -2.6, 1.1).normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
@@ -200,7 +199,7 @@ export class View {
     this.draw();
   }
 
-  /** A picture is drawn soon; many wishes make one picture. */
+  /** Requests a frame; several requests give one frame. */
   draw() {
     this.wanted = true;
     if (this.running) return;
@@ -222,7 +221,7 @@ export class View {
     else this.running = false;
   };
 
-  /** Width and height of a pane, in pixels of the page. */
+  /** Width and height of a pane in CSS pixels. */
   private paneSize(): [number, number] {
     const { clientWidth, clientHeight } = this.canvas;
     return [clientWidth / Math.max(1, this.panes.length), clientHeight];
@@ -230,7 +229,7 @@ export class View {
 
   paint() {
     const { clientWidth, clientHeight } = this.canvas;
-    if (this.renderer.xr.isPresenting) return; // the headset has the picture
+    if (this.renderer.xr.isPresenting) return; // the headset renders
     if (clientWidth === 0 || clientHeight === 0) return;
     const { renderer } = this;
     const ratio = Math.min(2, window.devicePixelRatio);
@@ -273,7 +272,7 @@ export class View {
     this.onDrawn();
   }
 
-  /** Where a point of an object is on the page, relative to the canvas; undefined: in no pane. */
+  /** Position of a point of an object relative to the canvas; undefined: in no pane. */
   place(object: DrawnObject, point: THREE.Vector3): { x: number; y: number; depth: number } | undefined {
     const pane = this.panes.indexOf(object);
     if (pane < 0) return undefined;
@@ -282,7 +281,7 @@ export class View {
     return { x: (pane + 0.5 + at.x / 2) * width, y: (0.5 - at.y / 2) * height, depth: at.z };
   }
 
-  /** Whether nothing of the object is before a point of its surface. */
+  /** Whether a point of the object's surface is not occluded by the object. */
   sees(object: DrawnObject, point: THREE.Vector3): boolean {
     const inverse = object.group.matrixWorld.clone().invert();
     const toward = new THREE.Vector3(0, 0, 1).transformDirection(this.camera.matrixWorld).transformDirection(inverse);
@@ -298,7 +297,7 @@ export class View {
     const ray = new THREE.Raycaster();
     ray.setFromCamera(new THREE.Vector2((2 * (x % width)) / width - 1, 1 - (2 * y) / height), this.camera);
     ray.ray.applyMatrix4(pane.group.matrixWorld.clone().invert());
-    // The picture looks through the whole depth: the ray starts before everything.
+    // Orthographic views show the full depth: start the ray in front of everything.
     ray.ray.origin.addScaledVector(ray.ray.direction, -4 * Math.hypot(...pane.about.size));
     const toWorld = pane.group.matrixWorld;
     const hits = pane.bvh.raycast(ray.ray, THREE.DoubleSide).sort((a, b) => a.distance - b.distance);
@@ -309,14 +308,14 @@ export class View {
     return { object: pane.index, face: hit.faceIndex, vertex: corners[0], point: hit.point };
   }
 
-  /** How far the shown objects turn into others, and their parts are apart. */
+  /** Sets how far objects are blended into others, and how far their parts are moved apart. */
   move(blend: number, explode: number) {
     shared.blend.value = blend;
     shared.explode.value = explode;
     this.draw();
   }
 
-  /** Camera as a short text, for addresses. */
+  /** The camera as a short text, for addresses. */
   get where(): string {
     const eye = this.controls.getPosition(new THREE.Vector3());
     const target = this.controls.getTarget(new THREE.Vector3());

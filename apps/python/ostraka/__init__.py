@@ -25,7 +25,7 @@ def _openmp_spins() -> bool:
         return False
 
 
-# OpenMP reads it once, when it is loaded: threads that wait for work sleep, and leave the cores to others.
+# OpenMP reads this once, when it is loaded: idle threads then sleep instead of occupying cores.
 _spins = _openmp_spins()
 _os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
@@ -72,7 +72,7 @@ def _add_groups() -> dict[str, _types.ModuleType]:
         outer, _, word = name.rpartition(" ")
         module = _types.ModuleType(f"{modules[outer].__name__}.{_functions.python_name(word)}", help_text.capitalize() + ".\n")
         module.__package__ = module.__name__
-        module.__path__ = []  # so that those within it can be imported
+        module.__path__ = []  # makes submodules importable
         setattr(modules[outer], _functions.python_name(word), module)
         _sys.modules[module.__name__] = module
         modules[name] = module

@@ -202,10 +202,10 @@ def make_function(declared: dict[str, Any]) -> Callable[..., Result]:
             refuse("progress cannot be called", "give True, or a function of a phase and a share")
         try:
             report, made = _ostraka.run(operation, options, inputs, outputs, progress)
-        except WorkError as error:  # names the limit as Python does
+        except WorkError as error:  # use the name of the limit in Python
             problem = error.problem.replace("(--memory)", "(ostraka.set_memory_limit)")
             raise WorkError(problem, error.where or operation, error.remedy) from None
-        except UsageError as error:  # names the option as the command does
+        except UsageError as error:  # the message names the option as on the command line
             problem = re.sub("^option ([a-z0-9-]+) ", lambda match: f"option {python_name(match[1])} ", error.problem)
             raise UsageError(problem, error.where, error.remedy) from None
         results: dict[str, Any] = {}

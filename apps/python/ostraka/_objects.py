@@ -26,7 +26,7 @@ class Object:
     can change; only their names are their own.
     """
 
-    _cached = ("_native",)  # attributes that are not copied: made anew where they are needed
+    _cached = ("_native",)  # attributes that are not copied, but recomputed when needed
 
     def __init__(self, native: _ostraka.Object) -> None:
         self._native = native
@@ -93,7 +93,7 @@ def _numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
     """An array of whole numbers ("integers") or numbers; anything else is refused."""
     try:
         refuse_masks(name, value)
-        array = numpy.asanyarray(value)  # with its mask, where it makes itself a masked array
+        array = numpy.asanyarray(value)  # keeps the mask of objects that convert to masked arrays
         refuse_masks(name, array)
         array = numpy.asarray(array)
     except (ValueError, TypeError, RecursionError) as error:

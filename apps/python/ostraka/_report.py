@@ -147,7 +147,7 @@ class Report:
         return restored_report, (texts, layout, holds, _digest(texts, layout, holds))
 
     def __copy__(self) -> Report:
-        return Report(self._native)  # which nobody can change
+        return Report(self._native)  # immutable
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Report:
         return Report(self._native)

@@ -1,4 +1,4 @@
-// The conformance kit: golden cases of every operation, and what another program makes of them.
+// The conformance kit: golden cases of every operation, and the evaluation of other programs on them.
 #pragma once
 
 #include "ostraka/operation/operation.h"
@@ -10,25 +10,25 @@
 
 namespace ostraka {
 
-/// How one output, or the report, is compared with the expected one.
+/// How one output, or the report, is compared with the expected result.
 struct Comparison {
-    std::string what;  ///< "report", an output, or OUTPUT/FILE of a folder
+    std::string what;  ///< "report", an output, or OUTPUT/FILE for a folder
     std::string as;    ///< "mesh", "annotations", "array", "values", "bytes", "exists"
     double within = 0;
-    std::string of = "absolute";         ///< what `within` is a share of: "diagonal", "largest", "value"
-    std::vector<std::string> freedoms;   ///< of a mesh: "vertex order", "triangulation"
-    std::string mesh;                    ///< of annotations: an input's file, or an output
-    std::vector<std::string> only, but;  ///< of values: members that count, or that do not
-    std::string reason;                  ///< of the tolerance
+    std::string of = "absolute";         ///< scale of the tolerance: "absolute", "diagonal", "largest" or "value"
+    std::vector<std::string> freedoms;   ///< ignored properties of a mesh: "vertex order", "triangulation"
+    std::string mesh;                    ///< for annotations: their mesh, an input's file or an output
+    std::vector<std::string> only, but;  ///< for values: members to compare, or to ignore
+    std::string reason;                  ///< reason for the tolerance
 };
 
 struct ConformanceCase {
     std::string id, operation, about;
     bool degenerate = false;
     const JsonValue* with = nullptr;             ///< settings; files relative to the kit
-    std::map<std::string, std::string> outputs;  ///< and the names of their files
-    int code = 0;                                ///< exit code: 0, 1 (failed), 2 (wrong usage), 3 (the answer is no)
-    std::vector<std::string> names;              ///< words that the message of a refusal must contain
+    std::map<std::string, std::string> outputs;  ///< outputs -> file names
+    int code = 0;                                ///< expected exit code: 0, 1 (failed), 2 (wrong usage), 3 (the answer is no)
+    std::vector<std::string> names;              ///< words that the error message must contain
     std::vector<Comparison> comparisons;
 };
 
@@ -39,55 +39,56 @@ struct ConformanceKit {
     std::vector<ConformanceCase> cases;
 };
 
-/// FOLDER/conformance.json. Throws Error (input) with the case that is wrong: operations, settings and outputs are checked
-/// against the table.
+/// Reads FOLDER/conformance.json. Throws Error (input) that names the invalid case: operations, settings and outputs are
+/// checked against the table.
 ConformanceKit read_kit(const Path& folder, const FindOperation& find);
 
-/// What a backend answered.
+/// The answer of a backend.
 struct Answer {
-    int code = -1;                       ///< as an exit code; 4: it does not have the operation; -1: it crashed
-    std::shared_ptr<const Json> result;  ///< of the report; null where there is none
-    std::string message;                 ///< what it said of an error
+    int code = -1;                       ///< exit code; 4: the operation is not supported; -1: crashed
+    std::shared_ptr<const Json> result;  ///< result of the report; null if there is none
+    std::string message;                 ///< error message
     double seconds = 0;
 };
 
-/// A backend: given a case with absolute names of input and output files.
+/// A backend; receives a case with absolute names of input and output files.
 class Backend {
 public:
     virtual ~Backend();
     virtual Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& folder) = 0;
 };
 
-/// A program that follows the command line: WORDS... mesh info FILE --json. `arguments` makes the words of a call.
+/// A program with the command-line interface WORDS... mesh info FILE --json. `arguments` produces the words of a call.
 using ArgumentsOf = std::function<std::vector<std::string>(const std::string& operation, const JsonValue& settings)>;
 std::unique_ptr<Backend> command_backend(std::vector<std::string> words, ArgumentsOf arguments, double time_limit);
-/// A program that is started once and answers a line of JSON with a line of JSON (doc/conformance.md).
+/// A program that is started once and answers each line of JSON with a line of JSON (doc/conformance.md).
 std::unique_ptr<Backend> lines_backend(std::vector<std::string> words, double time_limit);
 
 enum class Outcome { agrees, differs, unsupported };
 struct CaseResult {
     Outcome outcome = Outcome::differs;
-    std::vector<std::string> differences;  ///< in words; empty where it agrees
+    std::vector<std::string> differences;  ///< descriptions; empty if it agrees
     double seconds = 0;
 };
 std::string to_string(Outcome outcome);
 
-/// Runs cases with the backend and compares what it makes with what is expected. Each case has a folder of its own in `scratch`.
+/// Runs a case with the backend and compares its outputs with the expected ones. Each case has its own folder in `scratch`.
 CaseResult run_case(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& scratch,
                     const FindOperation& find);
-/// Runs it and keeps what it makes as what is expected. Throws Error (failure) where the exit code is another one.
+/// Runs a case and stores its outputs as the expected ones. Throws Error (failure) if the exit code differs from the expected
+/// one.
 void record_case(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& scratch,
                  const FindOperation& find);
 
-/// Settings of a case with absolute names: inputs from the kit, outputs into `folder`.
+/// Settings of a case with absolute names: inputs from the kit, outputs in `folder`.
 Json settings_of(const ConformanceKit& kit, const ConformanceCase& one, const Path& folder, const FindOperation& find);
 
-/// Empty where the two agree; else how they differ, with numbers. `expected`, `got`: files; for "report" JSON documents.
+/// Describes how the two differ, with numbers; empty if they agree. `expected`, `got`: files; for "report" JSON documents.
 std::string difference(const Comparison& comparison, const Path& expected, const Path& got, const Path& expected_mesh,
                        const Path& got_mesh);
 std::string difference_of_values(const Comparison& comparison, const JsonValue& expected, const JsonValue& got);
 
-/// JUnit XML of the results, a test case each.
+/// JUnit XML of the results, one test case each.
 std::string junit_of(const ConformanceKit& kit, const std::vector<CaseResult>& results, const std::string& backend);
 
 }  // namespace ostraka

@@ -1,12 +1,12 @@
-// Objects in memory as files.
+// Writing objects in memory to files.
 #pragma once
 
 #include "ostraka/operation/objects.h"
 
 namespace ostraka {
 
-/// Writes what the object would be as a file; a folder in memory with all its files. Throws Error (usage), naming `slot`, for an
-/// object that is no file.
+/// Writes `object` to `file` in the format of its kind; an in-memory folder is written with all its files. Throws Error (usage)
+/// that names `slot` if the object has no file form.
 void write_object(const Object& object, const Path& file, const std::string& slot);
 
 }  // namespace ostraka

@@ -1,4 +1,5 @@
-// Operations: what the toolkit can do, each declared once and run from a command line, a run file, another language or a program.
+// Operations: the functions of the toolkit, each declared once and run from the command line, a run file, another language or
+// C++.
 //
 //     Context context;
 //     Call call(find_operation("annotation transfer"));             // operations/table.h
@@ -6,7 +7,7 @@
 //     call.set_file("annotations", "pot.ant.json");
 //     call.set_file("target", "pot-1000k.ply");
 //     call.set("spikes", "avoid");
-//     const Report report = call.run(context);                     // "output" was given no file: it stays in memory
+// "output" has no file: it stays in memory
 //     const auto set = call.object("output").as<AnnotationSet>();
 #pragma once
 
@@ -23,13 +24,13 @@
 
 namespace ostraka {
 
-/// What an operation is declared with. An operation's members are declared by reference: options keep their values, slots their
-/// objects.
+/// The declaration of an operation: its slots, options and report. Slots and options refer to members of the operation, which
+/// hold the values.
 class Parameters {
 public:
     Slot& input(std::string name, Kind kind, Slot& slot, std::string help);
     Slot& output(std::string name, Kind kind, Slot& slot, std::string help);
-    /// The same for what may be left out, and is given by its name: --name FILE.
+    /// The same for an optional slot that is given by its name: --name FILE.
     Slot& input_option(std::string name, Kind kind, Slot& slot, std::string help) {
         return input(std::move(name), kind, slot, std::move(help)).optional().flag();
     }
@@ -38,53 +39,54 @@ public:
     }
     OptionList options;
     ReportLayout report;
-    std::vector<std::function<void()>> checks;  ///< of single options; run before Operation::check, and throw as it does
+    std::vector<std::function<void()>> checks;  ///< checks of single options; run before Operation::check, and throw like it
 
-    /// Names, in the order in which the command line gives them, where that is not the order of the declarations; several where
-    /// there are several ways, distinguished by how many there are. A name that may repeat takes what is left.
+    /// Orders of the positional arguments on the command line, if different from the order of the declarations. With several
+    /// orders, the number of arguments selects one. A repeatable name takes the remaining arguments.
     std::vector<std::vector<std::string>> orders;
     void order(std::vector<std::string> names) { orders.push_back(std::move(names)); }
 
-    /// It is given by its place, in one of the orders at least.
+    /// Whether the name is positional in at least one of the orders.
     [[nodiscard]] bool in_some_order(const std::string& name) const;
 
     [[nodiscard]] std::vector<Slot*> slots() const { return slots_; }
     [[nodiscard]] Slot* slot(const std::string& name) const;
-    /// Whether the file of this input is written in its place.
+    /// Whether an output is written in place of this input's file.
     [[nodiscard]] bool updated_in_place(const Slot& input) const;
 
 private:
     std::vector<Slot*> slots_;
 };
 
-/// One piece of work. Made anew for each call.
+/// Base class of all operations. A new instance is created for each call.
 class Operation {
 public:
     virtual ~Operation();
     virtual void describe(Parameters& parameters) = 0;
-    /// Options that contradict each other: throws Error (usage) before anything is read. Ranges and file names are checked
+    /// Throws Error (usage) if options contradict each other, before anything is read. Ranges and file names have been checked
     /// already.
     virtual void check() const {}
-    /// Bytes that the work will take, where its input files have so many: a guess to refuse what cannot end well. A mesh in
-    /// memory with its trees comes to about a dozen times its file.
+    /// Estimated memory in bytes, given the total size of the input files; used to refuse work that would exceed the memory
+    /// limit. A mesh with its search trees takes about a dozen times the size of its file.
     [[nodiscard]] virtual double memory_needed(double input_bytes) const { return 12 * input_bytes; }
     virtual void run(Context& context, Report& report) = 0;
 };
 
-/// A line of the table of operations.
+/// A row of the table of operations.
 struct OperationEntry {
     const char* name;  ///< e.g. "annotation transfer"
     const char* help;
     std::unique_ptr<Operation> (*make)();
-    int version = 1;  ///< raised when the same inputs give other results: what was done before is done again
-    /// It runs other operations or programs that files name: refused as a step of a study and of a session.
+    int version = 1;  ///< raised when the same inputs give different results, so that earlier results are computed again
+    /// Whether it runs other operations or programs named in files; such operations are refused as steps of studies and
+    /// sessions.
     bool runs_others = false;
 };
 
-/// The line of that name; throws Error (usage) with the nearest name where there is none.
+/// Returns the entry with this name; throws Error (usage) with the nearest name if there is none.
 using FindOperation = std::function<const OperationEntry&(const std::string&)>;
 
-/// What operations share within one process: objects that were read, files that are held in memory.
+/// State that operations of one process share: objects already read, and in-memory files.
 class Context {
 public:
     Context();
@@ -92,45 +94,47 @@ public:
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    /// Told of progress; cancels.
+    /// Receives progress and requests cancellation.
     Watch watch;
     /// Called with each note of a report as it is made.
     std::function<void(const std::string&)> on_note;
-    /// Whether objects read from files are kept for later operations. Files that have changed since (other bytes) are read again.
+    /// Whether objects read from files are cached for later operations. Files that have changed since are read again.
     bool keep_objects = false;
-    /// From here on both keep objects, and share them: a file is read once, whichever of them needs it. Each is used by a thread
-    /// of its own.
+    /// Enables caching in both contexts and shares the cache: a file is read once for both. Each context must be used by one
+    /// thread only.
     void share_objects(Context& other);
-    /// What was made of this file is no longer kept.
+    /// Removes all objects read from this file from the cache.
     void forget(const Path& file);
-    /// Files that the last call read, with their checksums.
+    /// Files read by the last call, with their checksums.
     [[nodiscard]] const std::vector<ReadRecord::Entry>& files_read() const { return read_; }
 
     // ---- for operations ----
 
-    /// Of the call under way: command, options, and SHA-256 of every file and object given, and of what they name.
+    /// Provenance of the current call: command, options, and the SHA-256 of every file and object given and of the files they
+    /// refer to.
     [[nodiscard]] Provenance provenance() const;
-    /// What `read` makes of the i-th file of a slot: read once a call, with what it reads recorded as input, and kept for later
-    /// calls if `keep_objects` is set. `key`: what else it depends on.
+    /// Returns the result of `read` for the i-th source of a slot. It is read once per call, the files it reads are recorded as
+    /// inputs, and it is cached for later calls if `keep_objects` is set. `key`: whatever else the result depends on.
     using Read = std::function<std::shared_ptr<const void>(const Path&)>;
     std::shared_ptr<const void> load(const Slot& slot, std::size_t i, std::type_index type, const std::string& key,
                                      const Read& read);
-    /// Runs `read` and records the files that it reads as inputs.
+    /// Runs `read` and records the files it reads as inputs.
     void record(const std::function<void()>& read);
-    /// Records what is read elsewhere, such as the objects of a collection by several threads: a name and its checksum.
+    /// Records the name and checksum of an input that is read elsewhere, such as the objects of a collection read by several
+    /// threads.
     void record_input(const std::string& name, const std::string& sha256);
-    /// The object in memory has this checksum, if it says none itself.
+    /// Sets the checksum of an object in memory that has none of its own.
     void record_object(const Slot& slot, std::size_t i, const std::string& sha256);
-    /// That of an object in memory; empty where nothing says it.
+    /// Checksum of an object in memory; empty if unknown.
     std::string checksum_of_object(const Slot& slot, std::size_t i);
-    /// Notes for the report of the call under way.
+    /// Adds notes to the report of the current call.
     void note(const std::string& text);
     void notes(const std::string& file, const std::vector<std::string>& texts);
-    /// A fresh name for a file or folder in memory.
+    /// A new name for a file or folder in memory.
     Path memory(const std::string& name);
-    /// Throws Error (usage) where a file was read as an input.
+    /// Throws Error (usage) if the file was read as an input.
     void check_output(const Path& file) const;
-    /// Outputs beside those of the slots: throws Error (usage) where one is an input or one of those.
+    /// Checks outputs other than those of the slots: throws Error (usage) if one is an input or an output of a slot.
     void check_outputs(const std::vector<Path>& further) const;
 
 private:
@@ -143,7 +147,7 @@ private:
     std::vector<ReadRecord::Entry> read_;
 };
 
-/// An operation with what it is to be run on.
+/// An operation together with its inputs, outputs and options.
 class Call {
 public:
     explicit Call(const OperationEntry& entry);
@@ -153,41 +157,41 @@ public:
     [[nodiscard]] const OperationEntry& entry() const { return *entry_; }
     Parameters& parameters() { return parameters_; }
     [[nodiscard]] const Parameters& parameters() const { return parameters_; }
-    /// Throws Error (usage), with the nearest name, if there is none.
+    /// Both throw Error (usage), with the nearest name, if the name does not exist.
     Option& option(const std::string& name);
     Slot& slot(const std::string& name);
 
-    /// Each throws Error (usage), with the nearest name, if there is no such option or object, and if the value is of another
-    /// type or not allowed. A slot that is set again takes one more file or object if it may be repeated.
+    /// Each throws Error (usage), with the nearest name, if the option or slot does not exist, or if the value has the wrong
+    /// type or is not allowed. Setting a repeatable slot again adds a file or object.
     void set(const std::string& option, const std::string& value);
     void set(const std::string& option, const char* value) { set(option, std::string(value)); }
     void set(const std::string& option, bool value);
     void set(const std::string& option, double value);
     void set_file(const std::string& slot, const Path& file);
     void set_object(const std::string& slot, Object object);
-    /// Options and files by name; an output is asked for with true where it is to stay in memory.
+    /// Sets options and files by name; the value true requests an output in memory.
     void set(const JsonValue& values, const std::string& where = {});
-    /// The output is made, and stays in memory; `called`: what others call it that name it, as a file's name.
+    /// Requests an output in memory; `called`: the file name by which other outputs refer to it.
     void want(const std::string& output, const std::string& called = {});
 
-    /// Checks all that `run` checks before it reads. `comes`: says of a file that is not there whether it will be.
+    /// Performs all checks that `run` does before it reads. `comes`: whether a missing file will exist when the operation runs.
     void check(const std::function<bool(const Path&)>& comes = {});
-    /// Checks all that was given, reads, works, and writes the files all together or not at all. May be called once. Outputs that
-    /// are needed and have no file stay in memory. `before_commit` sees the report before files take their names: what it throws
-    /// leaves nothing behind.
+    /// Checks the arguments, runs the operation, and writes all files or none. May be called once. Required outputs without a
+    /// file stay in memory. `before_commit` receives the report before the files get their final names; if it throws, no file
+    /// is left behind.
     Report run(Context& context, const std::function<void(const Report&)>& before_commit = {});
-    /// What an output holds that stayed in memory; the i-th of several.
+    /// The i-th object of an output that stayed in memory.
     [[nodiscard]] const Object& object(const std::string& output, std::size_t i = 0) const;
 
-    /// How the name of an output's file ends, where nobody says otherwise: ".ply"; empty: a folder.
+    /// Default file extension of an output, such as ".ply"; empty for a folder.
     [[nodiscard]] std::string usual_ending(const std::string& output) const;
 
-    /// The JSON schema (draft 4) of what `set` takes, with a description of each; and that of the report's result.
+    /// JSON schema (draft 4) of the values that `set` accepts, with descriptions.
     [[nodiscard]] JsonValue schema(JsonAllocator& allocator) const;
     /// Name, help, inputs, outputs and options, with types, ranges, defaults and units.
     [[nodiscard]] JsonValue declaration(JsonAllocator& allocator) const;
 
-    /// Throws Error (usage) with the nearest name of an option or object, or of these flags beside them.
+    /// Throws Error (usage) with the nearest name among the options, the slots and `flags`.
     [[noreturn]] void no_such_name(const std::string& name, const std::vector<std::string>& flags = {}) const;
 
 private:
@@ -200,7 +204,7 @@ private:
     Parameters parameters_;
 };
 
-/// Calls `work`; what it finds wrong with an input is said with the name of the file it came from.
+/// Calls `work`; an input error that it throws is rethrown with the file name in front of its place.
 template <class Work>
 auto in_file(const std::string& file, Work&& work) {
     try {

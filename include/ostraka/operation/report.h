@@ -1,4 +1,4 @@
-// What an operation has to say: filled once, shown as a table, JSON, CSV or Markdown.
+// The report of an operation: filled once, shown as a table, JSON, CSV or Markdown.
 #pragma once
 
 #include "ostraka/core/finding.h"
@@ -21,18 +21,18 @@ namespace ostraka {
 
 class TextTable;
 
-/// What a field of a report holds. `any` is a structure that only programs read.
+/// Type of a report field. `any` is a JSON structure, shown to programs only.
 enum class FieldType { boolean, integer, number, text, numbers, texts, any };
 
-/// A value of a report, or a column of one of its tables.
+/// Declares a value of a report, or a column of one of its tables.
 struct Field {
-    std::string key;  ///< in JSON, '.' for a member of a member; empty: for people only
+    std::string key;  ///< JSON key, '.' separates nested members; empty: shown to people only
     FieldType type = FieldType::text;
-    std::string title = {};  ///< for people; empty: for programs only
-    std::string unit = {};   ///< "length", "length^2", ... stand for the unit of the report (Report::set_unit)
+    std::string title = {};  ///< title for people; empty: for programs only
+    std::string unit = {};   ///< unit; "length", "length^2", ... are replaced by the report's unit (Report::set_unit)
 };
 
-/// How operations declare fields: `report.table("parts", integer("id", "id"), number("area", "area", "length^2"))`.
+/// Helpers to declare fields: `report.table("parts", integer("id", "id"), number("area", "area", "length^2"))`.
 namespace fields {
 inline Field boolean(std::string key, std::string title = {}) { return {std::move(key), FieldType::boolean, std::move(title)}; }
 inline Field integer(std::string key, std::string title = {}, std::string unit = {}) {
@@ -49,23 +49,23 @@ inline Field texts(std::string key, std::string title = {}) { return {std::move(
 inline Field any(std::string key, std::string title = {}, std::string unit = {}) {
     return {std::move(key), FieldType::any, std::move(title), std::move(unit)};
 }
-/// A column for people only; one of numbers shows "-" where there is none.
+/// A column for people only; an empty cell of a number column is shown as "-".
 inline Field people(std::string title, FieldType type = FieldType::text, std::string unit = {}) {
     return {{}, type, std::move(title), std::move(unit)};
 }
 }  // namespace fields
 
-/// The layout of a report, declared with the operation: its values, and tables of rows.
+/// The layout of a report, declared with the operation: its values and its tables.
 struct ReportLayout {
     std::vector<Field> of_values;
     struct Table {
-        std::string key;  ///< an array of objects in JSON; empty: for people only
+        std::string key;  ///< key of an array of objects in JSON; empty: for people only
         std::vector<Field> columns;
-        std::string title = {};  ///< a line above it, for people
+        std::string title = {};  ///< heading line, for people
     };
     std::deque<Table> tables;
-    std::string schema;   ///< name of a schema (doc/schema) that the whole result keeps; empty: only what is declared
-    bool checks = false;  ///< Report::findings is called
+    std::string schema;   ///< name of the schema (doc/schema) of the whole result; empty: only declared fields are allowed
+    bool checks = false;  ///< whether Report::findings is called
 
     template <std::same_as<Field>... Columns>
     void values(Columns... columns) {
@@ -76,7 +76,7 @@ struct ReportLayout {
         table(std::move(key), std::vector<Field>{std::move(columns)...});
     }
     void table(std::string key, std::vector<Field> columns) { tables.push_back({std::move(key), std::move(columns)}); }
-    /// For people only; rows are filled under its title.
+    /// Declares a table for people only; its rows are filled under its title.
     void people_table(std::string title, std::initializer_list<const char*> columns) {
         tables.push_back({{}, {}, std::move(title)});
         for (const char* column : columns) tables.back().columns.push_back(fields::people(column));
@@ -86,7 +86,7 @@ struct ReportLayout {
     [[nodiscard]] JsonValue to_schema(JsonAllocator& allocator) const;
 };
 
-/// What people read: text, or a number as numbers usually are (five significant digits).
+/// Text for people; numbers are shown with five significant digits.
 struct ReportText {
     // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
     ReportText(std::string value) : text(std::move(value)) {}
@@ -98,7 +98,7 @@ struct ReportText {
     std::string text;
 };
 
-/// A value of a report. Numbers that are not finite, and what is optional and not there, are absent.
+/// A value of a report. It is absent for numbers that are not finite and for empty optionals.
 class ReportValue {
 public:
     // NOLINTBEGIN(google-explicit-constructor): any of these is meant to be handed over as it is
@@ -120,9 +120,9 @@ public:
     // NOLINTEND(google-explicit-constructor)
 
     [[nodiscard]] bool absent() const { return std::holds_alternative<std::monostate>(value_); }
-    /// As people read it; empty for structures.
+    /// The value as text for people; empty for structures.
     [[nodiscard]] std::string text() const;
-    /// As programs read it; may be called once.
+    /// The value as JSON for programs; may be called once.
     JsonValue json(JsonAllocator& allocator);
 
 private:
@@ -131,28 +131,28 @@ private:
         value_;
 };
 
-/// How a report is shown.
+/// Output format of a report.
 enum class ReportFormat { table, json, csv, markdown };
 
 class Report {
 public:
     Report(Provenance provenance, ReportLayout layout);
 
-    // ---- what an operation fills in; keys that were not declared throw std::logic_error ----
+    // ---- filled in by operations; undeclared keys throw std::logic_error ----
 
-    /// Unit of length of the objects at hand, which the titles of columns show.
+    /// Sets the unit of length shown in column titles.
     void set_unit(const std::string& unit) { unit_ = unit; }
 
-    /// A value; `shown`: how people read it, where not as usual.
+    /// Sets a value; `shown`: text for people if it differs from the default.
     Report& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
-    /// All members of an object that keeps the schema of the report.
+    /// Sets all members of an object that follows the schema of the report.
     void values(const JsonValue& object);
 
-    /// A row of a table, filled cell by cell. Cells that are absent or not filled are left out.
+    /// A row of a table, filled cell by cell. Absent and unfilled cells are omitted from the JSON.
     class Row {
     public:
         Row& operator()(std::string_view key, ReportValue value, std::optional<std::string> shown = {});
-        /// The cell of a column for people only, named by its title; or what people read of a cell that is absent.
+        /// Sets the text of a cell: of a column for people only (by its title), or of an absent cell (by its key).
         Row& shown(std::string_view title_or_key, ReportText text);
 
     private:
@@ -162,32 +162,32 @@ public:
         std::size_t table_, row_;
     };
     Row row(const std::string& table);
-    /// A row of a table for people only: a cell a column.
+    /// Adds a complete row to a table for people only, one cell per column.
     void row(const std::string& table, std::initializer_list<ReportText> cells);
-    /// A table that is there although it has no rows; `shown`: people see its header.
+    /// Adds a table without rows; `shown`: whether people see its header.
     void empty_table(const std::string& table, bool shown = true);
 
-    /// A value for people only, below those before it.
+    /// Adds a value for people only, below the previous values.
     void people(const std::string& title, const std::string& text);
-    /// A table for people that is written to files as well, as it stands there.
+    /// Adds a table for people that is also written to files unchanged.
     void table(const TextTable& table);
-    /// A line for people among the values and tables, in the order of the calls.
+    /// Adds a line for people; values, tables and lines are shown in the order of the calls.
     void line(std::string text);
-    /// What a user should know beside the result: on standard error, and in JSON as result.notes.
+    /// Adds a remark to the result: printed on standard error, and in JSON as result.notes.
     void note(std::string text);
     void notes(const std::vector<std::string>& texts);
-    /// Results of a check: result.sound, defects and findings. A defect means that the answer is no. `place`: what the places of
-    /// the findings are called.
+    /// Sets the result of a check: result.sound, defects and findings. With a defect, the answer is "no". `place`: key and
+    /// heading for the places of the findings.
     void findings(const std::vector<Finding>& findings, const std::string& place = "where");
-    /// What may differ between two runs of the same work, such as seconds; '.' in the key as in fields.
+    /// Sets a value that may differ between identical runs, such as seconds; '.' in the key separates nested members.
     void run(const std::string& key, double value);
-    /// The answer is "no": a check that found defects, a fragment that is refused.
+    /// Sets the answer to "no": a check found defects, a fragment was rejected, ...
     void answer_no() { holds_ = false; }
 
-    /// For structures.
+    /// Allocator for JSON structures.
     JsonAllocator& allocator() { return result_.GetAllocator(); }
 
-    // ---- what others do with it ----
+    // ---- used by callers of operations ----
 
     [[nodiscard]] bool holds() const { return holds_; }
     [[nodiscard]] const JsonValue& result() const { return result_; }
@@ -195,24 +195,24 @@ public:
     [[nodiscard]] const ReportLayout& layout() const { return layout_; }
     [[nodiscard]] const Provenance& provenance() const { return provenance_; }
     void set_provenance(Provenance provenance) { provenance_ = std::move(provenance); }
-    /// Called with each note as it is made.
+    /// Called with each note when it is added.
     std::function<void(const std::string&)> on_note;
 
     /// {"format": "ostraka-report", "command", "result", "provenance", "run"}.
     [[nodiscard]] Json to_json() const;
     [[nodiscard]] std::string to_text(ReportFormat format) const;
-    /// The seconds of the run, for people: "read 0.1 s, triangulate 0.05 s"; empty where there are none.
+    /// Durations of the run, for people: "read 0.1 s, triangulate 0.05 s"; empty if there are none.
     [[nodiscard]] std::string times() const;
 
 private:
     struct ShownTable {
         std::size_t layout = 0;
-        std::map<std::string, int, std::less<>> places;  ///< of keys in the rows, -1 of what only programs read
-        std::map<std::string, int, std::less<>> shown;   ///< of keys, or titles for people only
-        std::vector<std::string> empty;                  ///< a row without values
+        std::map<std::string, int, std::less<>> places;  ///< key -> column, -1 for columns that only programs see
+        std::map<std::string, int, std::less<>> shown;   ///< key, or title for people only -> column
+        std::vector<std::string> empty;                  ///< cells of an unfilled row
         std::vector<std::vector<std::string>> rows;
     };
-    /// What people see, in order: a line, a value (title and text), or a table.
+    /// A block of text for people: a line, a value (title and text), or a table.
     struct Block {
         enum class Kind { line, value, table, text_table } kind = Kind::line;
         std::string title, text;
@@ -235,7 +235,7 @@ private:
     bool holds_ = true;
 };
 
-/// A number for people: so many significant digits.
+/// A number for people with `digits` significant digits.
 std::string number(double value, int digits = 5);
 
 }  // namespace ostraka

@@ -1,13 +1,13 @@
-// Calls as words of a command line.
+// Calls as command-line words.
 #pragma once
 
 #include "ostraka/operations/table.h"
 
 namespace ostraka {
 
-/// The words behind "ostraka" that call an operation with these settings (names of inputs, outputs and options, as Call::set
-/// takes them), right or wrong: what is missing is left out, what is unknown becomes a flag. Throws Error (usage) for an unknown
-/// operation.
+/// The words after "ostraka" that call `operation` with these settings (names of inputs, outputs and options, as for
+/// Call::set). Settings are not checked: missing arguments are omitted, unknown names become flags. Throws Error (usage) for an
+/// unknown operation.
 std::vector<std::string> command_words(const std::string& operation, const JsonValue& settings);
 
 }  // namespace ostraka

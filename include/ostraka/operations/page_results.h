@@ -1,4 +1,4 @@
-// What results of other operations give a page: slices, constraints, tables of reports, maps of PLY files.
+// Converts results of other operations for a page: slices, constraints, tables of reports, maps of PLY files.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -13,30 +13,31 @@
 
 namespace ostraka {
 
-/// Of a slices file (slices.schema.json). Throws Error (input).
+/// Reads the document of a slices file (slices.schema.json). Throws Error (input).
 PageSlices page_slices(const JsonValue& document, const std::string& where);
 
-/// What 'relation check' says of an object, from its report: broken rules first, then relationships in the order of the graph.
+/// Verdicts on an object from the report of 'relation check': violated rules first, then relationships in the order of the
+/// graph.
 std::vector<PageVerdict> page_conformance(const JsonValue& result, const AnnotationSet& set);
 
-/// The constraints and conflicts in the report of a deformation, by the tags of their parts in the object's annotations.
+/// Constraints and conflicts from the report of a deformation; their parts are named by the tags in the object's annotations.
 std::vector<PageConstraint> page_constraints(const JsonValue& result, const AnnotationSet& set);
 std::vector<std::string> page_conflicts(const JsonValue& result);
 
-/// Lists of records become tables, single values one more: of a report's result, or of a file that has its form. Lists of
-/// numbers and what is nested deeper are left out. `title`: before the names of the lists; `but`: members that are left out.
+/// Tables from a report's result, or from a file of the same form: one per list of records, and one for the single values.
+/// Lists of numbers and deeper structures are omitted. `title`: prefix of the titles; `but`: members to omit.
 std::vector<PageTable> record_tables(const JsonValue& result, const std::string& title, const std::set<std::string>& but = {});
 
 /// Whether the name is that of a mesh file.
 bool is_mesh_name(const std::string& name);
 
-/// Where rows of tables find what they are of.
+/// Links rows of tables to objects and annotations of the page.
 class PageNames {
 public:
-    /// The next object of the page, and its annotations, if rows may name them.
+    /// Adds the next object of the page, with its annotations if rows may refer to them.
     void add(const std::string& object, const AnnotationSet* set);
-    /// Rows show the object that the first of their texts to name one names, by its name or that of its file; else the annotation
-    /// that only one object has.
+    /// Links each row to the object whose name or file name is the first found among the row's texts; if there is none, to the
+    /// object whose annotation a text names, provided that its tag is unique.
     void link(PageTable& table) const;
 
 private:
@@ -54,21 +55,21 @@ Json cell_of(const auto& value) {
     return cell;
 }
 
-/// The rows under its first row. Throws Error (input).
+/// Reads a CSV file whose first row holds the column titles. Throws Error (input).
 PageTable csv_table(const Path& file, const std::string& name);
 
-/// The real properties that a PLY file has beside a mesh, as maps of its vertices, and of a completed object what is observed,
-/// interpolated and hypothesis.
+/// Maps of the vertices from the additional numeric properties of a PLY file; for a completed object also the map of observed,
+/// interpolated and hypothetical surface.
 std::vector<PageMap> ply_maps(const Path& file, const MeshFile& mesh);
-/// The map on a simplified mesh; `to`: what became of each vertex, `no_index` where nothing.
+/// The map on a simplified mesh; `to`: the new index of each vertex, `no_index` if removed.
 PageMap simplified_map(const PageMap& map, const std::vector<Index>& to, std::size_t vertices);
-/// Whether the labels of its faces say that, and are no parts.
+/// Whether the face labels state the origin of the surface of a completed object, instead of parts.
 bool is_completed(const std::vector<PageMap>& maps);
 
-/// A number for each vertex from one for each face: the mean of its faces' finite ones, NaN without any.
+/// One number per vertex from one per face: the mean of the finite values of its faces, NaN if there are none.
 std::vector<double> vertex_means(const Mesh& mesh, const std::vector<double>& of_faces);
 
-/// Whether no vertex has faces of two of these regions, so that they can be moved apart.
+/// Whether no vertex belongs to faces of two of these regions, so that the regions can be moved apart.
 bool are_apart(const Mesh& mesh, const AnnotationSet& regions);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The template of a class of objects as files: a mesh, what is said of it, and what deforms it, named by one file that is
+// The template of an object class as files: a mesh with annotations, relations and deformation data, listed in one file and
 // checked as a whole (thesis, section 1.2; doc/templates.md).
 #pragma once
 
@@ -14,15 +14,15 @@ namespace ostraka {
 /// A file of a template.
 struct PackagedFile {
     std::string role;    ///< one of template_roles()
-    std::string name;    ///< as it stands in the template's file: relative to its folder, with '/'
-    Path file;           ///< where it is
-    std::string sha256;  ///< of its bytes as packed; empty if not stated
+    std::string name;    ///< as in the template's file: relative to its folder, with '/'
+    Path file;           ///< path of the file
+    std::string sha256;  ///< checksum when packed; empty if not stated
 };
 
 /// "mesh", "annotations", "graph", "cage", "coordinates", "vocabulary", "rules", "ranges", "landmarks".
 const std::vector<std::string>& template_roles();
 
-/// What *.template.json holds. One part of each role at most, but any number of cages and coordinates; one mesh.
+/// Content of *.template.json: one mesh, any number of cages and coordinates, and at most one part of each other role.
 struct TemplateFile {
     std::string object_class, unit;
     std::optional<std::array<double, 3>> up;
@@ -32,29 +32,28 @@ struct TemplateFile {
 };
 
 struct TemplateOptions {
-    bool allow_outside = false;  ///< parts may stand outside the template's folder
-    bool force_mesh = false;     ///< annotations made for another mesh are taken if their indices and edges fit
+    bool allow_outside = false;  ///< parts may lie outside the template's folder
+    bool force_mesh = false;     ///< accept annotations of another mesh if their indices and edges fit
 
     void describe(OptionList& visit);
 };
 
-/// Reads a template's file; its parts are not opened. Throws Error (input) that names the file, the JSON pointer and the remedy:
-/// a role given twice, a name that is absolute or leads out of the folder (also over links) unless allowed, a checksum of what is
-/// no part.
+/// Reads a template's file without opening its parts. Throws Error (input) with the file, the JSON pointer and the remedy for:
+/// a repeated role, a name that is absolute or leads out of the folder (also through links) unless allowed, a checksum of a
+/// file that is not a part.
 TemplateFile read_template(const Path& file, const TemplateOptions& options = {});
 TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
                                 const TemplateOptions& options = {});
 Json template_to_json(const TemplateFile& file, const Provenance& provenance);
 
-/// One line of what a template holds.
+/// Description of one part of a template.
 struct TemplateEntry {
     std::string role, name;
     std::uint64_t bytes = 0;
     std::string text;  ///< "50000 vertices, 100000 faces" ...
 };
 
-/// A template with everything that could be read. The template's unit, upward direction and class have taken the place of those
-/// of the annotations.
+/// A template with all parts that could be read. Its unit, up direction and class replace those of the annotations.
 struct Template {
     TemplateFile file;
     std::optional<MeshFile> mesh;
@@ -63,28 +62,28 @@ struct Template {
     std::vector<std::optional<Mesh>> cages;
     std::optional<Vocabulary> vocabulary;
     std::optional<ClassRules> rules;
-    std::vector<Finding> findings;  ///< `where` is the name of the file of the template
+    std::vector<Finding> findings;  ///< `where` is the file name of the part
     std::vector<TemplateEntry> entries;
 
     [[nodiscard]] bool sound() const;
 };
 
-/// Reads every part and looks at them together. Defects: a part that is missing or does not parse, a checksum that is not that of
-/// the file, annotations that do not fit the mesh, a graph that names annotations that are not there, tags and attributes that
-/// are not in the vocabulary, rules of the class that are broken, a cage that is not closed, coordinates without a row for each
-/// vertex of the mesh or a column for each vertex (or face) of a cage, a unit that is not that of the annotations. Remarks:
-/// upward directions and classes that contradict each other (the template's counts), a cage that does not enclose the mesh, parts
-/// without a checksum. Throws only where there is no memory.
+/// Reads every part and checks them together. Defects: a part that is missing or cannot be parsed, a wrong checksum,
+/// annotations that do not fit the mesh, a graph with unknown annotations, tags and attributes that are not in the vocabulary,
+/// violated rules of the class, a cage that is not closed, coordinates without a row for each vertex of the mesh or a column
+/// for each vertex (or face) of a cage, a unit that differs from that of the annotations. Remarks: contradicting up directions
+/// and classes (the template's values are used), a cage that does not enclose the mesh, parts without a checksum. Throws only
+/// if memory is exhausted.
 Template load_template(TemplateFile file, const TemplateOptions& options = {});
 
-/// For work that needs a template with nothing wrong in it, and a mesh: throws Error (input) that names the file and the part.
+/// Requires a template without defects, and with a mesh: throws Error (input) that names the file and the part.
 void check_usable(const Template& known, const std::string& file);
 
-/// What a template's file in `folder` calls a part: relative to the folder, with '/'.
+/// Name of a part in a template file in `folder`: relative to the folder, with '/'.
 std::string part_name(const Path& folder, const Path& part);
 
-/// Copies the parts of a template into a folder, flat, and returns the template there, checksums anew; `name` is the file it is
-/// to have. Written atomically. Throws Error (input) where two parts have one name.
+/// Copies the parts of a template into a folder, without subfolders, and returns the template there with new checksums; `name`:
+/// file name of the new template. Written atomically. Throws Error (input) if two parts have the same name.
 TemplateFile copy_template(const TemplateFile& file, const Path& folder, const std::string& name, const Provenance& provenance);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// The workbench's page and its messages over one port of this machine (doc/workbench.md, "Safety").
+// HTTP and WebSocket server for the workbench's page, on one local port (doc/workbench.md, "Safety").
 #pragma once
 
 #include "ostraka/workbench/workbench.h"
@@ -7,49 +7,48 @@
 
 namespace ostraka {
 
-/// What one may ask of the server. Connections that have not said the token are counted apart from pages, so that they cannot
-/// keep a page out.
+/// Limits of the server. Unauthenticated connections are counted separately, so that they cannot lock out a page.
 struct ServerLimits {
-    std::size_t unauthenticated = 128;      ///< connections that have not said the token; beyond, the oldest is dropped
-    std::size_t pages = 32;                 ///< connections that have said it; beyond, further ones are refused
-    std::size_t header = 8192;              ///< bytes
-    std::size_t message = 4'000'000;        ///< bytes of a message from the page
-    std::size_t waiting = 64;               ///< requests of one page that are not answered yet
-    std::size_t waiting_bytes = 8'000'000;  ///< of these requests
-    std::size_t queue_bytes = 64'000'000;   ///< of the requests of all pages, also of those that are gone
-    std::size_t unsent = 4'000'000;         ///< bytes of answers that a page has not read; beyond, none of its requests is begun
-    double seconds = 5;                     ///< for a request's head, and for closing
-    double stalled = 30;                    ///< a page that takes nothing of its answer for so long is dropped
+    std::size_t unauthenticated = 128;      ///< unauthenticated connections; beyond this, the oldest is dropped
+    std::size_t pages = 32;                 ///< authenticated connections; beyond this, new ones are refused
+    std::size_t header = 8192;              ///< max size of a request head in bytes
+    std::size_t message = 4'000'000;        ///< max size of a message from the page in bytes
+    std::size_t waiting = 64;               ///< max number of unanswered requests of one page
+    std::size_t waiting_bytes = 8'000'000;  ///< max total size of these requests in bytes
+    std::size_t queue_bytes = 64'000'000;   ///< max total size of the requests of all pages, including closed ones, in bytes
+    std::size_t unsent = 4'000'000;         ///< bytes of unread answers of a page above which none of its requests is started
+    double seconds = 5;                     ///< time limit for a request head and for closing, in seconds
+    double stalled = 30;                    ///< seconds without progress of an answer after which the page is dropped
 };
 
-/// Listens on the loopback address. Pages are served that say the token; their messages go to the workbench one after the other,
-/// on a thread of its own. What the server keeps for a page is at most `waiting_bytes`, `unsent`, and one answer.
+/// Listens on the loopback address. Serves pages that present the token; their messages are processed by the workbench one at a
+/// time, on a separate thread. Per page the server buffers at most `waiting_bytes`, `unsent`, and one answer.
 class WorkbenchServer {
 public:
-    /// `port` 0: any that is free. Throws Error (failure) where the port cannot be had.
+    /// `port` 0: any free port. Throws Error (failure) if the port is not available.
     WorkbenchServer(Workbench& workbench, std::uint16_t port = 0, const ServerLimits& limits = {});
     ~WorkbenchServer();
 
-    /// "http://127.0.0.1:PORT/?token=TOKEN": it opens the page, and is a secret.
+    /// URL that opens the page, "http://127.0.0.1:PORT/?token=TOKEN"; it contains the secret token.
     [[nodiscard]] std::string address() const;
     [[nodiscard]] std::uint16_t port() const;
     [[nodiscard]] const std::string& token() const;
 
-    /// Called once, when the first page talks, by the thread that runs the server. To be set before `run`.
+    /// Called once, on the server's thread, when the first page connects. Set it before `run`.
     std::function<void()> on_first_page;
 
-    /// Serves until `stop`; a request that is under way then ends first.
+    /// Serves until `stop`; a request in progress is completed first.
     void run();
-    /// From any thread.
+    /// May be called from any thread.
     void stop();
 
-    struct State;  ///< of the server's own file
+    struct State;  ///< defined in server.cpp
 
 private:
     std::shared_ptr<State> state_;
 };
 
-/// The built page (web/README.md) as the command holds it.
+/// The built page (web/README.md), embedded in the command.
 std::string_view workbench_page();
 
 }  // namespace ostraka

@@ -1,5 +1,5 @@
-// What a person did in the workbench, step by step: each step is an operation of the table or a choice, and all of it is kept in
-// a folder, can be undone as far back as it goes, and is a study file that the command repeats (doc/workbench.md).
+// The history of a workbench session. Each step is an operation of the table or a choice. All steps are kept in a folder, can
+// be undone back to the first, and form a study file that the command can repeat (doc/workbench.md).
 #pragma once
 
 #include "ostraka/operations/table.h"
@@ -9,45 +9,45 @@
 
 namespace ostraka {
 
-/// What one sees as one thing: a mesh with what belongs to it. Files are named relative to the session's folder, with '/'.
+/// An object of the session: a mesh with its associated files. File names are relative to the session's folder, with '/'.
 struct SessionObject {
     std::string name;
-    std::map<std::string, std::string> parts;  ///< "mesh", "annotations", "graph", "cage", "coordinates", "recipe",
-                                               ///< and of a deformation "edit", "deformed", "deformed cage" and "... annotations"
+    std::map<std::string, std::string> parts;  ///< "mesh", "annotations", "graph", "cage", "coordinates", "recipe"; during a
+                                               ///< deformation also "edit", "deformed", "deformed cage" and "... annotations"
     [[nodiscard]] std::string part(const std::string& which) const;
 };
 
-/// A file that a step made and that is no part of an object: a table, a drawing, a map.
+/// A file made by a step that is not part of an object: a table, a drawing, a map.
 struct SessionFile {
     std::string name, kind, file;
-    std::string of;  ///< the object that it says something of, by its name; empty: of none
+    std::string of;  ///< name of the object it describes, if any
 };
 
-/// What there is after a step. Files never change: a step makes new ones.
+/// The state after a step. Files are never modified: each step writes new ones.
 struct SessionState {
     std::vector<SessionObject> objects;
-    std::size_t active = 0;  ///< the object that is worked on
+    std::size_t active = 0;  ///< index of the current object
     std::vector<SessionFile> files;
     [[nodiscard]] const SessionObject* object() const { return active < objects.size() ? &objects[active] : nullptr; }
 };
 JsonValue to_json(const SessionState& state, JsonAllocator& allocator);
 
 struct SessionStep {
-    std::string name;       ///< "s012"; its folder in "steps" if it is an operation
-    std::string title;      ///< what was done, for people
-    std::string operation;  ///< of the table; empty: a choice, which makes no file
-    Json with, keep;        ///< as study files say it: inputs and options; outputs with the names of their files
-    std::map<std::string, std::string> sha256;  ///< of the outputs, by their names
+    std::string name;                           ///< "s012"; for an operation also its folder in "steps"
+    std::string title;                          ///< description for people
+    std::string operation;                      ///< name in the table; empty for a choice, which writes no file
+    Json with, keep;                            ///< in the form of study files: inputs and options; outputs with their file names
+    std::map<std::string, std::string> sha256;  ///< checksums of the outputs, by name
     bool holds = true;
-    SessionState state;  ///< after it
+    SessionState state;  ///< state after the step
 };
 
 class Session {
 public:
-    /// Goes on with the session in `folder`, or begins one there. Files are opened from `root` and the folders in it, and saved
-    /// there. A new folder and the session's file are for their owner only. Throws Error (input) for a folder that holds
-    /// something else, a session that is damaged, whose files are gone or that names files or holds links outside of `folder` and
-    /// `root`, and one that another process is at work on.
+    /// Resumes the session in `folder`, or starts a new one. Files are opened from `root` and its subfolders, and saved there.
+    /// A new folder and the session file are accessible to their owner only. Throws Error (input) if the folder holds other
+    /// data; if the session is damaged, lacks files, names files or holds links outside `folder` and `root`; or if another
+    /// process uses it.
     Session(Path folder, Path root);
     ~Session();
     Session(const Session&) = delete;
@@ -55,39 +55,38 @@ public:
 
     [[nodiscard]] const SessionState& state() const;
     [[nodiscard]] const std::vector<SessionStep>& steps() const { return steps_; }
-    /// How many of the steps count: those behind were undone.
+    /// Number of steps in effect; later steps have been undone.
     [[nodiscard]] std::size_t place() const { return place_; }
     [[nodiscard]] const Path& folder() const { return folder_; }
     [[nodiscard]] const Path& root() const { return root_; }
 
-    /// Meshes and templates that can be opened, by their names relative to the root.
+    /// Meshes and templates that can be opened, relative to the root.
     [[nodiscard]] std::vector<std::string> openable() const;
-    /// A mesh with what lies beside it under its name (.ant.json, .graph.json, .cage.ply with .npy), or a template. Throws Error
-    /// (input) for a name that is none of `openable`. `look` may refuse the object, before anything has changed.
+    /// Opens a template, or a mesh with the files of the same name beside it (.ant.json, .graph.json, .cage.ply with .npy).
+    /// Throws Error (input) if `name` is not among `openable`. `look` may reject the object before the session changes.
     void open(const std::string& name, const std::function<void(const SessionObject&)>& look = {});
 
-    /// {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as": "deformed"}: runs an operation. A value of an
-    /// input is {"part": PART, "object": INDEX} (INDEX: else the active one), {"file": FILE of the state}, {"document": JSON} or
-    /// a list of these. Outputs that the operation needs, and those of "keep", become parts of the object they are of, new
-    /// objects, or files. "as": "deformed": a mesh that is made is the object's under deformation, not a new one. The report is
-    /// handed over. Where it fails nothing has changed.
+    /// Runs an operation: {"operation", "title", "with": {NAME: VALUE}, "keep": [OUTPUT, ...], "as": "deformed"}. An input's
+    /// value is {"part": PART, "object": INDEX} (default: the active object), {"file": FILE of the state}, {"document": JSON}
+    /// or a list of these. Outputs that the operation requires, and those of "keep", become parts of their object, new objects,
+    /// or files. With "as": "deformed" a resulting mesh is the deformed state of the object, not a new object. Returns the
+    /// report. If the operation fails, the session is unchanged.
     Report run(const JsonValue& request, Context& context);
 
-    /// {"do": "activate" or "close", "object": INDEX}; {"do": "accept" or "withdraw"} a deformation.
+    /// {"do": "activate" or "close", "object": INDEX}; {"do": "accept" or "withdraw"} for a deformation.
     void change(const JsonValue& request);
 
-    /// Undoes or repeats steps until so many count. Throws Error (usage) where there are fewer.
+    /// Undoes or redoes until `place` steps are in effect. Throws Error (usage) if there are fewer steps.
     void go_to(std::size_t place);
 
-    /// Copies the active object into the folder NAME of the root, as a template that is checked as a whole. Returns the
-    /// template's file. Throws Error (usage) for a name that is no plain one, (input) where there are no annotations or something
-    /// else is there.
+    /// Copies the active object into the folder NAME of the root, as a template that passes all checks. Returns the template's
+    /// file. Throws Error (usage) for an invalid name, (input) if there are no annotations or the folder holds other data.
     Path save(const std::string& name, Context& context) const;
 
-    /// The file that the state names. Throws Error (usage) where it names none such.
+    /// Path of a file named by the state. Throws Error (usage) if the state does not name it.
     [[nodiscard]] Path path_of(const std::string& file) const;
 
-    /// The steps that count as a study file: 'ostraka run' repeats them. It is written beside the session after each step.
+    /// The steps in effect as a study file for 'ostraka run'. It is written beside the session after each step.
     [[nodiscard]] Json study() const;
 
 private:
@@ -114,7 +113,7 @@ private:
     std::vector<SessionStep> steps_;
     std::size_t place_ = 0, counter_ = 0;
     SessionState begin_;
-    int lock_ = -1;  ///< a descriptor that holds the folder
+    int lock_ = -1;  ///< file descriptor that holds the lock on the folder
 };
 
 }  // namespace ostraka

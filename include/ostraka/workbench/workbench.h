@@ -1,4 +1,4 @@
-// What the workbench's page asks for and is answered, without any network (doc/workbench.md, "Messages").
+// Answers requests of the workbench's page, independently of the network (doc/workbench.md, "Messages").
 #pragma once
 
 #include "ostraka/semantic/live.h"
@@ -11,24 +11,24 @@ namespace ostraka {
 
 class Workbench {
 public:
-    /// As Session. `memory_limit`: bytes that the process may occupy; 0: what the machine has.
+    /// Arguments as for Session. `memory_limit`: max memory of the process in bytes; 0: that of the machine.
     Workbench(Path folder, Path root, double memory_limit = 0);
     ~Workbench();
 
     struct Reply {
         std::string json;      ///< {"id", "ok": true, "result"} or {"id", "ok": false, "error": {"problem", "where", "remedy"}}
-        std::string bytes;     ///< what the JSON's blobs refer to; empty: none
-        bool changed = false;  ///< the session is at another step than before
+        std::string bytes;     ///< binary data to which the JSON's blobs refer; may be empty
+        bool changed = false;  ///< whether the session is at a different step
     };
-    /// Answers {"id": NUMBER, "do": WORD, ...}. Whatever the text holds, it is answered and nothing is thrown.
+    /// Answers {"id": NUMBER, "do": WORD, ...}. Never throws, whatever the text.
     Reply answer(std::string_view request);
 
-    /// Told of progress: a phase and its share. Called by the thread that answers.
+    /// Receives progress: phase and fraction done. Called by the answering thread.
     std::function<void(const std::string& phase, double share)> on_progress;
-    /// The request that is being answered ends with an error as soon as its work can stop. From any thread.
+    /// Cancels the request in progress, which then ends with an error. May be called from any thread.
     void cancel();
 
-    /// Reads the meshes of the session before they are asked for; what cannot be read is told when it is.
+    /// Reads the meshes of the session in advance; read errors are reported only when a mesh is requested.
     void prepare();
 
     [[nodiscard]] const Session& session() const { return session_; }
@@ -64,7 +64,7 @@ private:
     double memory_limit_;
     std::mutex mutex_;  ///< guards context_, which is replaced after a cancelled request
     std::unique_ptr<Context> context_;
-    std::map<std::string, std::shared_ptr<const MeshFile>> meshes_;  ///< by file and what it was when it was read
+    std::map<std::string, std::shared_ptr<const MeshFile>> meshes_;  ///< by file, size and time at reading
     std::unique_ptr<Deformation> deformation_;
 };
 

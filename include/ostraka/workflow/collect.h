@@ -1,4 +1,4 @@
-// What a study shows: tables and plots over the reports of its steps, and one page.
+// Collects results of a study: tables and plots from the reports of its steps, and one page.
 #pragma once
 
 #include "ostraka/report/table.h"
@@ -6,15 +6,15 @@
 
 namespace ostraka {
 
-/// Checks the tables, plots and the page of a study against the reports that its steps declare. Throws Error (input) with the
+/// Checks the tables, plots and the page of a study against the report declarations of its steps. Throws Error (input) with the
 /// place and a remedy.
 void check_collected(const StudyPlan& plan);
 
-/// A table with the values of its cells, for plots.
+/// A table that keeps the values of its cells, for plots.
 struct StudyTable {
     std::string name, title, note;
     std::vector<std::string> columns;
-    std::vector<std::vector<Json>> cells;  ///< null: nothing there
+    std::vector<std::vector<Json>> cells;  ///< null: empty cell
     std::vector<int> digits;
     std::vector<bool> percent;
 
@@ -22,11 +22,11 @@ struct StudyTable {
     [[nodiscard]] std::size_t column(const std::string& title) const;
 };
 
-/// The tables, from the reports in the run folder of what is done or unchanged.
+/// Builds the tables from the reports in the run folder; uses instances that are done or unchanged.
 std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder);
 
-/// Writes NAME.csv, .md and .tex of each table, NAME.svg of each plot that has points, and page.md. `write`: where a file goes.
-/// Returns the names of what was written.
+/// Writes NAME.csv, .md and .tex of each table, NAME.svg of each plot that has points, and page.md. `write`: maps a file name
+/// to the path to write. Returns the names of the files written.
 std::vector<std::string> write_collected(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
                                          const std::function<Path(const std::string&)>& write);
 

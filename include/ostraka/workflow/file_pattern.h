@@ -8,11 +8,11 @@
 
 namespace ostraka {
 
-/// The folder that a pattern without ".." behind a wildcard begins with.
+/// The leading folder of a pattern without wildcards. The pattern must not contain ".." after a wildcard.
 Path before_wildcards(const Path& pattern);
 
-/// The paths, in order, that a pattern with * and ? in its parts names. A folder with several names (links) counts once; those
-/// that `may_enter` refuses do not count.
+/// The sorted paths that match a pattern with * and ? in its parts. A folder reachable under several names (links) is searched
+/// once; folders for which `may_enter` is false are skipped.
 std::vector<Path> matching_files(const Path& pattern, const std::function<bool(const Path&)>& may_enter = {});
 
 }  // namespace ostraka

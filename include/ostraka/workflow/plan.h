@@ -1,4 +1,4 @@
-// What a study comes to: one instance of each step for each value of the parameters that it varies with.
+// Expands a study into instances: each step once per combination of values of the parameters it varies with.
 #pragma once
 
 #include "ostraka/workflow/study_file.h"
@@ -14,23 +14,23 @@ inline constexpr std::size_t no_instance = std::numeric_limits<std::size_t>::max
 struct StudyInput {
     std::string slot;
     std::string label;                   ///< NAME of NAME=FILE
-    Path file;                           ///< empty: an output
-    std::size_t instance = no_instance;  ///< whose output it is
+    Path file;                           ///< empty for an output
+    std::size_t instance = no_instance;  ///< the instance that produces the output
     std::string output;
-    bool on_disk = false;  ///< handed on as its file, since what stands beside it is read too (NAME.ant.json)
+    bool on_disk = false;  ///< passed as a file, because the file beside it is read too (NAME.ant.json)
 };
 
 struct StudyInstance {
     std::size_t step = 0;
-    std::vector<std::size_t> values;  ///< of each parameter the index of its value, `no_instance` where the step does not vary
-    std::string label;                ///< "vertices=5000,seed=1"; empty where the step has one instance
-    Path folder;                      ///< in the run folder: steps/NAME or steps/NAME/LABEL
+    std::vector<std::size_t> values;  ///< value index per parameter; `no_instance` if the step does not vary with it
+    std::string label;                ///< "vertices=5000,seed=1"; empty if the step has one instance
+    Path folder;                      ///< relative to the run folder: steps/NAME or steps/NAME/LABEL
     std::shared_ptr<const Json> options;
     std::vector<StudyInput> inputs;
-    std::map<std::string, std::string> outputs;  ///< those that are wanted, and the names of their files
-    std::set<std::string> kept;                  ///< those of them that are written
-    std::vector<std::string> program;            ///< words; those of inputs and of the folder are filled in when it runs
-    std::vector<std::size_t> needs;              ///< instances
+    std::map<std::string, std::string> outputs;  ///< requested outputs -> file names
+    std::set<std::string> kept;                  ///< outputs that are written to files
+    std::vector<std::string> program;            ///< command words; those of inputs and of the folder are filled in at run time
+    std::vector<std::size_t> needs;              ///< indices of instances it depends on
 
     /// "transfer (vertices=5000)".
     [[nodiscard]] std::string title(const Study& study) const;
@@ -38,26 +38,27 @@ struct StudyInstance {
 
 class StudyPlan {
 public:
-    /// Checks every instance against the declaration of its operation: names, types, ranges, kinds of inputs, files that must be
-    /// there. Throws Error (input) with the file, the place in it and a remedy, before anything runs.
+    /// Checks every instance against the declaration of its operation: names, types, ranges, kinds of inputs, existence of
+    /// files. Throws Error (input) with the file, the place in it and a remedy, before anything runs.
     explicit StudyPlan(Study study);
 
-    /// The call of an instance; `object` gives the object, or the file, that an output of another one is.
+    /// The call of an instance; `fill` supplies the object or file for an output of another instance.
     using Fill = std::function<Source(const StudyInput&)>;
     [[nodiscard]] Call call(const StudyInstance& instance, const Fill& fill) const;
 
-    /// The words of a program: `file` gives the file of an output of another instance; `folder` is the instance's own.
+    /// The words of a program; `file` supplies the file of an output of another instance; `folder` is the instance's own
+    /// folder.
     using FileOf = std::function<Path(const StudyInput&)>;
     [[nodiscard]] std::vector<std::string> words(const StudyInstance& instance, const FileOf& file, const Path& folder) const;
 
-    /// The value of "name.member" in an instance; null where it does not vary with that parameter.
+    /// The value of "name.member" in an instance; null if the instance does not vary with that parameter.
     [[nodiscard]] const JsonValue* value(const StudyInstance& instance, const StudyReference& reference) const;
 
     /// Instances of a step, in the order of their parameters.
     [[nodiscard]] std::vector<std::size_t> instances_of(std::size_t step) const;
 
     Study study;
-    std::vector<StudyInstance> instances;  ///< each behind those that it needs
+    std::vector<StudyInstance> instances;  ///< sorted so that each follows those it needs
 
 private:
     void add_step(std::size_t step);
@@ -75,11 +76,11 @@ private:
     void check(const StudyInstance& instance) const;
     void check_outputs() const;
 
-    std::vector<std::map<std::vector<std::size_t>, std::size_t>> index_;  ///< of each step: values, instance
-    std::size_t inputs_ = 0;                                              ///< of all instances
+    std::vector<std::map<std::vector<std::size_t>, std::size_t>> index_;  ///< per step: values -> instance
+    std::size_t inputs_ = 0;                                              ///< total number of inputs
 };
 
-/// Whether what is of one kind can be given where the other is asked for.
+/// Whether an object of kind `given` is accepted where `asked` is required.
 bool fits(Kind given, Kind asked);
 
 }  // namespace ostraka

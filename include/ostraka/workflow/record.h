@@ -1,4 +1,4 @@
-// What is remembered of an instance of a step that ran: enough to tell whether it has to run again, and why.
+// Records of step instances that ran, from which it is decided whether an instance has to run again, and why.
 #pragma once
 
 #include "ostraka/workflow/plan.h"
@@ -8,47 +8,47 @@
 
 namespace ostraka {
 
-/// What an output was: in the record of an instance, and for those that take it.
+/// Record of an output, for its instance and for the instances that use it.
 struct OutputRecord {
-    std::string file;    ///< its name; in the instance's folder where it is kept
-    std::string sha256;  ///< of the file that it is or would be; of a folder: of its list of names and checksums
+    std::string file;    ///< file name; in the instance's folder if kept
+    std::string sha256;  ///< checksum of the file, written or not; for a folder: of the list of names and checksums
     bool kept = false;
     bool is_folder = false;
 };
 
 struct StudyRecord {
-    /// All that the result depends on: what it is, and its value or checksum.
+    /// Everything the result depends on: a description, and the value or checksum.
     std::vector<std::pair<std::string, std::string>> depends;
-    /// Files that the inputs name in turn: relative to the study file, or, behind "run:", to the run folder.
+    /// Files that the inputs refer to: relative to the study file or, with the prefix "run:", to the run folder.
     std::vector<std::pair<std::string, std::string>> read;
     std::map<std::string, OutputRecord> outputs;
-    bool holds = true;  ///< the answer was not "no"
+    bool holds = true;  ///< false if the answer was "no"
     double seconds = 0;
     std::string began, ended;  ///< UTC, ISO 8601
 };
 
-/// What tells that a file was written to, without reading it.
+/// Properties of a file that reveal writes without reading it.
 struct FileStamp {
-    std::uintmax_t size = 0, number = 0;  ///< bytes; number of the file in its file system
+    std::uintmax_t size = 0, number = 0;  ///< size in bytes; inode number
     std::int64_t seconds = 0, nanoseconds = 0;
     bool operator==(const FileStamp&) const = default;
 };
-/// Nothing where there is no such file.
+/// Empty if the file does not exist.
 std::optional<FileStamp> stamp_of(const Path& file);
 
-/// SHA-256 of files and folders, each computed once. Safe for several threads.
+/// SHA-256 of files and folders, each computed once. Thread-safe.
 class FileChecksums {
 public:
-    /// Throws Error (input) where the file cannot be read.
+    /// Throws Error (input) if the file cannot be read.
     std::string file(const Path& file);
-    /// Of the names and checksums of all files in a folder and its folders.
+    /// Checksum over the names and checksums of all files in a folder and its subfolders.
     std::string folder(const Path& folder);
-    /// Of all objects that a collection lists, or of the folder.
+    /// Checksum over all objects listed by a collection, or over the folder.
     std::string collection(const Path& folder_or_file);
     void forget(const Path& file);
-    /// It has this one, as somebody found who read it.
+    /// Sets the checksum of a file, as computed by another reader.
     void know(const Path& file, const std::string& sha256);
-    /// Files whose checksum is known and that have another one now, or had another one for somebody else who read them.
+    /// Files with known checksums that have changed, or that had different checksums for different readers.
     std::vector<Path> changed();
     bool is_known(const Path& file);
 
@@ -56,31 +56,31 @@ private:
     struct Known {
         std::string sha256;
         std::optional<FileStamp> stamp;
-        bool differs = false;  ///< somebody who read it found other bytes
+        bool differs = false;  ///< another reader found different content
     };
     std::mutex mutex_;
     std::map<Path, Known> known_;
 };
 
-/// In FOLDER/record.json; nothing where there is none, or it is damaged or of another version. Throws Error (input) where an
-/// output that it names would lie outside of the folder.
+/// Reads FOLDER/record.json; empty if it is missing, damaged or of another version. Throws Error (input) if an output that it
+/// names would lie outside the folder.
 std::optional<StudyRecord> read_record(const Path& folder);
 void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance& instance, const StudyRecord& record);
 
-/// What the result of an instance depends on, given the records of those that it needs. `program_folder`: where programs are.
+/// Dependencies of an instance's result, given the records of the instances it needs. `program_folder`: folder of the programs.
 std::vector<std::pair<std::string, std::string>> dependencies(const StudyPlan& plan, const StudyInstance& instance,
                                                               const std::function<const StudyRecord&(std::size_t)>& record_of,
                                                               FileChecksums& checksums, const Path& program_folder);
 
-/// Why an instance has to run again, in words; empty where nothing has changed. `run_folder`: of all instances.
+/// The reason why an instance has to run again; empty if nothing has changed. `run_folder`: folder of all instances.
 std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& known,
                       const std::vector<std::pair<std::string, std::string>>& depends, const StudyInstance& instance,
                       const Path& run_folder, FileChecksums& checksums);
 
-/// Before the name of a file in the run folder.
+/// Prefix of names of files in the run folder.
 inline const std::string in_run = "run:";
 
-/// The program of that name in the folder of programs. Throws Error (input).
+/// Path of the program with this name in the folder of programs. Throws Error (input).
 Path find_program(const std::string& name, const Path& program_folder, const std::string& where);
 
 }  // namespace ostraka

@@ -173,7 +173,7 @@ function Layers() {
   );
 }
 
-/** The layers beside the object that is worked on, and how things are drawn. */
+/** Updates the layers beside the active object, and the drawing style. */
 effect(() => {
   const names = model.layers.value;
   const style = model.drawnAs.value;
@@ -183,7 +183,7 @@ effect(() => {
   const list = drawn.filter((one, i) => {
     const about = model.shown.value[i];
     if (!about || one === of || about.object === model.active.value) return false;
-    const last = !model.shown.value.some((other, k) => k > i && other.object === about.object); // the deformed one, if there is one
+    const last = !model.shown.value.some((other, k) => k > i && other.object === about.object); // prefers the deformed state, if there is one
     return last && names.has(model.objects.value[about.object]?.name);
   });
   for (const one of list) one.paint(() => true);
@@ -254,7 +254,7 @@ function ViewBar() {
   );
 }
 
-/** Where several annotations are at the place that was clicked: which one is meant. */
+/** Lets the user choose among several annotations at the clicked position. */
 function Chooser() {
   const at = clicked.value;
   const about = page.page.objects[page.object.value];
@@ -278,7 +278,7 @@ function Chooser() {
   );
 }
 
-/** What the pointer is on is what "select" means. */
+/** Makes the annotation under the pointer the target of "select". */
 function Pointed() {
   const first = page.hovered.value?.annotations[0] ?? -1;
   useEffect(() => {
@@ -324,7 +324,7 @@ function Footer() {
 function Palette() {
   const input = useRef<HTMLInputElement>(null);
   const [said, setSaid] = useState("");
-  // Before the next key is read: what is typed at once after Ctrl+K belongs here.
+  // Before the next key event, so that text typed right after Ctrl+K goes here.
   useLayoutEffect(() => {
     if (palette.value) input.current?.focus();
     else setSaid("");
@@ -398,7 +398,7 @@ function Tour() {
 
 export function App() {
   const Panel = panels[tab.value];
-  const turn = page.turn.value; // what is made from another content is made anew
+  const turn = page.turn.value; // recompute for another content
   return (
     <>
       <Header />

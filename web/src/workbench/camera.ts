@@ -1,4 +1,5 @@
-// The camera of the picture as recipes say it (doc/recipes.md): in the object's own coordinates, so that the command sees the same.
+// The camera of the view in the form of recipes (doc/recipes.md): in the object's own coordinates, so that the command uses the same
+// view.
 import * as THREE from "three";
 import type { DrawnObject } from "../geometry";
 import { drawn, view } from "../picture";
@@ -16,7 +17,7 @@ export interface RecipeCamera {
   pane: [number, number, number, number];
 }
 
-/** Of the pane that shows the object; pixels count from the pane's corner. */
+/** Camera of the pane that shows the object; pixels are relative to the pane's corner. */
 export function recipeCamera(of: DrawnObject): RecipeCamera {
   const { camera, canvas } = view!;
   const width = canvas.clientWidth / Math.max(1, page.panes.value.length);
@@ -25,7 +26,7 @@ export function recipeCamera(of: DrawnObject): RecipeCamera {
   const inverse = of.group.matrixWorld.clone().invert();
   const toward = new THREE.Vector3(0, 0, 1).transformDirection(camera.matrixWorld);
   const up = new THREE.Vector3(0, 1, 0).transformDirection(camera.matrixWorld);
-  // The point of the middle ray that is nearest to the middle of all.
+  // The point of the central ray nearest to the centre of the scene.
   const middle = camera.position.clone().addScaledVector(toward, -camera.position.dot(toward));
   const scale = of.group.scale.x;
   const target = middle.applyMatrix4(inverse);
@@ -43,14 +44,14 @@ export function recipeCamera(of: DrawnObject): RecipeCamera {
   };
 }
 
-/** A place of the canvas as a pixel of the pane that shows the object. */
+/** Converts a position on the canvas to a pixel of the pane that shows the object. */
 export function paneOf(of: DrawnObject, x: number, y: number): [number, number] {
   const list = page.panes.value;
   const width = view!.canvas.clientWidth / Math.max(1, list.length);
   return [rounded(x - Math.max(0, list.indexOf(of.index)) * width), rounded(y)];
 }
 
-/** The plane that "Cut at" puts through the shown object: a point and the normal, in the object's own coordinates. */
+/** The plane of "Cut at" through the displayed object: a point and the normal, in the object's own coordinates. */
 export function cutPlane(): number[] | undefined {
   const of = drawn[page.object.value];
   if (!of || page.clip.value >= 1) return undefined;

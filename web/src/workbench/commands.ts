@@ -1,4 +1,4 @@
-// One registry of what can be done by a word: for the palette, keys, the voice, and the menu at the wrist.
+// Registry of named commands: for the palette, keys, voice, and the wrist menu.
 import { signal } from "@preact/signals";
 import { view } from "../picture";
 import * as page from "../state";
@@ -10,21 +10,21 @@ import { text, type Key } from "./words";
 
 export interface Command {
   id: string;
-  /** What it is called in the page's language; the same words are understood when they are said. */
+  /** Name in the page's language; also recognised by voice. */
   words: Key;
   key?: string;
-  /** A number may follow the words: "level 2". */
+  /** Whether a number may follow the name: "level 2". */
   takesNumber?: boolean;
   action: (number?: number) => void;
 }
 
-/** The annotation that is looked at, or chosen. */
+/** The annotation under the gaze, or selected. */
 export const gazed = signal(-1);
 const annotation = () => page.page?.objects[page.object.value]?.annotations[gazed.value >= 0 ? gazed.value : page.chosen.value];
-/** The control point that is looked at. */
+/** The control point under the gaze. */
 export const gazedPoint = signal(-1);
 
-/** How deep an annotation lies within others. */
+/** Depth of an annotation in the containment tree. */
 export function depthOf(i: number): number {
   const { annotations } = page.page.objects[page.object.value];
   let depth = 0;
@@ -32,7 +32,7 @@ export function depthOf(i: number): number {
   return depth;
 }
 
-/** Only the annotations of a level of containment are shown; 0 is the whole. */
+/** Shows only the annotations of one level of containment; 0 is the whole. */
 export function showLevel(level: number) {
   const { annotations } = page.page.objects[page.object.value];
   const all = annotations.map((_, i) => i);
@@ -81,7 +81,7 @@ export const commands: Command[] = [
 ];
 
 export const makeCage = (vertices = 100) => run({ operation: "cage make", title: text("makeCage"), with: { mesh: part("mesh"), vertices } });
-/** Denser where the constraints' parts are. */
+/** Makes a cage that is denser around the constraints' parts. */
 export const makeCageFor = (vertices: number) =>
   run({ operation: "cage make", title: text("makeCageFor"), with: { mesh: part("mesh"), annotations: part("annotations"), for: part("graph"), vertices } });
 export async function linkCage(): Promise<boolean> {
@@ -100,7 +100,7 @@ const numbers: Record<string, number> = {
   zero: 0, one: 1, two: 2, three: 3, four: 4, five: 5, null: 0, eins: 1, zwei: 2, drei: 3, vier: 4, "fünf": 5, uno: 1, due: 2, tre: 3, quattro: 4, cinque: 5,
 };
 
-/** Does what was said or typed; false where no command is called so. */
+/** Executes a spoken or typed command; false if no command has this name. */
 export function say(said: string): boolean {
   const words = said.trim().toLocaleLowerCase().replace(/[.!?]$/, "");
   for (const one of commands) {
@@ -141,7 +141,7 @@ export function attachKeys() {
   });
 }
 
-// ---- voice, where the browser has it ----
+// ---- voice, if the browser supports it ----
 
 export const listening = signal(false);
 export const heard = signal("");

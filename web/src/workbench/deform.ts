@@ -1,5 +1,5 @@
-// Control points of the cage: chosen, dragged, and let go. While they follow one affine map the picture follows by itself; where
-// constraints are to hold meanwhile the command sends the shape.
+// Control points of the cage: selecting, dragging, and releasing. While they follow one affine map, the view is updated locally; with
+// constraints, the command computes the shape.
 import { signal } from "@preact/signals";
 import * as THREE from "three";
 import { flatMaterial, shared, type DrawnObject } from "../geometry";
@@ -12,15 +12,15 @@ import { text } from "./words";
 export type Motion = "move" | "rotate" | "scale" | "stretch";
 export const handles = signal<ReadonlySet<number>>(new Set());
 export const keepsConstraints = signal(true);
-/** Where the command solves for constraints when the pointer is let go. */
+/** Spaces in which the command solves for constraints after release. */
 export const spaces = ["auto", "mesh", "cage"] as const;
 export const space = signal<(typeof spaces)[number]>("auto");
-/** Which constraints the cage cannot meet, in sentences, and of how many. */
+/** Descriptions of the constraints that the cage cannot satisfy, and the number of all constraints. */
 export const reach = signal<{ constraints: number; texts: string[] } | undefined>(undefined);
 export const showsPoints = signal(true);
 export const latency = signal<number[]>([]);
 
-/** The shape that is dragged: the one that is shown. */
+/** The displayed shape, which is dragged. */
 const subject = (): DrawnObject | undefined => {
   const one = drawn[page.object.value];
   return one?.about.cage ? one : undefined;
@@ -29,14 +29,14 @@ const subject = (): DrawnObject | undefined => {
 const points = (of: DrawnObject): THREE.Points => (of.cage as THREE.Group).children[1] as THREE.Points;
 const lines = (of: DrawnObject): THREE.LineSegments => (of.cage as THREE.Group).children[0] as THREE.LineSegments;
 
-/** Where a control point is, relative to the box of the object. */
+/** Position of a control point relative to the box of the object. */
 export function control(of: DrawnObject, index: number): THREE.Vector3 {
   const positions = points(of).geometry.getAttribute("position") as THREE.BufferAttribute;
   return new THREE.Vector3().fromBufferAttribute(positions, index).add((of.cage as THREE.Group).position);
 }
 export const controls = (of: DrawnObject) => (points(of).geometry.getAttribute("position") as THREE.BufferAttribute).count;
 
-// ---- the chosen ones, marked ----
+// ---- markers of the selected control points ----
 
 let chosenMark: THREE.Group | undefined;
 
@@ -62,7 +62,7 @@ export function set(next: Iterable<number>) {
   mark();
 }
 
-/** Those in a rectangle, or the one nearest to a click. */
+/** Selects the control points in a rectangle, or the one nearest to a click. */
 export function pick(from: { x: number; y: number }, to: { x: number; y: number }, discards: boolean, visibleOnly: boolean) {
   const of = subject();
   if (!of || !view) return;
@@ -91,7 +91,7 @@ export function pick(from: { x: number; y: number }, to: { x: number; y: number 
   set(next);
 }
 
-/** Those that an annotation means (thesis, section 5.2.3). */
+/** Selects the control points of an annotation (thesis, section 5.2.3). */
 export const ofAnnotation = (id: number, discards = false) =>
   attempt(text("handles"), async () => {
     const { result } = await link.ask("handles", { annotation: id, threshold: "auto-mesh" });
@@ -103,14 +103,14 @@ export const ofAnnotation = (id: number, discards = false) =>
     set(next);
   });
 
-/** Which constraints the cage can meet, before anything is edited. */
+/** Requests which constraints the cage can satisfy, before any edit. */
 export const askReach = () =>
   attempt(text("reach"), async () => {
     const { result } = await link.ask("reach");
     reach.value = { constraints: result.constraints as number, texts: result.texts as string[] };
   });
 
-/** How much the chosen ones move each place, as colour. */
+/** Shows the influence of the selected control points on each vertex as colours. */
 export const showInfluence = () =>
   attempt(text("influence"), async () => {
     const of = subject();
@@ -126,18 +126,18 @@ interface Drag {
   of: DrawnObject;
   motion: Motion;
   list: number[];
-  /** Where they were. */
+  /** Positions before the drag. */
   rest: THREE.Vector3[];
   centre: THREE.Vector3;
   from: { x: number; y: number };
   edit: { steps: object[] };
   constrained: boolean;
-  /** Messages under way, and what is to be sent next. */
+  /** Number of pending messages, and the positions to send next. */
   asked: number;
   next: THREE.Vector3[] | undefined;
 }
 let now: Drag | undefined;
-/** A drag that begins: it ends as soon as the command has answered. */
+/** Set if the pointer was released while a drag was being started: it ends as soon as the command has answered. */
 let ended: { x: number; y: number } | undefined;
 
 export async function grab(motion: Motion, from: { x: number; y: number }): Promise<boolean> {
@@ -152,7 +152,7 @@ export async function grab(motion: Motion, from: { x: number; y: number }): Prom
   return begin(of, motion, from);
 }
 
-/** An object without a cage is moved as a whole, such as a fragment. */
+/** Moves an object without a cage as a whole, such as a fragment. */
 async function grabWhole(of: DrawnObject, motion: Motion, from: { x: number; y: number }): Promise<boolean> {
   const { positions } = of.shape;
   const weights = new Float32Array((4 * positions.length) / 3);
@@ -184,7 +184,7 @@ async function begin(of: DrawnObject, motion: Motion, from: { x: number; y: numb
   });
 }
 
-/** In the object's own coordinates: a pixel's length, and the picture's directions. */
+/** In the object's own coordinates: size of a pixel, and the directions of the view. */
 function frameOf(of: DrawnObject) {
   const inverse = of.group.matrixWorld.clone().invert();
   const width = view!.canvas.clientWidth / Math.max(1, page.panes.value.length);
@@ -195,7 +195,7 @@ function frameOf(of: DrawnObject) {
 
 const plain = (v: THREE.Vector3) => v.toArray().map((x) => Number(x.toPrecision(9)));
 
-/** What the way of the pointer means: the step of an edit, and the map x -> A x + t relative to the box. */
+/** Converts a pointer movement to a step of an edit, a map x -> A x + t relative to the box. */
 function motionTo(drag: Drag, to: { x: number; y: number }): object {
   const { unit, right, up, toward } = frameOf(drag.of);
   const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
@@ -204,7 +204,7 @@ function motionTo(drag: Drag, to: { x: number; y: number }): object {
   if (drag.motion === "move") return { translate: plain(along.multiplyScalar(unit)) };
   const length = Math.hypot(dx, dy);
   if (drag.motion === "rotate") {
-    // About the axis across the way of the pointer and the view (thesis, appendix A.1).
+    // About the axis orthogonal to the pointer movement and the view (thesis, appendix A.1).
     const axis = length > 0 ? toward.clone().cross(along).normalize() : up;
     return { rotate: { axis: plain(axis), angle: Number((0.5 * length).toFixed(3)), centre } };
   }
@@ -214,7 +214,7 @@ function motionTo(drag: Drag, to: { x: number; y: number }): object {
   return { stretch: { direction: plain(direction), factor: Number((1 + length / 150).toPrecision(6)), from: "middle" } };
 }
 
-/** The same map as numbers. */
+/** The same map as a matrix and a vector. */
 export function affine(step: any, centre: THREE.Vector3): { linear: THREE.Matrix3; shift: THREE.Vector3 } {
   const linear = new THREE.Matrix3();
   if (step.translate) return { linear, shift: new THREE.Vector3(...(step.translate as [number, number, number])) };
@@ -263,7 +263,7 @@ function moveControls(of: DrawnObject, list: number[], places: THREE.Vector3[]) 
   mark();
 }
 
-/** At most two frames are under way; the latest places win. */
+/** Sends positions: at most two requests are pending; the latest positions replace unsent ones. */
 function pump(one: Drag) {
   if (!one.next || one.asked >= 2) return;
   const places = one.next;
@@ -288,7 +288,7 @@ function pump(one: Drag) {
     });
 }
 
-/** The command computes what the drag comes to, exactly; the session has it. */
+/** Ends a drag: the command computes the exact result and adds it to the session. */
 export async function release(to: { x: number; y: number }): Promise<boolean> {
   const one = now;
   if (!one) {
@@ -338,7 +338,7 @@ async function finishWhole(one: Drag, step: object): Promise<boolean> {
   return done;
 }
 
-/** For hands: the map is given, frame by frame, until it is let go as a step. */
+/** For hands: the map is given for each frame, until it is released as a step. */
 export async function hold(motion: Motion): Promise<boolean> {
   const of = subject();
   return of !== undefined && handles.value.size > 0 && begin(of, motion, { x: 0, y: 0 });
@@ -366,7 +366,7 @@ export function letGo() {
   still(one.of);
 }
 
-/** Control points in the colour of the part that means them; the mean where parts share one. */
+/** Colours control points by the part they influence; by the mean colour if several parts share one. */
 async function colour() {
   const of = subject();
   if (!of || !has("coordinates") || of.about.annotations.length === 0) return;
@@ -381,14 +381,14 @@ async function colour() {
   view?.draw();
 }
 
-/** The files that the reach was told of. */
+/** The files for which the reach was computed. */
 let reachOf = "";
 const reachFiles = () => ["mesh", "annotations", "graph", "cage", "coordinates"].map((one) => object.value?.parts[one] ?? "").join("\n");
 
 onShown.push(() => {
   if (reachOf !== reachFiles()) reach.value = undefined;
   reachOf = reachFiles();
-  colour().catch(() => {}); // without colours they can be dragged all the same
+  colour().catch(() => {}); // dragging also works without colours
   now = undefined;
   shared.bend.value.set(0, 0, 0, 0, 0, 0, 0, 0, 0);
   shared.shift.value.set(0, 0, 0);

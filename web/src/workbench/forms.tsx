@@ -1,9 +1,9 @@
-// Any operation of the table as a form: made from its declaration, filled with what the session has.
+// Forms for all operations of the table: generated from the declarations, with inputs offered from the session.
 import { useState } from "preact/hooks";
 import { files, has, object, objects, operations, run, type Declaration, type OperationInput, type OperationOption } from "./model";
 import { text } from "./words";
 
-/** Kinds of inputs and the parts that are such. */
+/** Kinds of inputs, and the parts of objects that have this kind. */
 const partOfKind: Record<string, string[]> = {
   mesh: ["mesh", "deformed"],
   annotations: ["annotations", "deformed annotations"],
@@ -20,7 +20,7 @@ interface Offer {
   value: unknown;
 }
 
-/** What of the session can be given as an input of a kind. */
+/** The files of the session that can be given as an input of a kind. */
 function offers(kind: string): Offer[] {
   const found: Offer[] = [];
   const parts = partOfKind[kind] ?? [];
@@ -32,7 +32,7 @@ function offers(kind: string): Offer[] {
   return found;
 }
 
-/** The first choice: of the object that is worked on. */
+/** Initial selection: the active object. */
 function preset(input: OperationInput, list: Offer[]): string {
   const own = objects.value.indexOf(object.value!);
   const mine = list.find((one) => one.key.startsWith(`${own}/`));
@@ -86,7 +86,7 @@ function Field({ option, value, onChange }: { option: OperationOption; value: un
   );
 }
 
-/** As the table takes it; texts of lists are cut at semicolons. */
+/** Converts a text to the type in the table; lists of texts are separated by semicolons. */
 function valueOf(option: OperationOption, raw: unknown): unknown {
   if (typeof raw !== "string") return raw;
   switch (option.type) {
@@ -182,10 +182,10 @@ function Form({ of }: { of: Declaration }) {
   );
 }
 
-/** What is not work on the session. */
+/** Operations that do not work on the session. */
 const elsewhere = /^(run|replay|conformance .*|operations|study make .*)$/;
 
-/** All operations, or the one of that name. */
+/** A form for all operations, or for one of them. */
 export function Operations({ only }: { only?: string }) {
   const [name, setName] = useState(only ?? "mesh info");
   const of = operations.value.find((one) => one.name === name);
@@ -210,5 +210,5 @@ export function Operations({ only }: { only?: string }) {
   );
 }
 
-/** What the table says of an operation. */
+/** Description of an operation from the table. */
 export const helpOf = (name: string) => operations.value.find((one) => one.name === name)?.help ?? "";

@@ -1,4 +1,4 @@
-// Messages to the command and back: requests are answered by their number, events come by themselves.
+// Messages to and from the command: requests are matched to answers by number, events are unsolicited.
 export interface Problem {
   problem: string;
   where: string;
@@ -13,7 +13,7 @@ export class RequestError extends Error {
 
 export interface Answer {
   result: any;
-  /** What `result` refers to by [first byte, number of bytes]. */
+  /** Binary data to which `result` refers by [first byte, number of bytes]. */
   bytes: Uint8Array;
 }
 
@@ -24,7 +24,7 @@ interface Waiting {
 
 const nothing = new Uint8Array(0);
 
-/** The secret by which the command knows its page: it stands in the page's own address, and nowhere else. */
+/** The secret that authenticates the page to the command; it is only part of the page's address. */
 const token = new URLSearchParams(location.search).get("token") ?? "";
 
 export class Link {
@@ -34,7 +34,7 @@ export class Link {
   onEvent: (event: any) => void = () => {};
   onState: (open: boolean) => void = () => {};
 
-  /** Opens the way, and opens it again where it breaks off. */
+  /** Opens the connection, and reopens it when it breaks. */
   connect() {
     const address = new URL("messages", location.href);
     address.protocol = "ws:";
@@ -79,7 +79,7 @@ export class Link {
     });
   }
 
-  /** What is under way ends. */
+  /** Cancels the request in progress. */
   cancel() {
     this.socket?.send('{"do":"cancel"}');
   }

@@ -30,7 +30,7 @@ model.link.onState = (open) => {
 };
 model.link.onEvent = (event) => {
   if (event.event === "progress") model.progress.value = { phase: event.phase, share: event.share };
-  // Another page of the same session did something.
+  // Another page changed the same session.
   if (event.event === "changed") void model.attempt(text("loading"), model.refresh);
 };
 model.link.connect();
@@ -49,7 +49,7 @@ effect(() => {
   document.documentElement.lang = page.language.value;
 });
 
-// For tests of this page, which ask where things are.
+// For tests of this page, which query positions on the screen.
 Object.defineProperty(window, "ostraka", {
   value: { page, camera, model, selection, tools, deform, commands, xr, shared, get view() { return view; }, get objects() { return drawn; } },
 });

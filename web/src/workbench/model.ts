@@ -1,4 +1,4 @@
-// What the workbench knows: the session as the command tells it, and what is going on.
+// State of the workbench: the session as reported by the command, and activities in progress.
 import { computed, signal } from "@preact/signals";
 import { knownShapes, showContent } from "../content";
 import { Blobs, type PageData } from "../data";
@@ -58,7 +58,7 @@ export const files = signal<SessionFile[]>([]);
 export const active = signal(0);
 export const history = signal<Step[]>([]);
 export const place = signal(0);
-/** For each object of the page: which of the session's objects it is, and whether under deformation. */
+/** For each object of the page: the session's object, and whether it is the deformed state. */
 export const shown = signal<{ object: number; deformed: boolean }[]>([]);
 export const connected = signal(false);
 export const busy = signal("");
@@ -69,11 +69,11 @@ export const outcome = signal<{ title: string; text: string; holds: boolean; not
 export const object = computed<SessionObject | undefined>(() => objects.value[active.value]);
 export const has = (part: string) => object.value?.parts[part] !== undefined;
 
-/** Objects of the session that are drawn with the one that is worked on, and how all are drawn. */
+/** Objects of the session drawn together with the active one, and the drawing style. */
 export const layers = signal<ReadonlySet<string>>(new Set());
 export const drawnAs = signal<"surface" | "edges" | "points">("surface");
 
-/** Called when another content is on the page. */
+/** Called when another content is displayed. */
 export const onShown: (() => void)[] = [];
 
 function takeSession(result: any) {
@@ -87,7 +87,7 @@ function takeSession(result: any) {
 
 const idOf = (o: number, annotation: number) => page.page?.objects[o]?.annotations[annotation]?.id;
 
-/** Asks for what the session shows now. Camera, choice, and what is hidden stay, as far as there is still such a thing. */
+/** Requests the current state of the session. Camera, selection and hidden annotations are kept as far as they still exist. */
 export async function refresh() {
   performance.mark("scene asked");
   const answer = await link.ask("scene", { known: knownShapes() });
@@ -106,7 +106,7 @@ export async function refresh() {
   };
   takeSession(answer.result);
   shown.value = answer.result.shown;
-  // The deformed state where there is one, else the object itself.
+  // The deformed state if there is one, otherwise the object itself.
   const wanted = shown.value.findIndex((one) => one.object === active.value && one.deformed);
   const first = wanted >= 0 ? wanted : shown.value.findIndex((one) => one.object === active.value);
   const next = data.objects[first];
@@ -126,7 +126,7 @@ export async function refresh() {
   for (const one of onShown) one();
 }
 
-/** Does something, and says what went wrong. True if nothing did. */
+/** Executes an action and reports errors. Returns true if it succeeded. */
 export async function attempt(what: string, work: () => Promise<unknown>): Promise<boolean> {
   problem.value = undefined;
   busy.value = what;
@@ -159,7 +159,7 @@ export function run(request: Run): Promise<boolean> {
   });
 }
 
-/** A change of the session without an operation. */
+/** Changes the session without an operation. */
 export const change = (title: Key, what: string, more: object = {}) =>
   attempt(text(title), async () => {
     await link.ask(what, more);

@@ -1,4 +1,4 @@
-// What stands beside the picture: annotating, relationships, the cage and deformation, results, the history.
+// Panels beside the view: annotations, relationships, cage and deformation, results, history.
 import { useState } from "preact/hooks";
 import { Constraints } from "../constraints";
 import { Details } from "../details";
@@ -25,12 +25,12 @@ function Button(props: { name: Key; title?: string; disabled?: boolean; onClick:
   );
 }
 
-/** "annotation select" of the selection. */
+/** Runs "annotation select" with the current selection. */
 export function annotate(action: "make" | "replace" | "add to" | "remove from", tag: string, colour: string, id?: number) {
   const given: Record<string, unknown> = { mesh: part("mesh"), expression: JSON.stringify(selection.expression.value), action };
   if (has("annotations")) given.annotations = part("annotations");
   const keep = ["output"];
-  // A recipe that was begun with the first annotation makes all of them again.
+  // A recipe started with the first annotation reproduces all of them.
   if (!has("annotations") || has("recipe")) {
     keep.push("recipe");
     if (has("recipe")) given.record = part("recipe");
@@ -46,7 +46,7 @@ export function annotate(action: "make" | "replace" | "add to" | "remove from", 
   return run({ operation: "annotation select", title: `${text("annotate")}: ${tag}`, with: given, keep });
 }
 
-/** An annotation edit of the chosen one. */
+/** Runs "annotation edit" on the selected annotation. */
 function edit(title: string, more: Record<string, unknown>) {
   const one = chosenAnnotation();
   if (!one) return;
@@ -60,7 +60,7 @@ export function Annotating() {
   const [value, setValue] = useState("");
   const one = chosenAnnotation();
   const chosen = selection.selected.value;
-  // What is there already, and what vocabularies offer in the reader's language, or in none.
+  // Existing tags, and those offered by vocabularies in the reader's language or without a language.
   const offered = [page.language.value, ""].flatMap((language) => vocabulary.value[language] ?? []);
   const words = [...new Set([...page.page.objects.flatMap((o) => o.annotations.map((a) => a.tag)), ...offered])];
   return (
@@ -271,7 +271,7 @@ export function Relations() {
   );
 }
 
-/** Which constraints the cage cannot meet, told before an edit. */
+/** Shows the constraints that the cage cannot satisfy, before an edit. */
 function Reach() {
   const last = deform.reach.value;
   return (
@@ -399,7 +399,7 @@ export function Fragments() {
   );
 }
 
-/** Slices across up, described, with the profile; the panel's slider goes through them. */
+/** Slices across the up direction, with descriptors and the profile; the panel's slider selects one. */
 function cut(count: number) {
   const name = object.value!.name;
   const given: Record<string, unknown> = { mesh: part("mesh"), count };
@@ -411,7 +411,7 @@ function cut(count: number) {
   return run({ operation: "slice", title: text("slice"), with: given, keep });
 }
 
-/** The plane that the object is cut at in the picture: its slice alone, with medial axes. */
+/** The slice in the cutting plane of the view, with medial axes. */
 function cutHere() {
   const plane = cutPlane();
   if (!plane) return;

@@ -1,4 +1,4 @@
-// The selection: what was drawn on pictures, as an expression of recipes; the command says what it comes to.
+// The selection: shapes drawn on the view, as an expression of recipes that the command evaluates.
 import { signal } from "@preact/signals";
 import * as THREE from "three";
 import { flatMaterial, type DrawnObject } from "../geometry";
@@ -13,10 +13,10 @@ export const expression = signal<Expression | undefined>(undefined);
 export const selected = signal<{ type: string; count: number } | undefined>(undefined);
 export const erases = signal(false);
 export const visible = signal(true);
-/** Outlines run through the triangles where they were drawn, not along the nearest edges. */
+/** Whether outlines cut through triangles as drawn, instead of following the nearest edges. */
 export const asDrawn = signal(true);
 
-/** What kind of thing an expression selects. */
+/** Type of annotation that an expression selects. */
 export function typeOf(of: Expression): "region" | "line" | "point" {
   if (of.path) return "line";
   if (of.vertices || of.nearest) return "point";
@@ -28,7 +28,7 @@ export function typeOf(of: Expression): "region" | "line" | "point" {
 
 let mark: THREE.Object3D | undefined;
 
-/** The object that is selected on: the one at rest. */
+/** The object to select on: the undeformed one. */
 export function target(): DrawnObject | undefined {
   const one = drawn[page.object.value];
   const about = shown.value[page.object.value];
@@ -73,7 +73,7 @@ function pointsMark(of: DrawnObject, points: number[]): THREE.Object3D {
   return new THREE.Points(new THREE.BufferGeometry().setFromPoints(points.map((v) => of.vertex(v))), flatMaterial(red, 10, true));
 }
 
-/** Adds to the selection what was drawn, or takes it away. */
+/** Adds the drawn shape to the selection, or removes it. */
 export async function add(drawnNow: Expression): Promise<boolean> {
   const before = expression.value;
   let next: Expression;
@@ -82,7 +82,7 @@ export async function add(drawnNow: Expression): Promise<boolean> {
   return setSelection(next);
 }
 
-/** The selection is what this says; the command finds it on the object's own mesh. */
+/** Sets the selection; the command evaluates it on the object's own mesh. */
 export function setSelection(next: Expression | undefined): Promise<boolean> {
   const of = target();
   if (!next || !of) {
@@ -107,5 +107,5 @@ export function clear() {
   view?.draw();
 }
 
-// Another content: nothing of it is selected.
+// The selection is cleared with each content.
 onShown.push(clear);

@@ -1,4 +1,4 @@
-// Tools: what the pointer does on the picture, and what is drawn over it meanwhile.
+// Tools: actions of the pointer on the view, and the overlay drawn meanwhile.
 import { signal } from "@preact/signals";
 import CameraControls from "camera-controls";
 import { useEffect } from "preact/hooks";
@@ -29,7 +29,7 @@ interface Pick {
   camera: RecipeCamera;
   pixel: [number, number];
 }
-/** The annotations at the place that was clicked last, with the tool that looks. */
+/** The annotations at the last position clicked with the "look" tool. */
 export const clicked = signal<{ x: number; y: number; list: number[] } | undefined>(undefined);
 
 interface Place {
@@ -37,7 +37,7 @@ interface Place {
   y: number;
 }
 
-/** Where the pointer went down, and the way since; picks on the surface so far. */
+/** Path of the pointer since it was pressed, and the surface points picked so far. */
 const trail = signal<Place[]>([]);
 const picks = signal<Pick[]>([]);
 const over = signal<DrawnObject | undefined>(undefined);
@@ -65,7 +65,7 @@ function pickAt(place: Place): Pick | undefined {
 
 const asPick = (one: Pick) => ({ camera: one.camera, pixel: one.pixel });
 
-/** Picks become a selection, or a measure. */
+/** Converts the picks to a selection or a measure. */
 export async function finish() {
   const list = picks.value;
   const t = tool.value;
@@ -76,7 +76,7 @@ export async function finish() {
   else if ((t === "ruler" || t === "tape") && list.length >= 2) await take(t, list.map((one) => one.vertex));
 }
 
-/** Takes a measure, of the chosen annotation or of the object. */
+/** Takes a measure of the selected annotation or of the object. */
 export function take(which: "ruler" | "tape" | "bounding", vertices: number[], direction?: string): Promise<boolean> {
   const chosen = page.page.objects[page.object.value]?.annotations[page.chosen.value];
   const given: Record<string, unknown> = { mesh: part("mesh"), tool: which, name: measureName.value || which };
@@ -92,7 +92,7 @@ function rectangleOf(of: DrawnObject, a: Place, b: Place) {
   return { rectangle: { camera: recipeCamera(of), from: paneOf(of, a.x, a.y), to: paneOf(of, b.x, b.y), visible: selection.visible.value } };
 }
 
-/** A line of few corners that stays within a pixel and a half of the way. */
+/** Simplifies a path to few corners, with deviations of at most 1.5 pixels. */
 function simplified(way: Place[]): Place[] {
   const kept = new Array<boolean>(way.length).fill(false);
   const stack: [number, number][] = [[0, way.length - 1]];
@@ -143,7 +143,7 @@ async function drawnBy(t: Tool, way: Place[]) {
 
 export const brushRadius = (of: DrawnObject) => Number((0.02 * Math.hypot(...of.about.size)).toPrecision(3));
 
-/** Pointer and keys of the picture go to the tool; true where it takes them. */
+/** Passes pointer and key events of the view to the tool; returns whether it uses them. */
 export function attach(canvas: HTMLCanvasElement): () => void {
   let down: Place | undefined;
   let pressed: Place = { x: 0, y: 0 };
@@ -213,7 +213,7 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     }
   };
   const onDouble = () => {
-    // The second click of the two is a pick of its own.
+    // The second click of a double click has added a pick already.
     if (["path", "tape", "points"].includes(tool.value)) void finish();
   };
   canvas.addEventListener("click", onClick);
@@ -237,7 +237,7 @@ onShown.push(() => {
   picks.value = [];
 });
 
-/** What is being drawn. */
+/** The overlay of the current tool. */
 export function Drawing() {
   useEffect(() => {
     if (!view) return;

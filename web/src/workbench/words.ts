@@ -1,4 +1,4 @@
-// The workbench's own words, in the languages of the page.
+// Texts of the workbench, in the languages of the page.
 import { language } from "../state";
 import words from "./messages.json";
 

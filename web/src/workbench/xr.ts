@@ -1,5 +1,5 @@
-// Deformation in virtual reality (thesis, section 5.2.3): the object on a stand, control points chosen by gaze, by hand or by
-// annotation, dragged with one hand, scaled with two; everything else is a command, said or chosen from the menu at the wrist.
+// Deformation in virtual reality (thesis, section 5.2.3): the object on a stand; control points are selected by gaze, by hand or by
+// annotation, dragged with one hand, scaled with two; everything else is a command, spoken or selected in the wrist menu.
 import { signal } from "@preact/signals";
 import * as THREE from "three";
 import { flatMaterial, type DrawnObject } from "../geometry";
@@ -14,7 +14,7 @@ import { text } from "./words";
 export const canEnter = signal(false);
 void (navigator as any).xr?.isSessionSupported("immersive-vr").then((can: boolean) => (canEnter.value = can), () => {});
 
-/** Metres: how large the object is, and where it stands. */
+/** Size of the object and height of its position, in metres. */
 const size = signal(0.9);
 const height = signal(1.25);
 export const seated = (on: boolean) => (height.value = on ? 0.85 : 1.25);
@@ -43,11 +43,11 @@ interface Hand {
   startTurn: THREE.Quaternion;
 }
 
-/** Where the hand is, in the room. */
+/** Position of the hand in the room. */
 const placeOf = (hand: Hand) => hand.ray.getWorldPosition(new THREE.Vector3());
 const subject = (): DrawnObject | undefined => drawn[page.object.value];
 
-// ---- the menu at the wrist ----
+// ---- the wrist menu ----
 
 const rows = ["select", "discard", "tool-move", "tool-rotate", "undo", "redo", "hide-cage", "show-cage", "hide-points", "show-points", "influence", "clear", "larger", "smaller", "seated", "leave-vr"];
 
@@ -77,7 +77,7 @@ class Menu {
     });
     this.texture.needsUpdate = true;
   }
-  /** The row that a ray points at; -1: none. */
+  /** The row hit by a ray; -1: none. */
   row(ray: THREE.Raycaster): number {
     const hit = ray.intersectObject(this.mesh)[0];
     return hit?.uv ? Math.min(rows.length - 1, Math.floor((1 - hit.uv.y) * rows.length)) : -1;
@@ -91,7 +91,7 @@ function makeRoom() {
   room.background = new THREE.Color(0xdfe3e8);
   camera = new THREE.PerspectiveCamera(70, 1, 0.02, 50);
   camera.position.set(0, 1.6, 0);
-  // What stays still keeps the stomach still.
+  // A static reference reduces motion sickness.
   const floor = new THREE.GridHelper(8, 16, 0x8a8f96, 0xb9bec5);
   room.add(floor);
   stage = new THREE.Group();
@@ -101,7 +101,7 @@ function makeRoom() {
   menu = new Menu();
 }
 
-/** The shown object stands on the stage, upright. */
+/** Places the displayed object upright on the stage. */
 function place() {
   if (!room) return;
   const of = subject();
@@ -111,19 +111,19 @@ function place() {
   stage.add(of.group);
   stage.rotation.set(-Math.PI / 2, 0, 0);
   stage.position.set(0, height.value, -0.9);
-  stage.scale.setScalar(size.value / 2); // the object is two units large
+  stage.scale.setScalar(size.value / 2); // the object has size two
   stage.updateMatrixWorld(true);
   deform.mark();
 }
 
-// ---- looking and touching ----
+// ---- gaze and touch ----
 
-/** What the head looks at: the nearest control point within three degrees of the middle, else the annotation there. */
+/** The target of the gaze: the nearest control point within three degrees of the centre, else the annotation there. */
 function look() {
   const of = subject();
   if (!of || !view) return;
   const head = view.renderer.xr.getCamera();
-  // Between the eyes: the camera of both stands behind them.
+  // From the midpoint between the eyes: the combined camera is behind them.
   const from = new THREE.Vector3();
   for (const eye of head.cameras) from.addScaledVector(new THREE.Vector3().setFromMatrixPosition(eye.matrixWorld), 1 / head.cameras.length);
   const along = new THREE.Vector3(0, 0, -1).transformDirection(head.matrixWorld);
@@ -152,7 +152,7 @@ function look() {
   }
 }
 
-/** The control point that a hand touches: within four centimetres. */
+/** The control point touched by a hand: within four centimetres. */
 function touched(hand: Hand): number {
   const of = subject();
   if (!of?.about.cage || !deform.showsPoints.value) return -1;
@@ -168,7 +168,7 @@ function touched(hand: Hand): number {
 
 const rounded = (v: THREE.Vector3) => v.toArray().map((x) => Number(x.toPrecision(9)));
 
-/** What the hands do to the chosen control points, as a step of an edit. */
+/** Movement of the selected control points by the hands, as a step of an edit. */
 function stepOf(): object | undefined {
   const of = subject();
   const held = deform.held();
@@ -212,7 +212,7 @@ function press(hand: Hand) {
   }
   const pressed = hands.filter((one) => one.pressed);
   if (pressed.length === 2) {
-    // The second hand makes it a scaling, from where both hands are now.
+    // The second hand starts a scaling, from the current positions of both hands.
     deform.letGo();
     for (const one of pressed) one.start = placeOf(one);
     holding = deform.hold("scale");
@@ -222,7 +222,7 @@ function press(hand: Hand) {
   if (point >= 0 && !deform.handles.value.has(point)) deform.set([...deform.handles.value, point]);
   holding = deform.hold(tool.value === "rotate" ? "rotate" : "move");
 }
-/** The drag that the command is asked to begin. */
+/** The drag that the command has been asked to start. */
 let holding: Promise<boolean> = Promise.resolve(false);
 
 async function letGo(hand: Hand) {
@@ -259,7 +259,7 @@ function frame() {
   renderer.render(room, camera);
   ++frames.value;
 }
-/** Counts the pictures in virtual reality, for who waits for them. */
+/** Number of frames drawn in virtual reality, for code that waits for them. */
 export const frames = signal(0);
 
 export async function enter(): Promise<void> {
@@ -267,7 +267,7 @@ export async function enter(): Promise<void> {
   const { renderer } = view;
   const made: XRSession = await (navigator as any).xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor", "hand-tracking"] });
   session = made;
-  document.body.classList.add("in-vr"); // what is drawn over the picture is not where it belongs
+  document.body.classList.add("in-vr"); // overlays are misplaced in virtual reality
   if (!room) makeRoom();
   renderer.xr.enabled = true;
   renderer.autoClear = true;
