@@ -51,14 +51,14 @@ def axis(
     name: Text | None = None,
     method: Literal["rotation", "slices", "skeleton", "principal"] | None = 'rotation',
     tolerance: float | None = 0.02,
-    least_quality: float | None = 0.7,
+    min_quality: float | None = 0.7,
     slices: int | None = 24,
     trials: int | None = 300,
     smoothing: int | None = 2,
     seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _AxisResult:
-    """The axis of an object or of an annotated part; exit code 3 if it has none."""
+    """Compute the axis of an object or of an annotated part; exit code 3 if it has none."""
 
 class _SliceResult(Result):
     output: Folder | Path | None
@@ -85,8 +85,8 @@ def slice(
     profile_angle: float | None = None,
     drawn: int | None = 24,
     colour_by: Literal["height", "area", "perimeter", "hole_area", "barycentre_x", "barycentre_y", "outline_area", "outline_perimeter", "outline_barycentre_x", "outline_barycentre_y", "box_length", "box_breadth", "elongation", "eccentricity", "solidity", "compactness", "circular_variance", "rectangular_variance", "components", "holes", "euler_number", "hole_area_ratio", "equivalent_radius", "roundness_equivalent", "roundness_equivalent_relative", "fitted_radius", "fitted_radius_low", "fitted_radius_high", "fitted_centre_x", "fitted_centre_y", "roundness_fitted", "roundness_fitted_relative", "thickness_mean", "thickness_variance", "thickness_least", "thickness_most", "closed_length", "open_length"] | None = 'height',
-    least_eccentricity: float | None = 0.7,
-    most_roundness: float | None = 0.1,
+    min_eccentricity: float | None = 0.7,
+    max_roundness: float | None = 0.1,
     similarity: float | None = 0.1,
     tube_seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
@@ -161,7 +161,7 @@ def fit(
     search_least_scale: float | None = 1.0,
     search_most_scale: float | None = 1.0,
     search_tolerance: float | None = 0.02,
-    least_confidence: float | None = 0.5,
+    min_confidence: float | None = 0.5,
     search_points: int | None = 2000,
     search_references: int | None = 120,
     search_partners: int | None = 300,
@@ -180,8 +180,8 @@ def fit(
     turn_candidates: int | None = 16,
     turn_beam: int | None = 64,
     turn_hold: float | None = 0.5,
-    least_joint: float | None = 0.5,
-    least_score: float | None = 0.4,
+    min_joint: float | None = 0.5,
+    min_score: float | None = 0.4,
     class_iterations: int | None = 40,
     class_limit: float | None = 3.0,
     class_samples: float | None = 20.0,
@@ -205,7 +205,7 @@ def fit(
     seam_width: float | None = 0.03,
     confidence_length: float | None = 0.1,
     join: bool | None = True,
-    least_piece: float | None = 0.01,
+    min_piece: float | None = 0.01,
     observed: float | None = 0.02,
     scale_tolerance: float | None = 10.0,
     slack: float | None = 3.0,
@@ -222,7 +222,7 @@ def fit(
     cloud_holes: float | None = 1.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _FitResult:
-    """Complete an object from fragments by a template of its class, and say whether they go together (exit code 3: they do not, or it cannot be told)."""
+    """Complete an object from fragments by a template of its class, and report whether the fragments are compatible (exit code 3: they are not, or there is no answer)."""
 
 class _PairResult(Result):
     output: Folder | Path | None
@@ -238,7 +238,7 @@ def pair(
     reach: float | None = 0.05,
     last_reach: float | None = 0.025,
     edges: float | None = 1.0,
-    least_confidence: float | None = 0.5,
+    min_confidence: float | None = 0.5,
     candidates: int | None = 5,
     facets: Literal["either", "annotated", "auto", "none"] | None = 'either',
     facet_edge: float | None = 40.0,
@@ -249,7 +249,7 @@ def pair(
     cloud_holes: float | None = 1.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _PairResult:
-    """Lay two fragments together by the break they share; exit code 3 if it cannot be told how."""
+    """Register two fragments along their common fracture surface; exit code 3 if there is no answer."""
 
 class _AssembleResult(Result):
     output: Folder | Path | None
@@ -263,9 +263,9 @@ def assemble(
     force_mesh: bool | None = False,
     no_pictures: bool | None = False,
     fresh: bool | None = False,
-    least_join: float | None = 0.8,
+    min_join: float | None = 0.8,
     partners: int | None = 24,
-    least_faces: int | None = 100,
+    min_faces: int | None = 100,
     frames: int | None = 160,
     samples: int | None = 2000,
     starts: int | None = 200,
@@ -273,7 +273,7 @@ def assemble(
     reach: float | None = 0.05,
     last_reach: float | None = 0.025,
     edges: float | None = 1.0,
-    least_confidence: float | None = 0.5,
+    min_confidence: float | None = 0.5,
     candidates: int | None = 5,
     facets: Literal["either", "annotated", "auto", "none"] | None = 'either',
     facet_edge: float | None = 40.0,
@@ -284,7 +284,7 @@ def assemble(
     cloud_holes: float | None = 1.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _AssembleResult:
-    """Put a box of fragments together by their breaks, leave out what does not belong, and say how sure each join is; exit code 3 if nothing is joined."""
+    """Join fragments along their fracture surfaces, leave out unrelated ones, and report the probability of each join; exit code 3 if nothing is joined."""
 
 class _RenderResult(Result):
     picture: Bytes | Path | None
@@ -411,4 +411,4 @@ def operations(
     completions: FileName | bool | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _OperationsResult:
-    """What the toolkit can do: every operation with its inputs, outputs, options, ranges, defaults and units."""
+    """List every operation with its inputs, outputs, options, ranges, defaults and units."""

@@ -35,7 +35,7 @@ def list(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """What is annotated."""
+    """List the annotations of a mesh."""
 
 def check(
     mesh: MeshLike,
@@ -48,7 +48,7 @@ def check(
     strict: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Look for defects in annotations; exit code 3 if there are."""
+    """Look for defects in annotations; exit code 3 if there are any."""
 
 class _RemapResult(Result):
     output: Annotations | Path | None
@@ -165,7 +165,7 @@ def facets(
     facet_coherence: float | None = 0.3,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _FacetsResult:
-    """Tell the outer, inner and fracture surface of a fragment apart; exit code 3 if there is no fracture."""
+    """Classify the surface of a fragment as outer, inner and fracture surface; exit code 3 if there is no fracture."""
 
 class _SegmentResult(Result):
     output: Annotations | Path | None
@@ -182,7 +182,7 @@ def segment(
     thickness_scale: float | None = 0.01,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SegmentResult:
-    """Cut a mesh into parts of like thickness, each an annotation."""
+    """Segment a mesh by thickness; each segment becomes an annotation."""
 
 class _SmoothResult(Result):
     output: Annotations | Path | None
@@ -197,7 +197,7 @@ def smooth(
     let_area_change: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SmoothResult:
-    """Outlines and lines without the steps of the edges: fair curves through the faces."""
+    """Replace outlines and lines along edges by fair curves through the faces."""
 
 class _TransferResult(Result):
     output: Annotations | Path | None
@@ -230,7 +230,7 @@ def transfer(
     register: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TransferResult:
-    """Carry annotations to another resolution of the same object, and say how faithful they are."""
+    """Transfer annotations to another resolution of the same object, and report how faithful they are."""
 
 def survival(
     mesh: MeshLike,
@@ -242,7 +242,7 @@ def survival(
     least: int | None = 20,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """The smallest resolution at which each annotation survives."""
+    """Find the smallest resolution at which each annotation survives."""
 
 class _ExportResult(Result):
     output: Document | Bytes | Path | None
@@ -313,7 +313,7 @@ def find(
     vocabulary: Input | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Which objects have such parts, attributes and relationships; exit code 3 if none has."""
+    """Find objects by their parts, attributes and relationships; exit code 3 if there is none."""
 
 def diff(
     mesh: MeshLike,
@@ -323,7 +323,7 @@ def diff(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """What differs between two sets of annotations; exit code 3 if they do."""
+    """List the differences between two sets of annotations; exit code 3 if there are any."""
 
 class _MergeResult(Result):
     output: Annotations | Path | None
@@ -340,7 +340,7 @@ def merge(
     renumber: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MergeResult:
-    """Join two people's changes of one set; exit code 3 and no output with conflicts."""
+    """Merge two changed versions of one set of annotations; exit code 3 and no output if there are conflicts."""
 
 class _InferResult(Result):
     output: Annotations | Path | None
@@ -353,4 +353,4 @@ def infer(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _InferResult:
-    """Words from numbers, by the rules of a vocabulary; exit code 3 if they contradict each other."""
+    """Derive qualitative attributes from quantities by the rules of a vocabulary; exit code 3 if rules contradict each other."""

@@ -90,4 +90,4 @@ def influence(
     threshold: float | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _InfluenceResult:
-    """Colour a mesh, or its cage, by who moves what."""
+    """Colour a mesh or its cage by the weights of cage vertices."""

@@ -19,7 +19,7 @@ def run(
     time_limit: float | None = 120.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RunResult:
-    """Give the golden cases to another program, and say where it agrees (exit code 3: somewhere it does not)."""
+    """Run the golden cases with another program, and report where it agrees (exit code 3: it differs somewhere)."""
 
 class _SelfResult(Result):
     junit: Document | Bytes | Path | None
@@ -32,4 +32,4 @@ def self(
     time_limit: float | None = 120.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SelfResult:
-    """The golden cases by this command; exit code 3 if one differs."""
+    """Run the golden cases with this command; exit code 3 if one differs."""

@@ -26,7 +26,7 @@ def take(
     name: Text | None = None,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TakeResult:
-    """Take one measure by ruler, tape or bounding planes."""
+    """Take a measure by ruler, tape or bounding planes."""
 
 class _DescribeResult(Result):
     output: Annotations | Path | None
@@ -61,7 +61,7 @@ def refresh(
     merge_pickings: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RefreshResult:
-    """Compute all measures and descriptors anew, with uncertainties; exit code 3 if some cannot be."""
+    """Recompute all measures and descriptors, with uncertainties; exit code 3 if some cannot be computed."""
 
 class _MapResult(Result):
     output: Array | Path | None
@@ -98,4 +98,4 @@ def clay(
     wall: float | None = 0.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Volume of clay, between what it is if the unseen inside is solid and if it is hollow."""
+    """Bounds of the volume of clay: with the unseen inside solid, and hollow."""

@@ -55,7 +55,7 @@ def repair(
     wrap_offset: float | None = 0.002,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RepairResult:
-    """Make an oriented manifold; exit code 3 if it is still open or intersects itself."""
+    """Repair a mesh to an oriented manifold; exit code 3 if it is still open or intersects itself."""
 
 class _SimplifyResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -117,7 +117,7 @@ def remesh(
     feature_angle: float | None = 0.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _RemeshResult:
-    """A new mesh of the same surface, independent of the old one."""
+    """Remesh the surface, independently of the old mesh."""
 
 class _RegisterResult(Result):
     output: Mesh | Sequence[Mesh] | Path | None
@@ -192,4 +192,4 @@ def make(
     noise: float | None = 0.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MakeResult:
-    """Make a closed mesh of an object whose parts are known exactly."""
+    """Make a closed synthetic mesh whose parts are known exactly."""

@@ -106,7 +106,7 @@ def check(
     ratio: float | None = 10.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Tell which relationships hold on a mesh; exit code 3 if one fails."""
+    """Check which relationships hold on a mesh; exit code 3 if one fails."""
 
 class _ExportResult(Result):
     output: Document | Bytes | Path | None

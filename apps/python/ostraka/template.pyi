@@ -29,7 +29,7 @@ def pack(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _PackResult:
-    """One file that names the parts of a template, checked as a whole; exit code 3, and nothing written, if they do not fit."""
+    """Write one file that names the parts of a template, checked as a whole; exit code 3, and nothing written, if they do not fit."""
 
 def check(
     template: Input,
@@ -38,7 +38,7 @@ def check(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """Look at a template as a whole; exit code 3 if something is wrong."""
+    """Check a template as a whole; exit code 3 if something is wrong."""
 
 def show(
     template: Input,
@@ -47,7 +47,7 @@ def show(
     force_mesh: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> Result:
-    """What a template holds, and what is wrong with it."""
+    """Show what a template contains, and what is wrong with it."""
 
 class _LearnResult(Result):
     output: Folder | Path | None
@@ -70,7 +70,7 @@ def learn(
     pair_angle: float | None = 45.0,
     samples: int | None = 1000,
     iterations: int | None = 60,
-    least_score: float | None = 0.4,
+    min_score: float | None = 0.4,
     space: Literal["mesh", "cage", "both"] | None = 'mesh',
     smoothing: float | None = 0.3,
     detail: float | None = 0.01,
@@ -90,7 +90,7 @@ def learn(
     ignore_landmarks: bool | None = False,
     tries: int | None = 1,
     observed: float | None = 0.02,
-    most_off: float | None = 0.125,
+    max_off: float | None = 0.125,
     sizes: bool | None = False,
     modes: int | None = 1000,
     variance: float | None = 1.0,
@@ -118,7 +118,7 @@ def classify(
     pair_angle: float | None = 45.0,
     samples: int | None = 1000,
     iterations: int | None = 60,
-    least_score: float | None = 0.4,
+    min_score: float | None = 0.4,
     space: Literal["mesh", "cage", "both"] | None = 'mesh',
     smoothing: float | None = 0.3,
     detail: float | None = 0.01,
@@ -138,14 +138,14 @@ def classify(
     ignore_landmarks: bool | None = False,
     tries: int | None = 1,
     observed: float | None = 0.02,
-    most_off: float | None = 0.125,
+    max_off: float | None = 0.125,
     correspondence: Literal["auto", "given", "fitted"] | None = 'auto',
     strict: bool | None = False,
     attributes: bool | None = False,
     close: float | None = 0.05,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ClassifyResult:
-    """Say which class objects belong to, and which proportion, relation or distance speaks against it (exit code 3: one belongs to none, or it cannot be told)."""
+    """Report the class of objects, and which proportion, relation or distance contradicts it (exit code 3: an object belongs to no class, or there is no answer)."""
 
 class _SampleResult(Result):
     output: Folder | Path | None
@@ -161,7 +161,7 @@ def sample(
     attempts: int | None = 20,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SampleResult:
-    """Draw new members of a class, kept where its constraints hold (exit code 3: fewer than wanted)."""
+    """Draw new members of a class that satisfy its constraints (exit code 3: fewer than requested)."""
 
 class _PropagateResult(Result):
     output: Folder | Path | None
@@ -183,7 +183,7 @@ def propagate(
     pair_angle: float | None = 45.0,
     samples: int | None = 1000,
     iterations: int | None = 60,
-    least_score: float | None = 0.4,
+    min_score: float | None = 0.4,
     space: Literal["mesh", "cage", "both"] | None = 'mesh',
     smoothing: float | None = 0.3,
     detail: float | None = 0.01,
@@ -203,10 +203,10 @@ def propagate(
     ignore_landmarks: bool | None = False,
     tries: int | None = 1,
     observed: float | None = 0.02,
-    most_off: float | None = 0.125,
+    max_off: float | None = 0.125,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _PropagateResult:
-    """Lay a template onto members of its class and carry its annotations to them (exit code 3: some are lost, or the template does not lie on a member)."""
+    """Fit a template to members of its class and transfer its annotations to them (exit code 3: some are lost, or the template does not fit a member)."""
 
 class _TurnResult(Result):
     output: Folder | Path | None
@@ -224,7 +224,7 @@ def turn(
     vertices: int | None = 25000,
     method: Literal["rotation", "slices", "skeleton", "principal"] | None = 'rotation',
     tolerance: float | None = 0.02,
-    least_quality: float | None = 0.7,
+    min_quality: float | None = 0.7,
     slices: int | None = 24,
     trials: int | None = 300,
     smoothing: int | None = 2,
@@ -238,4 +238,4 @@ def turn(
     cloud_holes: float | None = 1.0,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TurnResult:
-    """A whole vessel from its sherds: turned about their axis, with its profile."""
+    """Reconstruct a whole vessel from its sherds as a surface of revolution, with its profile."""

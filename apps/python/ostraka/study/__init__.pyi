@@ -25,7 +25,7 @@ def landmarks(
     leave_odd_out: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _LandmarksResult:
-    """Lay the landmarks of a collection over each other (generalised Procrustes analysis): mean shape, sizes, principal components."""
+    """Generalised Procrustes analysis of the landmarks of a collection: mean shape, sizes, principal components."""
 
 class _ProportionsResult(Result):
     output: Folder | Path | None
@@ -56,7 +56,7 @@ def proportions(
     hard: bool | None = False,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ProportionsResult:
-    """Which ratios of measures are fixed over a collection (or a table of measures, .csv); exit code 3 if none is."""
+    """Find ratios of measures that are fixed in a collection (or a table of measures, .csv); exit code 3 if there is none."""
 
 class _MouldsResult(Result):
     output: Folder | Path | None
@@ -99,7 +99,7 @@ def moulds(
     seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MouldsResult:
-    """Which heads come from one mould."""
+    """Group heads by the mould that they were cast from."""
 
 class _TechniqueResult(Result):
     output: Folder | Path | None
@@ -120,8 +120,8 @@ def technique(
     slices: int | None = 100,
     from_: float | None = 0.02,
     to: float | None = 0.4,
-    least_turn: float | None = 0.8,
-    least_slices: int | None = 20,
+    min_turn: float | None = 0.8,
+    min_slices: int | None = 20,
     positive: Text | None = None,
     answer_by: Literal["roundness", "roundness variance", "roundness mean and variance", "eccentricity", "eccentricity variance", "eccentricity mean and variance", "both means", "both", "equivalent roundness", "ovality", "marks", "coherence", "straightness", "upright straightness", "wall variation", "outside", "outside and wall"] | None = 'both',
     folds: int | None = 10,
@@ -132,7 +132,7 @@ def technique(
     seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TechniqueResult:
-    """Which bodies are wheel-made and which hand-made, by their lower slices."""
+    """Classify bodies as wheel-made or hand-made by their lower slices."""
 
 class _SegmentsResult(Result):
     output: Annotations | Path | None
@@ -148,9 +148,9 @@ def segments(
     unit: Text | None = None,
     slices: int | None = 100,
     clusters: int | None = 0,
-    least_run: int | None = 3,
+    min_run: int | None = 3,
     size: bool | None = False,
-    most_clusters: int | None = 10,
+    max_clusters: int | None = 10,
     criterion: Literal["silhouette", "gap"] | None = 'silhouette',
     references: int | None = 50,
     restarts: int | None = 20,
@@ -158,4 +158,4 @@ def segments(
     seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _SegmentsResult:
-    """An object in segments along its height, by clusters of its slices."""
+    """Segment an object along its height by clustering its slices."""

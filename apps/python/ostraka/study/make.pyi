@@ -23,7 +23,7 @@ def proportions(
     vertices: int | None = 10000,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _ProportionsResult:
-    """Statuettes with annotations some of whose proportions are fixed, and the measures that find them."""
+    """Make synthetic statuettes with annotations, some of whose proportions are fixed, and their measure definitions."""
 
 class _MouldsResult(Result):
     folder: Folder | Path | None
@@ -48,7 +48,7 @@ def moulds(
     cast_seed: int | None = 1,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _MouldsResult:
-    """Heads of figurines cast from a few moulds, each worn, pressed and scanned on its own."""
+    """Make synthetic heads of figurines cast from a few moulds, each worn, deformed and scanned on its own."""
 
 class _TechniqueResult(Result):
     folder: Folder | Path | None
@@ -66,4 +66,4 @@ def technique(
     size_spread: float | None = 0.07,
     progress: Callable[[str, float], object] | bool | None = None,
 ) -> _TechniqueResult:
-    """Statuettes thrown on the wheel and built by hand, with their annotations."""
+    """Make synthetic statuettes, wheel-made and hand-made, with their annotations."""
