@@ -151,8 +151,8 @@ private:
     std::size_t closed_;
     double tolerance_;
     Strips strips_;
-    std::map<Pair, std::pair<std::vector<double>, std::vector<double>>>
-        crossings_;  ///< arc lengths of the intersections on each contour
+    /// Arc lengths of the intersections on each contour.
+    std::map<Pair, std::pair<std::vector<double>, std::vector<double>>> crossings_;
     std::map<Pair, bool> touching_;
     std::map<int, double> loops_;  ///< upper bound of the area that a self-intersecting contour encloses twice
     std::map<int, std::vector<double>> lengths_;

@@ -29,8 +29,8 @@ Crossings find_crossings(std::vector<Contour>& contours, double tolerance);
 /// The circle of the open contours, if they are longer than the longest closed outer contour; otherwise none.
 struct OpenArc {
     ArcFit fit;
-    bool outside =
-        false;  ///< fitted to contours that run counter-clockwise around their own circle; false if there are only others
+    /// Fitted to contours that run counter-clockwise around their own circle; false if there are only others.
+    bool outside = false;
 };
 OpenArc open_arc(const std::vector<Contour>& contours);
 

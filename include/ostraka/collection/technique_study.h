@@ -94,8 +94,8 @@ struct TechniqueStudy {
     std::string answered_by;
     std::vector<ClassifierResult> classifiers;  ///< empty without labels
     std::vector<TechniqueSplit> splits;
-    bool separated =
-        false;  ///< whether the answering classifier is better than trivial; without labels, whether the split has p <= 0.05
+    /// Whether the answering classifier is better than trivial; without labels, whether the split has p <= 0.05.
+    bool separated = false;
     std::vector<TechniqueAnswer> answers;  ///< one per object, in their order
 };
 

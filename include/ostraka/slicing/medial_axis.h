@@ -7,8 +7,8 @@ namespace ostraka {
 
 struct MedialAxis {
     struct Branch {
-        std::vector<Eigen::Vector2d>
-            points;  ///< in the slice's frame; a single point if the axis is a point (a disc); a loop repeats its first point
+        /// In the slice's frame; a single point if the axis is a point (a disc); a loop repeats its first point.
+        std::vector<Eigen::Vector2d> points;
         std::vector<double> radii;  ///< radius of the maximal disc at each point
     };
     struct Level {

@@ -12,27 +12,27 @@ struct Profile {
     SliceFrame frame;  ///< frame of the section plane, at height 0
     double angle = 0;  ///< direction of the half plane x <= 0, radians from u of the axis frame
     Slice section;     ///< section of the mesh by the plane
-    std::vector<std::vector<Eigen::Vector2d>>
-        outline;               ///< outline of the whole object, viewed across the plane (see silhouette.h)
+    /// Outline of the whole object, viewed across the plane (see silhouette.h).
+    std::vector<std::vector<Eigen::Vector2d>> outline;
     double low = 0, high = 0;  ///< height range of the object
     struct Edge {
         double height, radius;
     };
     std::vector<Edge> edges;  ///< where the outer profile of a surface of revolution bends by more than 25 degrees
-    bool turned =
-        false;     ///< surface of revolution: half of 24 slices are closed with relative roundness (fitted circle) below 0.05
-    int open = 0;  ///< number of these slices whose open contours are longer than the closed ones, and not circular
+    /// Surface of revolution: half of 24 slices are closed with relative roundness (fitted circle) below 0.05.
+    bool turned = false;
+    int open = 0;           ///< number of these slices whose open contours are longer than the closed ones, and not circular
     double view_angle = 0;  ///< direction that points right in the outline, radians
-    double rim_diameter =
-        0;  ///< diameter of the rim: the largest diameter of the circles fitted to slices in the top 3 % of the height, among
-            ///< those with relative roundness below 0.1 and a mouth (a hole, open contours, a border of the mesh), and those
-            ///< whose open contours around the axis determine the diameter to a tenth; 0 if there is none
+    /// Diameter of the rim: the largest diameter of the circles fitted to slices in the top 3 % of the height, among those with
+    /// relative roundness below 0.1 and a mouth (a hole, open contours, a border of the mesh), and those whose open contours
+    /// around the axis determine the diameter to a tenth; 0 if there is none.
+    double rim_diameter = 0;
     double rim_share = 1;              ///< preserved fraction of the rim circle
     double rim_low = 0, rim_high = 0;  ///< for open contours: 95 % confidence interval of the rim diameter
     /// Distance of the section's outer side from the axis, sampled upwards from `low` at half a per cent of the height.
     std::vector<double> extent;
-    bool hides =
-        false;  ///< a part of a surface of revolution protrudes by more than 5 % of its height and is not visible in the view
+    /// A part of a surface of revolution protrudes by more than 5 % of its height and is not visible in the view.
+    bool hides = false;
 
     /// The extent at a height, the maximum over its neighbourhood; 0 outside.
     [[nodiscard]] double reach_at(double height) const;

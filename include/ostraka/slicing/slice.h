@@ -53,16 +53,16 @@ inline constexpr double max_doubtful = 1e-3;
 /// open contours are the longer part and lie on a circle, `share` is the covered fraction of that circle.
 struct Completeness {
     double closed_share = 1;  ///< length of closed contours / length of all contours
-    double share =
-        1;  ///< preserved fraction of the outline: 1 if all contours are closed; covered angle of the circle over the full turn;
-            ///< NaN if it is undetermined: the open contours lie on no circle, or beside a longer closed contour
+    /// Preserved fraction of the outline: 1 if all contours are closed; covered angle of the circle over the full turn; NaN if
+    /// it is undetermined: the open contours lie on no circle, or beside a longer closed contour.
+    double share = 1;
     double share_low = 1, share_high = 1;  ///< 95 % confidence interval of `share` (`ArcFit`); NaN where `share` is
     /// Upper bound for any shape: length / (length + the minimum length that joins the ends of open contours).
     double share_at_most = 1;
     int crossing = 0;  ///< number of closed contours that intersect others or themselves: the mesh intersects itself
     int turned = 0;    ///< number of closed contours that were reversed because their nesting contradicted their orientation
-    double doubtful =
-        0;  ///< upper bound of the area that intersections may count twice or not at all, over the area of the outer contours
+    /// Upper bound of the area that intersections may count twice or not at all, over the area of the outer contours.
+    double doubtful = 0;
 
     [[nodiscard]] bool complete() const { return closed_share == 1; }
     /// Covered angle of the circle of the open contours, radians; NaN if there is none.

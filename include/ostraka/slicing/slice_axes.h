@@ -26,8 +26,8 @@ SliceLine regression_line(const SliceFrame& frame, const std::vector<Point>& bar
 
 /// Distances of the barycentres from an axis.
 struct Straightness {
-    double mean = 0, deviation = 0,
-           maximum = 0;   ///< in the mesh's unit; `deviation` with divisor n - 1 (0 for a single barycentre)
+    /// In the mesh's unit; `deviation` with divisor n - 1 (0 for a single barycentre).
+    double mean = 0, deviation = 0, maximum = 0;
     double length = 0;    ///< length of the interval of the axis covered by the barycentres, in the mesh's unit
     double relative = 0;  ///< mean / length; 0 if the length is 0
 };
@@ -44,8 +44,8 @@ struct ThicknessHomogeneity {
     std::size_t beside = 0;  ///< number of slices left out because of handles or other parts beside or within the wall
     double mean = absent;    ///< median of the slices' mean thickness, in the mesh's unit
     double within = absent;  ///< median over the slices of deviation / mean around each slice
-    double across =
-        absent;  ///< 1.4826 x median absolute deviation of the slices' means, over their median; absent for a single slice
+    /// 1.4826 x median absolute deviation of the slices' means, over their median; absent for a single slice.
+    double across = absent;
     double overall = absent;  ///< deviation / mean over all qualifying slices together, with equal weights
 };
 ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices);
