@@ -91,7 +91,7 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
         const Vector2d place = first.place + centre / twice;
         if (!place.allFinite()) continue;
         strips.locate(place, inside, on);
-        // Winding number: positive within the material; outer contours take precedence.
+        // Number of outer contours around the point minus that of holes: positive within the material.
         int around = 0;
         for (const int k : inside) around += contours[static_cast<std::size_t>(k)].hole ? -1 : 1;
         if (around <= 0 || !on.empty()) continue;

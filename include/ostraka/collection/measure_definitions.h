@@ -36,7 +36,7 @@ struct MeasureDefinition {
     std::string attribute;           ///< name of a measure or descriptor stored in the annotation
     std::string descriptor;          ///< name of a descriptor computed from the annotation (measure/descriptors.h)
     std::string clay;                ///< "max" or "min": clay volume of the whole object (slicing/clay.h)
-    int entry = 1;                   ///< 1-based index into an attribute that is a list
+    int entry = 1;                   ///< 1-based index of the number if the value is a list
 };
 
 struct MeasureDefinitions {

@@ -22,8 +22,8 @@ struct PredictionInterval {
 
 /// Interval that contains one more value of the same normal distribution except for the rate `reject` (both sides together;
 /// with `one_sided` all of it above): mean +- t s sqrt(1 + 1/n), where t is the quantile of Student's distribution with the
-/// variance's degrees of freedom (e.g. Hahn and Meeker 1991, section 4.7). `resolution` is added to s in quadrature: the
-/// standard deviation of the resolution of the values. Throws Error (usage) unless 0 < reject < 1, count > 0 and freedom > 0.
+/// variance's degrees of freedom (e.g. Hahn and Meeker 1991, section 4.7). `resolution` is added to s in quadrature: a standard
+/// deviation below which values cannot be distinguished. Throws Error (usage) unless 0 < reject < 1, count > 0 and freedom > 0.
 PredictionInterval predict(const SampleMoments& known, bool one_sided, double reject, double resolution = 0);
 
 /// Distribution of the variance of one quantity over classes: a scaled inverse chi-squared distribution.

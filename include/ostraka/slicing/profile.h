@@ -21,7 +21,7 @@ struct Profile {
     std::vector<Edge> edges;  ///< where the outer profile of a surface of revolution bends by more than 25 degrees
     /// Surface of revolution: half of 24 slices are closed with relative roundness (fitted circle) below 0.05.
     bool turned = false;
-    int open = 0;           ///< number of these slices whose open contours are longer than the closed ones, and not circular
+    int open = 0;  ///< number of these slices whose open contours, which have no roundness, are longer than the closed ones
     double view_angle = 0;  ///< direction that points right in the outline, radians
     /// Diameter of the rim: the largest diameter of the circles fitted to slices in the top 3 % of the height, among those with
     /// relative roundness below 0.1 and a mouth (a hole, open contours, a border of the mesh), and those whose open contours
