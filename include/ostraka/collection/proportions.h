@@ -62,9 +62,8 @@ std::string not_fixed_because(const RatioRow& ratio, double false_discoveries);
 
 struct ProportionStudy {
     std::vector<MeasureRow> measures;
-    std::vector<RatioRow> ratios;  ///< ratios of measures of the same kind
-    std::optional<double>
-        size_deviation;  ///< standard deviation of the logarithm of the common size of the objects, from the lengths
+    std::vector<RatioRow> ratios;          ///< ratios of measures of the same kind
+    std::optional<double> size_deviation;  ///< standard deviation of the logarithm of the common size, from the lengths
     std::vector<std::string> notes;
 };
 
