@@ -46,13 +46,14 @@ std::string to_string(Fixedness fixedness);
 struct RatioRow {
     std::size_t numerator = 0, denominator = 0;  ///< indices of the measures; the numerator has the larger median
     MeasureRow row;
-    double log_deviation = 0;      ///< standard deviation of the logarithm of the ratio
-    double low = 0, high = 0;      ///< quantiles that enclose the share `range` of the ratios
-    double p_pairing = 1;          ///< null hypothesis: the two measures are paired at random across objects
-    double p_others = 1;           ///< null hypothesis: varies as ratios do with deviations from the size permuted among measures
-    std::optional<double> p_size;  ///< null hypothesis: only the common size relates the measures; none if not tested
-    double q = 1, q_pairing = 1;   ///< corrected for the number of ratios: the larger of p_others and p_size; p_pairing
-    double q_others = 1;           ///< p_others, corrected for the number of ratios
+    double log_deviation = 0;  ///< standard deviation of the logarithm of the ratio
+    double low = 0, high = 0;  ///< quantiles that enclose the share `range` of the ratios
+    double p_pairing = 1;      ///< null hypothesis: the two measures are paired at random across objects
+    double p_others = 1;       ///< null hypothesis: varies as ratios do with deviations from the size permuted among measures
+    /// Null hypothesis: only the common size relates the two measures; none if not tested or undetermined.
+    std::optional<double> p_size;
+    double q = 1, q_pairing = 1;  ///< corrected for the number of ratios: the larger of p_others and p_size; p_pairing
+    double q_others = 1;          ///< p_others, corrected for the number of ratios
     Fixedness fixedness = Fixedness::unknown;
 };
 
@@ -71,12 +72,13 @@ struct ProportionStudy {
 /// tests on logarithms which ratios are fixed. A ratio is fixed if it passes two tests. (a) It varies less than ratios do when
 /// each object's deviations from its size are permuted among its measures. (b) The two measures deviate from the size together:
 /// their deviations from the mean of the others, corrected for the error of that mean, are correlated more than when all
-/// deviations are shuffled over the objects. Test (b) needs at least two other measures, or groups of measures related by (a),
-/// to estimate the size. The p-value of a ratio is the larger of the two, corrected for the number of ratios. A ratio that is
-/// constant, up to rounding, in four or more objects is fixed, with the smallest p-value that the permutations allow; if all
-/// measures of all objects are equal, the result is unknown. Values that are not positive count as missing, and so do, with a
-/// note, values above 1e35 or below 1e-35. Throws Error (input) for no measure or no object, Error (usage) for more than 60
-/// measures or options out of range. Results do not depend on the number of threads. See doc/proportions.md.
+/// deviations are shuffled over the objects. Test (b) applies only if at least two other measures, or groups of measures
+/// related by (a), are left to estimate the size. The p-value of a ratio is the larger of the two, corrected for the number of
+/// ratios. A ratio that is constant, up to rounding, in four or more objects is fixed, with the smallest p-value that the
+/// permutations allow; if all measures of all objects are equal, the result is unknown. Values that are not positive count as
+/// missing, and so do, with a note, values above 1e35 or below 1e-35. Throws Error (input) for no measure or no object, Error
+/// (usage) for more than 60 measures or options out of range. Results do not depend on the number of threads. See
+/// doc/proportions.md.
 ProportionStudy study_proportions(const MeasureTable& table, const ProportionOptions& options = {});
 
 }  // namespace ostraka
