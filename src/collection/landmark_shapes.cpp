@@ -32,7 +32,7 @@ Json landmarks_json(const CollectionObject& object) {
     return document;
 }
 
-/// What can be read of one object.
+/// The data that can be read of one object.
 struct ReadObject {
     const CollectionObject* object = nullptr;
     std::map<std::string, std::array<double, 3>> places;
@@ -57,7 +57,7 @@ std::vector<ReadObject> readable(const Collection& collection, const std::vector
     return list;
 }
 
-/// Moves objects that `why` gives a reason for to the odd ones.
+/// Moves objects for which `why` returns a reason to the odd ones.
 template <class Why>
 void leave_out(std::vector<ReadObject>& objects, std::vector<OddSpecimen>& odd, Why&& why) {
     std::vector<ReadObject> kept;
@@ -160,7 +160,7 @@ std::vector<OddSpecimen> odd_specimens(const LandmarkShapes& shapes) {
         std::string why;
         if (const double ratio = sizes[i] / median; ratio > times || ratio * times < 1)
             why = "it is " + digits(ratio, 3) + " times as large as the median: is it in another unit?";
-        // The mean of the others, so that it does not speak for itself.
+        // The mean without the tested object, so that it does not affect its own test.
         const Landmarks others = static_cast<double>(n) * aligned.mean - aligned.aligned[i];
         Landmarks mirror = shapes.configurations[i];
         mirror.col(0) *= -1;

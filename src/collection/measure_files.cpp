@@ -16,7 +16,7 @@ namespace {
 
 constexpr double no_measure = std::numeric_limits<double>::quiet_NaN();
 
-/// A heading "name [unit]": the measure, and the unit of lengths where the brackets hold one.
+/// A heading "name [unit]": the measure, and the unit of length if the brackets hold one.
 struct Heading {
     MeasureColumn column;
     std::string length_unit;
@@ -116,7 +116,7 @@ MeasureTable measure_table(const Collection& collection, const std::vector<Objec
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes, const std::string& where) {
     std::vector<std::string> names, order;
     std::vector<std::optional<ObjectMeasures>> objects;
-    std::map<std::string, std::vector<std::string>> reported;  // by note: the objects
+    std::map<std::string, std::vector<std::string>> reported;  // note -> objects
     for (std::size_t i = 0; i < taken.size(); ++i) {
         names.push_back(collection.objects[i].name);
         objects.emplace_back();

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-/// The unit's usual name and its length in metres.
+/// The usual name of a unit and its length in metres.
 struct LengthUnit {
     std::string name;
     double metres;
@@ -119,7 +119,7 @@ SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
     SyntheticMeasures made;
     made.table.values.resize(n, m);
     made.table.units.assign(static_cast<std::size_t>(n), "mm");
-    // Which measures belong together is drawn, so that their order tells nothing.
+    // Measures are assigned to groups at random, so that their order carries no information.
     made.groups.assign(static_cast<std::size_t>(m), -1);
     const std::vector<std::size_t> order = random.permutation(static_cast<std::size_t>(m));
     for (int g = 0, next = 0; g < options.groups; ++g)

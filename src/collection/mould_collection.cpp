@@ -67,13 +67,13 @@ FeatureSet from_json(const JsonValue& value) {
     return set;
 }
 
-/// The median of the sizes, to the nearest power of 1.1.
+/// The median of the sizes, rounded to the nearest power of 1.1.
 double common_size(const std::vector<double>& sizes) {
     if (sizes.empty()) return 0;
     return std::pow(1.1, std::round(std::log(upper_median(sizes)) / std::log(1.1)));
 }
 
-/// A head of another order of size than the others is most likely in another unit.
+/// A head that differs from the others by about an order of magnitude is most likely in another unit.
 std::string remedy_by_size(const Mesh& mesh, double common, const std::string& otherwise) {
     const double ratio = common > 0 ? std::sqrt(surface_area(mesh)) / common : 1;
     if (!(ratio > 0) || (ratio > 0.2 && ratio < 5)) return otherwise;

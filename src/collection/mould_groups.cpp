@@ -15,7 +15,7 @@ namespace ostraka {
 
 namespace {
 
-/// Labels by falling size of their groups, then by first member.
+/// Renumbers labels by decreasing group size, then by first member.
 std::vector<int> by_size(const std::vector<int>& labels) {
     std::map<int, std::pair<int, int>> groups;  // size (negative), first member
     for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -38,7 +38,7 @@ double mean(const std::vector<double>& values) {
     return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
-/// Mean over the heads of the mean distance to their k nearest others.
+/// Mean over the heads of the mean distance to the k nearest other heads.
 double knn_epsilon(const Eigen::MatrixXd& d, int k) {
     double sum = 0;
     for (Eigen::Index i = 0; i < d.rows(); ++i) {
@@ -52,8 +52,8 @@ double knn_epsilon(const Eigen::MatrixXd& d, int k) {
     return d.rows() > 0 ? sum / static_cast<double>(d.rows()) : 0;
 }
 
-/// The distances to the nearest other in rising order make a curve; its bend is the point farthest below the chord between its
-/// ends (Satopaa, Albrecht, Irwin and Raghavan 2011).
+/// Knee of the sorted nearest-neighbour distances: the point farthest below the chord between the ends of the curve (Satopaa,
+/// Albrecht, Irwin and Raghavan 2011).
 double knee_epsilon(const Eigen::MatrixXd& d) {
     std::vector<double> nearest;
     for (Eigen::Index i = 0; i < d.rows(); ++i) {
@@ -83,8 +83,8 @@ public:
 
     [[nodiscard]] std::vector<int> at(double epsilon) const { return cut_at(tree_, epsilon); }
 
-    /// Halfway between the two merges between which the groups have the largest mean silhouette, and that; the whole tree and -2
-    /// where there are no two.
+    /// The cut of the tree with the largest mean silhouette: the height midway between its two merges, and the silhouette; the
+    /// top of the tree and -2 if there is no such cut.
     [[nodiscard]] std::pair<double, double> best_epsilon() const {
         std::pair<double, double> result{top(), -2};
         for (std::size_t i = 0; i + 1 < tree_.merges.size(); ++i) {
@@ -113,12 +113,12 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& d, const std::vector<std::size_t>
     return part;
 }
 
-/// What a silhouette must reach for groups to stand out. Synthetic heads of one mould, or each of its own, stay below both
-/// (doc/moulds.md); an embedding makes more of what there is.
+/// Minimum silhouette of distinct groups. Synthetic heads of a single mould, and heads each of its own mould, stay below both
+/// values (doc/moulds.md). An embedding exaggerates differences and needs a larger value.
 constexpr double min_in_distances = 0.2, min_in_embedding = 0.7;
 
-/// Groups that stand out, and again within each of them; in an embedding, where the least differences can look large, they must
-/// also stand out by the distances it was made of. Gives the largest height at which a group hangs together.
+/// Splits recursively into distinct groups. In an embedding, where small differences can look large, the groups must also be
+/// distinct in the original distances. Returns the largest height at which a group is connected.
 double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances, const GroupOptions& options,
                      const std::vector<std::size_t>& heads, std::vector<int>& labels, int& next) {
     const Eigen::MatrixXd own = part_of(d, heads);
@@ -147,7 +147,7 @@ double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances,
 
 enum class EpsilonRule { knn, volume, knee, silhouette, nested, number };
 
-/// `value`: where the rule is a number.
+/// `value` is set if the rule is a number.
 EpsilonRule epsilon_rule(const std::string& word, double& value) {
     const char* const words[]{"knn", "volume", "knee", "silhouette", "nested"};
     if (const auto known = std::find(std::begin(words), std::end(words), word); known != std::end(words))

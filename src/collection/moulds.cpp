@@ -22,12 +22,12 @@ PreparedHead prepare_head(const Mesh& mesh, const CompareOptions& options) {
 
 namespace {
 
-/// What two heads have in common.
+/// Result of comparing two heads.
 struct PairComparison {
-    int matches_ab = 0, matches_ba = 0;        ///< MeshSIFT's count, from each side
-    int consistent_ab = 0, consistent_ba = 0;  ///< of them, what one motion explains
-    double distance = 0;                       ///< of the registration
-    double overlap = 0, scale = 1;             ///< of the registration; b is `scale` times as large as a
+    int matches_ab = 0, matches_ba = 0;        ///< MeshSIFT match counts in both directions
+    int consistent_ab = 0, consistent_ba = 0;  ///< matches explained by a single motion
+    double distance = 0;                       ///< registration distance
+    double overlap = 0, scale = 1;             ///< from the registration; b is `scale` times as large as a
 };
 PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const CompareOptions& options) {
     PairComparison result;
@@ -41,7 +41,7 @@ PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const 
         consistent_matches(b.features, a.features, match_features(b.features, a.features, loose), options.consistent);
     result.consistent_ab = static_cast<int>(there.matches.size());
     result.consistent_ba = static_cast<int>(back.matches.size());
-    // Where few matches agree their motion says nothing: the principal axes are tried as well.
+    // If few matches agree, their motion is unreliable: the principal axes are tried as well.
     std::vector<Motion> starts{there.motion, back.motion.inverse()};
     constexpr int trusted = 12;
     if (std::max(result.consistent_ab, result.consistent_ba) < trusted)

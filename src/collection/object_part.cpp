@@ -18,12 +18,12 @@ namespace ostraka {
 
 namespace {
 
-/// Heights over the origin of the frame.
+/// Heights above the origin of the frame.
 struct Band {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 };
 
-/// A neck is at most so wide, as a share of what is widest below and above it.
+/// Maximum width of a neck, as a fraction of the largest widths below and above it.
 constexpr double max_neck = 0.8;
 
 Band find_tube(const CutObject& cut) {
@@ -52,7 +52,7 @@ Band above_neck(const CutObject& cut) {
     return {cut.slices[*neck].height, std::numeric_limits<double>::infinity()};
 }
 
-/// Errors of the work are about the file.
+/// Attributes errors of the work to the file.
 template <class Work>
 auto about_file(const Path& file, const Work& work) {
     try {
@@ -63,7 +63,7 @@ auto about_file(const Path& file, const Work& work) {
     }
 }
 
-/// What lies in the band, cut through the faces.
+/// The part of the mesh within the band, cut through the faces.
 Mesh cut_band(const Mesh& mesh, const SliceFrame& frame, const Band& band, std::vector<Index>& origin) {
     const auto halfspace = [&](double height, double side) {
         const Vector place = (frame.origin - CGAL::ORIGIN) + height * frame.normal, normal = side * frame.normal;
@@ -83,7 +83,7 @@ Mesh cut_band(const Mesh& mesh, const SliceFrame& frame, const Band& band, std::
     return std::move(part.mesh);
 }
 
-/// Of the segments by thickness, cut out along its edges.
+/// The largest segment by thickness, cut out along its edges.
 CutPart largest_segment(const Mesh& mesh) {
     const std::vector<Index> numbers = segment(mesh, thickness(mesh), {});
     AnnotationSet set;
@@ -138,7 +138,7 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
         part.annotations_error = std::current_exception();
     }
     if (set) part.up = set->up;
-    std::vector<Index> origin;  // faces of the file's mesh
+    std::vector<Index> origin;  // faces of the mesh in the file
     if (named) {
         if (!set)
             fail_input(object.mesh.filename().string(), "has no annotations, which could name its parts",
@@ -150,7 +150,7 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
                 if (set->annotations[i].type == AnnotationType::region) to.push_back(i);
         };
         const auto has = [&](const std::string& name) { return !words_.find(*set, name).empty(); };
-        // One of several names will do.
+        // One of several names is enough.
         const bool any = std::any_of(options_.annotations.begin(), options_.annotations.end(), has);
         for (const std::string& name : options_.annotations) add(name, !any, regions);
         for (const std::string& name : options_.without) add(name, false, left_out);

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<const char*, 4> mesh_endings{".obj", ".ply", ".off", ".stl"};
 constexpr const char* markup_ending = ".mrk.json";
 
-/// Names become names of files and stand in JSON: no folders, nothing hidden, nothing a terminal would act on, UTF-8.
+/// Names become file names and appear in JSON: no folders, no hidden files, no terminal control characters, UTF-8.
 bool is_name(const std::string& name) {
     return !name.empty() && name.size() <= 200 && name.front() != '.' && name.find_first_of("/\\") == std::string::npos &&
            printable(name) == name;
@@ -34,7 +34,7 @@ std::string some_of(const std::vector<std::string>& names) {
     return names.size() <= 3 ? text : text + " and " + std::to_string(names.size() - 3) + " more";
 }
 
-/// The contents of all files of an object; empty if one cannot be read.
+/// Checksum of the contents of all files of an object; empty if one cannot be read.
 std::string checksum_of(const CollectionObject& object) {
     Sha256 hash;
     try {
@@ -49,7 +49,7 @@ std::string checksum_of(const CollectionObject& object) {
     return hash.hexadecimal();
 }
 
-/// Whether `read_collection` of its folder would take the file for an object's: by its ending a mesh, annotations or markups.
+/// Whether `read_collection` would treat the file as part of an object, by its extension: a mesh, annotations or markups.
 bool is_object_file(const Path& file) {
     const std::string name = file.filename().string();
     return name.front() != '.' && (name.ends_with(markup_ending) || name.ends_with(".ant.json") ||

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int directions = 360;
 
-/// Distance from the centre in each direction, 0 where the contour is not met.
+/// Distance of the contour from the centre in each direction; 0 where a ray misses the contour.
 std::array<double, directions> radii_of(const Contour& contour, const Vector2d& centre) {
     std::array<double, directions> radii{};
     const std::size_t pieces = contour.closed ? contour.points.size() : contour.points.size() - 1;
@@ -21,7 +21,7 @@ std::array<double, directions> radii_of(const Contour& contour, const Vector2d& 
         const Vector2d a = contour.points[i] - centre, b = contour.points[(i + 1) % contour.points.size()] - centre;
         const double from = std::atan2(a.y(), a.x());
         const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-        // Directions (d + 1/2) of the full turn: none is that of an axis.
+        // Directions are offset by half a step so that none is parallel to an axis.
         const double step = 2 * pi / directions;
         const double low = std::min(from, from + turn) / step - 0.5, high = std::max(from, from + turn) / step - 0.5;
         for (auto d = static_cast<int>(std::ceil(low)); d <= static_cast<int>(std::floor(high)); ++d) {
@@ -60,7 +60,7 @@ OutlineHarmonics outline_harmonics(const Contour& contour, const Vector2d& centr
     }
     result.turn = static_cast<double>(met) / directions;
     if (met < columns) return result;
-    // With all directions the matrix is diagonal and the damping takes 1e-4 of each harmonic.
+    // With all directions the matrix is diagonal and the damping reduces each harmonic by 1e-4.
     normal.diagonal().tail<columns - 1>().array() += 0.5e-4 * met;
     const Eigen::Matrix<double, columns, 1> x = normal.ldlt().solve(right);
     result.radius = x[0];

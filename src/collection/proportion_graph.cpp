@@ -14,7 +14,7 @@ struct Refused {
 };
 
 struct Carried {
-    int annotation;  ///< its id
+    int annotation;  ///< id of the annotation
     std::string tag, attribute;
 };
 
@@ -48,7 +48,7 @@ Index pin_of(const Mesh& mesh, const AnnotationSet& set, const MeasurePlace& pla
     throw Refused{"the template has no point '" + place.name + "'"};
 }
 
-/// The measure on the template's annotation, taken and stored where it is not there yet.
+/// The measure of the template's annotation; taken and stored if the annotation does not have it yet.
 Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& definition) {
     Annotation& annotation = annotation_of(set, definition);
     if (!definition.descriptor.empty()) throw Refused{"'" + definition.name + "' is a descriptor, which no constraint keeps"};
@@ -73,7 +73,7 @@ Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& def
     return {annotation.id, annotation.tag, name};
 }
 
-/// The parameters of the constraint, as text of a JSON object.
+/// The parameters of the constraint as the text of a JSON object.
 std::string parameters(const Carried& part, const Carried& reference, double low, double high, bool hard) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();

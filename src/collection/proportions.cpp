@@ -30,10 +30,10 @@ MeasureRow row_of(const std::string& name, const std::string& unit, const std::v
     return row;
 }
 
-/// The measures of one kind, those without any value left out: ratios are taken among them.
+/// The measures of one kind that have values. Ratios are taken among them.
 struct Kind {
     std::vector<std::size_t> measures;
-    Eigen::MatrixXd logs;  ///< of the values above zero
+    Eigen::MatrixXd logs;  ///< logarithms of the positive values
 };
 
 std::vector<Kind> kinds_of(const MeasureTable& table) {
@@ -60,7 +60,7 @@ std::vector<double> corrected(const std::vector<double>& p, ProportionOptions::C
     return correction == ProportionOptions::Correction::by ? benjamini_yekutieli(p) : benjamini_hochberg(p);
 }
 
-/// Numbers measures that are joined by pairs with the same number.
+/// Labels connected components of measures: joined pairs get the same label.
 std::vector<int> components(std::size_t count, const std::vector<Pair>& joined) {
     DisjointSets sets(count);
     for (const Pair& pair : joined) sets.unite_into(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
@@ -69,15 +69,15 @@ std::vector<int> components(std::size_t count, const std::vector<Pair>& joined) 
     return group;
 }
 
-/// A ratio that is waiting for its corrected p-value.
+/// A ratio whose p-value is not corrected yet.
 struct Candidate {
     RatioRow ratio;
     Pair pair;
     std::size_t count = 0;
-    bool constant = false;  ///< the same in four objects or more, which do not all have the same measures
+    bool constant = false;  ///< equal in at least four objects that are not identical
 };
 
-/// The same number, but for the rounding of a division.
+/// Equality up to the rounding of a division.
 bool all_same(double minimum, double maximum) { return maximum - minimum <= 1e-12 * std::abs(maximum); }
 
 /// Whether each measure is the same in all objects that have it.
@@ -149,7 +149,7 @@ void test(std::vector<Candidate>& list, const Kind& kind, const ProportionOption
     // With two measures of a kind there is no other ratio to compare with.
     std::vector<double> others = kind.measures.size() < 3 ? std::vector<double>(list.size(), 1.0)
                                                           : proportions::others_test(centred, pairs, permutations, seed + 1);
-    // What does not vary at all is no chance of measures that do: as small as a test of so many rearrangements can say.
+    // A ratio that does not vary at all is not due to chance: it gets the smallest p-value of the permutation test.
     for (std::size_t r = 0; r < list.size(); ++r)
         if (list[r].constant) pairing[r] = others[r] = 1 / (1 + static_cast<double>(permutations));
     const std::vector<double> q = corrected(others, options.correction);
@@ -198,7 +198,7 @@ void check(const MeasureTable& table, std::vector<std::string>& notes) {
         notes.push_back("values that are not above zero: " + std::to_string(not_positive) + "; ratios with them are left out");
 }
 
-/// Values so large or small that their fourth powers, or those of ratios, are no numbers become missing.
+/// Values whose fourth powers, or those of their ratios, overflow or underflow become missing.
 MeasureTable without_extremes(MeasureTable table, std::vector<std::string>& notes) {
     constexpr double largest = 1e35;
     std::size_t count = 0;
@@ -231,7 +231,7 @@ std::string not_fixed_because(const RatioRow& ratio, double false_discoveries) {
         case Fixedness::fixed:
             return "";
         case Fixedness::stable:
-            // Both p-values are small but not together, or the size is all that binds the two.
+            // Either both p-values are small separately but not combined, or only the size relates the two measures.
             return ratio.p_size && *ratio.p_size > ratio.p_others ? "size" : "others";
         case Fixedness::with_size:
             return "others";
@@ -261,7 +261,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
                 !std::isnan(value) && (table.measures[j].power == 0 || unified.comparable[i]))
                 values.push_back(value);
         const bool absent = table.values.col(static_cast<Eigen::Index>(j)).array().isNaN().all();
-        // Of what was never taken the unit is not known.
+        // The unit of a measure that was never taken is unknown.
         study.measures.push_back(
             row_of(table.measures[j].name, absent ? "" : table.measures[j].unit, values, options.confidence));
         if (absent)
@@ -279,7 +279,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
     std::vector<Candidate> all;
     std::size_t ratios = 0;
     for (const Kind& kind : kinds) ratios += kind.measures.size() * (kind.measures.size() - 1) / 2;
-    // A single fixed ratio must be able to come below its corrected limit.
+    // Enough permutations that a single fixed ratio can fall below its corrected limit.
     const int permutations =
         std::max(options.permutations, static_cast<int>(std::ceil(2 * static_cast<double>(ratios) / options.false_discoveries)));
     for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -290,7 +290,7 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
         if (const auto own = proportions::own_deviations(centred)) {
             for (std::size_t c = 0; c < own->size(); ++c) study.measures[kind.measures[c]].own_deviation = (*own)[c];
             if (table.measures[kind.measures.front()].power == 1) {
-                // What is common to two lengths: their covariance over the comparable objects.
+                // The size shared by two lengths: their covariance over the comparable objects.
                 double sum = 0, count = 0;
                 for (Eigen::Index c = 0; c < centred.cols(); ++c) {
                     double mean = 0, square = 0, n = 0;

@@ -15,12 +15,12 @@ namespace ostraka::proportions {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Sums in another order differ by rounding: what is no farther apart counts as equal.
+/// Sums in a different order differ by rounding; differences up to this tolerance count as equal.
 constexpr double rounding = 1e-12;
 
 bool has(double value) { return !std::isnan(value); }
 
-/// Variance of a difference over rows that have both, by moments about 0 of columns that are centred already.
+/// Variance of a difference over rows that have both values, from moments about 0 of columns that are already centred.
 Variance variance_of(const double* a, const double* b, Eigen::Index rows) {
     double sum = 0, square = 0, n = 0;
     for (Eigen::Index i = 0; i < rows; ++i)
@@ -29,8 +29,8 @@ Variance variance_of(const double* a, const double* b, Eigen::Index rows) {
     return {std::max(0.0, square - sum * sum / n) / (n - 1), static_cast<std::size_t>(n)};
 }
 
-/// Correlation of the deviations of the first two columns from the mean of the others, what the error of that mean adds taken
-/// away. `columns`: rows that have the first two and at least two others.
+/// Correlation of the deviations of the first two columns from the mean of the others, corrected for the error of that mean.
+/// `columns`: rows that have the first two values and at least two others.
 double bond(const Eigen::MatrixXd& columns) {
     const Eigen::Index n = columns.rows(), m = columns.cols();
     std::vector<double> da, db;
@@ -60,7 +60,7 @@ double bond(const Eigen::MatrixXd& columns) {
 
 Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs) {
     const Eigen::Index n = logs.rows(), m = logs.cols();
-    // About the first value of each column first, so that nothing is lost where all values are large.
+    // Subtracts the first value of each column first, to avoid cancellation if all values are large.
     Eigen::MatrixXd x = logs;
     for (Eigen::Index j = 0; j < m; ++j) {
         double first = 0;
@@ -82,7 +82,7 @@ Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs) {
                 if (has(x(i, l))) normal(j, l) -= 1 / k;
         }
     }
-    // The sizes may take a constant from the columns: of all solutions the one with the least squares.
+    // The columns are determined up to a constant, which the sizes can absorb: take the minimum-norm solution.
     const Eigen::VectorXd centre = solve_least_squares(normal, right);
     return x.rowwise() - centre.transpose();
 }
@@ -101,7 +101,7 @@ std::vector<double> pairing_test(const Eigen::MatrixXd& centred, const std::vect
             for (Eigen::Index i = 0; i < centred.rows(); ++i)
                 if (has(centred(i, pairs[r].a)) && has(centred(i, pairs[r].b)))
                     a.push_back(centred(i, pairs[r].a)), b.push_back(centred(i, pairs[r].b));
-            // The variance of the difference falls as the sum of products grows.
+            // The variance of the difference decreases as the sum of products increases.
             const auto products = [&] {
                 double sum = 0;
                 for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
@@ -134,7 +134,7 @@ std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vecto
             if (has(own(i, j))) sum += own(i, j), columns.push_back(j);
         own.row(i).array() -= columns.empty() ? 0 : sum / static_cast<double>(columns.size());
     }
-    // Ratios over equally many objects are equally variable under the hypothesis: they are counted together.
+    // Under the null hypothesis, ratios over the same number of objects have the same variance: they are pooled.
     std::map<std::size_t, std::vector<double>> observed;
     std::vector<Variance> variances;
     for (const Pair& pair : pairs) {
@@ -143,7 +143,7 @@ std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vecto
     }
     for (auto& [count, values] : observed) std::sort(values.begin(), values.end());
 
-    // Of each block of rearrangements, how many ratios vary no more than each of the observed ones.
+    // For each block of permutations, the number of ratios that vary no more than each of the observed ones.
     const std::size_t block = 64, blocks = (static_cast<std::size_t>(permutations) + block - 1) / block;
     std::vector<std::map<std::size_t, std::vector<std::size_t>>> counted(blocks);
     parallel_for(
@@ -162,7 +162,7 @@ std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vecto
                 for (const Pair& pair : pairs) {
                     const Variance v = ratio_variance(dealt, pair);
                     const std::vector<double>& values = observed.at(v.count);
-                    // The first observed one that is at least as large as this.
+                    // The first observed variance that is at least as large.
                     const auto at = std::lower_bound(values.begin(), values.end(), v.value * (1 - rounding)) - values.begin();
                     ++counted[part].at(v.count)[static_cast<std::size_t>(at)];
                 }
@@ -209,7 +209,7 @@ std::optional<double> size_test(const Eigen::MatrixXd& centred, const Pair& pair
     if (rows < 4) return std::nullopt;
     columns.conservativeResize(rows, Eigen::NoChange);
 
-    // Deviations from each object's mean, columns about their means.
+    // Subtract the mean of each object, then the mean of each column.
     for (Eigen::Index i = 0; i < rows; ++i) {
         double sum = 0, k = 0;
         for (Eigen::Index j = 0; j < columns.cols(); ++j)

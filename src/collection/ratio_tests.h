@@ -1,4 +1,4 @@
-// The tests of `study_proportions`.
+// The hypothesis tests of `study_proportions`.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,37 +9,38 @@
 
 namespace ostraka::proportions {
 
-/// Two columns of the logarithms.
+/// Two columns of the matrix of logarithms.
 struct Pair {
     Eigen::Index a, b;
 };
 
-/// Logarithms about the means of their columns, objects' sizes apart: x_ij - c_j with the c_j that minimise the sum of
-/// (x_ij - s_i - c_j)^2 over the values there are. NaN stays NaN.
+/// Logarithms minus column centres, with the sizes of the objects fitted separately: x_ij - c_j, where the c_j minimise the sum
+/// of (x_ij - s_i - c_j)^2 over the values present. NaN stays NaN.
 Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs);
 
-/// Variance (n - 1) of the difference of two columns over the rows that have both, and their number; 0 for fewer than two.
+/// Variance (divisor n - 1) of the difference of two columns over the rows that have both values, and the number of these rows;
+/// 0 for fewer than two rows.
 struct Variance {
     double value = 0;
     std::size_t count = 0;
 };
 Variance ratio_variance(const Eigen::MatrixXd& logs, const Pair& pair);
 
-/// That one column is shuffled against the other: a p-value for each pair.
+/// Permutation test that shuffles one column against the other: a p-value for each pair.
 std::vector<double> pairing_test(const Eigen::MatrixXd& centred, const std::vector<Pair>& pairs, int permutations,
                                  std::uint64_t seed);
 
-/// That deviations from the size of an object are dealt out anew among its measures.
+/// Permutation test that permutes each object's deviations from its size among its measures.
 std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vector<Pair>& pairs, int permutations,
                                 std::uint64_t seed);
 
-/// That the two columns deviate from the size independently, which the mean of the other groups tells. `groups` numbers columns
-/// that go together. Nothing where fewer than two groups besides theirs, or fewer than four objects, are left.
+/// Permutation test of the hypothesis that the two columns deviate independently from the size, estimated by the mean of the
+/// other groups. `groups` labels related columns. No result if fewer than two other groups or fewer than four objects remain.
 std::optional<double> size_test(const Eigen::MatrixXd& centred, const Pair& pair, const std::vector<int>& groups,
                                 int permutations, std::uint64_t seed);
 
-/// Standard deviations about the common size, each at least 0; none for fewer than three columns or where two have no rows in
-/// common.
+/// Standard deviations about the common size, each at least 0; none for fewer than three columns or if two columns have no rows
+/// in common.
 std::optional<std::vector<double>> own_deviations(const Eigen::MatrixXd& centred);
 
 }  // namespace ostraka::proportions

@@ -61,7 +61,7 @@ void ResultStore::keep(const std::string& name, const std::string& key, const Js
     auto& allocator = document.GetAllocator();
     add_members(document, allocator, "format", "ostraka-study-result", "version", 1, "key", key, "checksum",
                 sha256(to_text(result)), "result", JsonValue(result, allocator));
-    // There at once, whatever becomes of the outputs that the caller writes together.
+    // Stored at once, even if the caller's own output transaction fails.
     OutputTransaction own;
     write_json(folder_ / (name + ".json"), document);
     own.commit();

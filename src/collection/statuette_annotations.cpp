@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// Nothing if a landmark is missing.
+/// Adds the measure; does nothing if a landmark is missing.
 void add_measure(const Statuette& statuette, Annotation& object, const std::string& name, const std::string& tool,
                  const std::vector<std::string>& landmarks) {
     Measure measure;
@@ -42,7 +42,7 @@ AnnotationSet annotate_statuette(const Statuette& statuette) {
         region.colour = {red, green, blue};
     }
     Annotation& object = ensure_root(set, statuette.mesh);
-    // The height is taken between the lowest and the topmost vertex: arms never reach above the head.
+    // The height is measured between the lowest and the topmost vertex; arms never reach above the head.
     Measure height;
     height.tool = "bounding";
     height.direction = {0, 0, 1};

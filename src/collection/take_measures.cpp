@@ -17,7 +17,7 @@ namespace ostraka {
 
 namespace {
 
-/// Why a measure cannot be taken on this object, in words.
+/// Reason why a measure cannot be taken on this object.
 struct Missing {
     std::string why;
 };
@@ -25,10 +25,10 @@ struct Missing {
 struct Taken {
     double value = 0;
     int power = 1;
-    std::string unit;  ///< of what is no power of a length
+    std::string unit;  ///< for values that are not a power of a length
 };
 
-/// "mm^2" gives "mm" and 2; what is no such power gives 0.
+/// "mm^2" gives "mm" and 2; a text that is not such a power gives power 0.
 std::pair<std::string, int> length_power(const std::string& unit) {
     const std::size_t caret = unit.find('^');
     if (caret == std::string::npos) return {unit, 1};
@@ -36,7 +36,7 @@ std::pair<std::string, int> length_power(const std::string& unit) {
     return power && *power >= 1 && *power <= 3 ? std::pair(unit.substr(0, caret), *power) : std::pair(unit, 0);
 }
 
-/// The files of one object, read when they are needed.
+/// The files of one object, read on demand.
 class Taker {
 public:
     Taker(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks, const TagWords* words)
@@ -74,7 +74,7 @@ private:
         if (found == nullptr) throw Missing{"no annotation is called '" + tag + "'"};
         return *found;
     }
-    /// The annotation that is measured; the whole mesh where none is named.
+    /// The annotation to measure; the whole mesh if none is named.
     Annotation measured(const MeasureDefinition& definition) const {
         if (!definition.annotation.empty()) return require(definition.annotation);
         Annotation whole;
@@ -90,7 +90,7 @@ private:
         return *set_->up;
     }
 
-    /// The vertex of a place; throws Missing where there is none.
+    /// The vertex at a place; throws Missing if there is none.
     Index vertex(const MeasurePlace& place) const {
         if (place.extreme) return extremes(mesh(), require(place.name), along(*place.extreme))[1];
         std::string tag = place.name;
@@ -108,7 +108,7 @@ private:
             throw Missing{"'" + found->tag + "' has " + std::to_string(found->points.size()) + " points"};
         return found->points[number];
     }
-    /// The place itself: a landmark's, else a vertex'.
+    /// The position of a place: of a landmark if it names one, otherwise of a vertex.
     Point place(const MeasurePlace& wanted) const {
         if (landmarks_ != nullptr && !wanted.extreme && find(wanted.name) == nullptr) {
             const Landmark* found = nullptr;
@@ -156,7 +156,7 @@ private:
             throw Missing{"'" + definition.descriptor + "' has " + std::to_string(found->values.size()) + " numbers"};
         return {found->values[static_cast<std::size_t>(definition.entry - 1)], found->power, found->unit};
     }
-    /// Across the object's upward direction; across z where the annotations do not say.
+    /// Sliced across the object's up direction, or across z if the annotations give none.
     Taken clay(const MeasureDefinition& definition) {
         if (!clay_) {
             const std::array<double, 3> up = set_ != nullptr && set_->up ? *set_->up : std::array<double, 3>{0, 0, 1};
@@ -190,14 +190,14 @@ private:
         return in_own_unit(found->descriptor.values[static_cast<std::size_t>(definition.entry - 1)], found->descriptor.unit,
                            false);
     }
-    /// A value with a unit of its own, in the unit of the annotations where both are lengths.
+    /// A value with its own unit, converted to the unit of the annotations if both are lengths.
     Taken in_own_unit(double value, const std::string& unit, bool length) const {
         const auto [base, power] = length_power(unit);
         const std::string own = set_ == nullptr ? "" : set_->unit;
         if (unit.empty()) return {value, length ? 1 : 0, ""};
         if (power != 0 && base == own) return {value, power, ""};
         if (power != 0 && !own.empty()) {
-            // Through the table's conversion, so that there is one list of units.
+            // Uses the conversion of the measure table, so that there is only one list of units.
             MeasureTable one;
             one.objects = {"a", "b", "c"};
             one.units = {base, own, own};
@@ -244,7 +244,7 @@ ObjectMeasures take(const Mesh* mesh, const AnnotationSet* set, const LandmarkSe
     return result;
 }
 
-/// Whether landmarks suffice for all measures.
+/// Whether landmarks are sufficient for all measures.
 bool by_landmarks(const LandmarkSet& landmarks, const MeasureDefinitions& definitions) {
     const auto known = [&](const MeasurePlace& place) {
         return !place.extreme && std::any_of(landmarks.landmarks.begin(), landmarks.landmarks.end(),

@@ -24,7 +24,7 @@ using Eigen::Vector2d;
 
 constexpr double unknown = TechniqueSlice::unknown;
 
-/// The slice with one contour only, and the holes directly in it.
+/// The slice reduced to one contour and the holes directly in it.
 Slice alone(const Slice& slice, std::size_t outline) {
     Slice part;
     part.height = slice.height;
@@ -40,7 +40,7 @@ Slice alone(const Slice& slice, std::size_t outline) {
     return part;
 }
 
-/// The body's outline: the longest contour, a hole only if nothing else is there.
+/// The outline of the body: the longest contour; a hole only if there is no other contour.
 std::optional<std::size_t> main_outline(const Slice& slice) {
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < slice.contours.size(); ++i) {
@@ -51,7 +51,7 @@ std::optional<std::size_t> main_outline(const Slice& slice) {
     return best;
 }
 
-/// What the slice of the body says; the turn alone where its outline is too open.
+/// Measures of one slice of the body; only the angular coverage if its outline is too open.
 TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double min_turn) {
     TechniqueSlice result;
     const Slice body = alone(slice, outline);
@@ -87,7 +87,7 @@ TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double min
     return result;
 }
 
-/// Mean and variance (n - 1) of one value over the slices that know it.
+/// Mean and variance (divisor n - 1) of one value over the slices where it is known.
 struct Moments {
     std::size_t count = 0;
     double mean = unknown, variance = unknown;
@@ -106,8 +106,7 @@ Moments moments(const std::vector<TechniqueSlice>& slices, Value&& value) {
     return m;
 }
 
-/// Distances of the centres from the straight line x = a + b h, y = c + d h that fits them, and from their mean; relative to the
-/// mean radius.
+/// Distances of the centres from their fitted line x = a + b h, y = c + d h and from their mean, relative to the mean radius.
 struct LineDeviation {
     double line = unknown, upright = unknown;
     std::size_t count = 0;

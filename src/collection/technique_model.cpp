@@ -72,8 +72,8 @@ TechniqueModel learn(const MatrixXd& values, const std::vector<bool>& truth, con
         model.middle = VectorXd::Constant(1, model.threshold->value);
         return model;
     }
-    // Fisher's discriminant (1936) of standardised columns; a twentieth of the identity keeps columns that nearly agree from
-    // outweighing each other.
+    // Fisher's discriminant (1936) of standardised columns. A twentieth of the identity is added so that nearly equal columns
+    // do not get large opposite weights.
     const VectorXd size = kinds.scatter.diagonal().cwiseSqrt().cwiseMax(1e-12);
     const MatrixXd standard = size.cwiseInverse().asDiagonal() * kinds.scatter * size.cwiseInverse().asDiagonal();
     const MatrixXd damped = standard + 0.05 * MatrixXd::Identity(values.cols(), values.cols());
@@ -82,7 +82,7 @@ TechniqueModel learn(const MatrixXd& values, const std::vector<bool>& truth, con
     const double deviation = std::sqrt(std::max(model.weights.dot(kinds.scatter * model.weights), 0.0));
     if (deviation > 1e-300) model.weights /= deviation;
     model.middle = 0.5 * (kinds.mean[0] + kinds.mean[1]);
-    // The limit, as that of one descriptor, is where F1 is best.
+    // The threshold is where F1 is best, as for a single descriptor.
     std::vector<double> scores;
     std::vector<bool> known;
     for (const std::size_t row : rows) {

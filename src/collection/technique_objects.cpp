@@ -12,7 +12,7 @@ namespace {
 
 Vector vector_of(const std::array<double, 3>& way) { return {way[0], way[1], way[2]}; }
 
-/// A direction and where it is from.
+/// A direction and its source.
 struct UpDirection {
     Vector way;
     const char* from;
@@ -37,7 +37,7 @@ std::vector<ObjectResult> measure_technique(const Collection& collection, const 
     for (const std::string& one : parts.key()) what.push_back(one);
     return for_each_object(collection, store, what, [&](const CollectionObject& object) {
         const ObjectPart part = parts.read(object, up);
-        // Annotations that nothing is asked of may be damaged.
+        // Annotations that are not needed may be damaged.
         if (!up && part.annotations_error) std::rethrow_exception(part.annotations_error);
         try {
             const UpDirection direction = up_direction(part.up, up);

@@ -1,4 +1,4 @@
-// Objects unlike those that a classifier was taught by.
+// Out-of-class objects of a technique study.
 #include "technique_model.h"
 
 #include "ostraka/core/parallel.h"
@@ -10,11 +10,11 @@ namespace ostraka {
 
 namespace {
 
-/// Differences that say nothing, however alike the labelled objects are: a twentieth.
+/// Minimum spread: smaller differences are insignificant, however similar the labelled objects are.
 constexpr double min_spread = 0.05;
 
-/// On the scale on which distances are taken: logarithms, of the ratio of sides that of what is missing to 1. Coherence is not
-/// compared: it has bounds, and near them no scale.
+/// Distances are measured on logarithms; for the ratio of sides, on the logarithm of its difference to 1. Coherence is not
+/// compared: it is bounded, and has no natural scale near its bounds.
 bool compared(const DescriptorMeaning& descriptor) { return descriptor.name != "coherence"; }
 double on_scale(const DescriptorMeaning& descriptor, double table_value) {
     return descriptor.positive ? table_value : std::log(std::max(1 - table_value, 1e-3));
@@ -23,14 +23,14 @@ double from_scale(const DescriptorMeaning& descriptor, double value) {
     return descriptor.positive ? std::exp(value) : 1 - std::exp(value);
 }
 
-/// Values of one descriptor of the labelled objects, by kind.
+/// Values of one descriptor over the labelled objects, by class.
 struct LabelledValues {
     std::vector<double> values[2];
     [[nodiscard]] bool enough() const { return std::min(values[0].size(), values[1].size()) >= min_compared; }
 };
 
-/// Distance of `x` from the nearer median, outwards, in robust standard deviations about the medians (Rousseeuw and Croux 1993),
-/// widened by 5 / n for the uncertainty of few values.
+/// Outward distance of `x` from the nearer class median, in robust standard deviations about the medians (Rousseeuw and Croux
+/// 1993), widened by 5 / n for the uncertainty of small samples.
 double distance_outside(const LabelledValues& known, double x) {
     const double medians[2]{sample_quantile(known.values[0], 0.5), sample_quantile(known.values[1], 0.5)};
     std::vector<double> away;

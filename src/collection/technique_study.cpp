@@ -25,7 +25,7 @@ const std::vector<std::string>& outside() {
 }
 const std::string component_name = "first component";
 
-/// The label whose objects are rounder in the median.
+/// The label whose objects have the smaller median roundness deviation.
 std::string rounder_label(const std::vector<TechniqueObject>& objects, const std::set<std::string>& labels) {
     std::string best;
     double minimum = std::numeric_limits<double>::infinity();
@@ -39,8 +39,8 @@ std::string rounder_label(const std::vector<TechniqueObject>& objects, const std
     return best;
 }
 
-/// 95 % of the mean roundness when blocks of a tenth of the slices are drawn anew (moving blocks, Kuensch 1989: neighbouring
-/// slices are alike).
+/// 95 % interval of the mean roundness from resampled blocks of a tenth of the slices (moving blocks, Kuensch 1989:
+/// neighbouring slices are correlated).
 std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, std::uint64_t seed, std::size_t object) {
     const std::size_t count = measures.slices.size(), block = std::max<std::size_t>(1, count / 10);
     if (count < 2) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, st
     return Interval{sample_quantile(means, 0.025), sample_quantile(means, 0.975)};
 }
 
-/// What an answer is worth: the agreement tells how stable it is, and the classifier's error how often stable answers are wrong.
+/// Certainty of an answer: the agreement measures how stable it is, the classifier's error how often stable answers are wrong.
 std::string certainty_of(const TechniqueAnswer& answer, const ClassifierResult& by) {
     if (answer.unlike) return "unlike";
     if (!by.better) return "not told apart";
@@ -66,7 +66,7 @@ std::string certainty_of(const TechniqueAnswer& answer, const ClassifierResult& 
     return answer.agreement >= 0.8 && by.error <= 0.2 ? "likely" : "doubtful";
 }
 
-/// Answers of the chosen classifier, each learned without the object itself.
+/// Answers of the chosen classifier; each object is classified by a model trained without it.
 void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& objects, const ClassifierResult& chosen,
                     const TechniqueStudyOptions& options) {
     const DescriptorTable table = descriptor_table(objects, chosen.classifier.descriptors);
@@ -83,7 +83,7 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
             models[row] = learn(table.values, known.truth, others);
         },
         8);
-    // Resampled collections: each kind drawn with replacement as often as it is there.
+    // Bootstrap: each class is resampled with replacement to its original size.
     std::vector<std::vector<std::int8_t>> votes(static_cast<std::size_t>(options.resamples));
     std::vector<std::size_t> kinds[2];
     for (const std::size_t row : known.rows) kinds[known.truth[row] ? 1 : 0].push_back(row);
@@ -123,7 +123,7 @@ void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& o
     }
 }
 
-/// First principal component of the outside's descriptors, standardised; larger for what is less round.
+/// First principal component of the outside descriptors, standardised; it increases as objects become less round.
 std::vector<double> first_component(const DescriptorTable& table) {
     const Eigen::Index n = table.values.rows();
     if (n < 2) return std::vector<double>(static_cast<std::size_t>(n), 0);
@@ -134,7 +134,7 @@ std::vector<double> first_component(const DescriptorTable& table) {
     }
     const SymmetricEigenX parts(X.transpose() * X);
     VectorXd way = parts.eigenvectors().col(X.cols() - 1);
-    if (way[0] < 0) way = -way;  // of ovality
+    if (way[0] < 0) way = -way;  // increases with ovality
     const VectorXd y = X * way;
     return {y.data(), y.data() + y.size()};
 }
@@ -182,7 +182,7 @@ TechniqueSplit split_by(const std::vector<TechniqueObject>& objects, const std::
 void answer_by_split(TechniqueStudy& study, const TechniqueSplit& split, const std::vector<TechniqueObject>& objects) {
     study.separated = split.p_value <= 0.05;
     if (!study.separated) return;
-    // The group whose roundness is less in the median is the rounder one.
+    // The group with the smaller median roundness deviation is the rounder one.
     std::vector<double> roundness[2];
     for (std::size_t i = 0; i < objects.size(); ++i)
         if (split.group[i] >= 0) roundness[split.group[i]].push_back(objects[i].measures.value("roundness mean"));

@@ -1,4 +1,4 @@
-// How well a classifier tells objects that it was not taught.
+// Accuracy of a classifier on held-out objects.
 #include "technique_model.h"
 
 #include "ostraka/core/parallel.h"
@@ -23,7 +23,7 @@ Labelled labelled(const std::vector<TechniqueObject>& objects, const DescriptorT
 
 namespace {
 
-/// F1 with its interval beside that of calling everything positive, and the share of wrong answers.
+/// Sets F1 with its interval, the F1 of classifying everything as positive, and the error rate.
 void judge(ClassifierResult& result, const std::vector<bool>& truth, const TechniqueStudyOptions& options) {
     std::vector<std::size_t> kinds[2];
     for (std::size_t i = 0; i < truth.size(); ++i) kinds[truth[i] ? 1 : 0].push_back(i);
@@ -92,7 +92,7 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
             }
             std::vector<std::size_t> others = known.rows;
             others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-            // The weights of the others, but one zero for all: a limit learned without an object shifts against its label.
+            // Held-out weights, but a common threshold: a threshold trained without an object shifts against its label.
             const VectorXd x = table.values.row(static_cast<Eigen::Index>(known.rows[i]));
             scores[i] = learn(table.values, known.truth, others).weights.dot(x - all.middle);
         },

@@ -1,4 +1,4 @@
-// Answers of a technique study in words.
+// Explanations of the answers of a technique study.
 #include "technique_model.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ std::string digits(const char* pattern, double value) {
 }
 std::string percent_of_radius(double share) { return digits("%.3g %% of the radius", 100 * share); }
 
-/// A descriptor's value as people read it: variances as deviations, lengths in per cent of the radius.
+/// A descriptor's value for display: variances as deviations, lengths in per cent of the radius.
 std::string shown(const std::string& descriptor, double value) {
     const bool variance = descriptor.ends_with("variance");
     const double number = variance ? std::sqrt(std::max(value, 0.0)) : value;
@@ -31,7 +31,7 @@ std::string name_of(const std::string& descriptor) {
     return descriptor;
 }
 
-/// A descriptor's value beside its threshold, and the side of it; nothing where it is not known.
+/// A descriptor's value with its threshold and side; empty if unknown.
 std::string beside(const TechniqueStudy& study, const TechniqueObject& object, const std::string& classifier,
                    const std::string& words) {
     for (const ClassifierResult& each : study.classifiers) {

@@ -12,7 +12,7 @@ namespace ostraka {
 std::string quantised_glb(const TriangleSoup& soup, const std::array<double, 3>& origin, double largest_side) {
     constexpr double steps = 65535;
     const double step = largest_side > 0 ? largest_side / steps : 1;
-    using Quantised = std::array<std::uint16_t, 4>;  // the fourth fills up to what a view's stride has to be a multiple of
+    using Quantised = std::array<std::uint16_t, 4>;  // padded by a fourth value to the required stride
     std::vector<Quantised> points(soup.points.size());
     std::array<double, 3> low{steps, steps, steps}, high{0, 0, 0};
     for (std::size_t i = 0; i < points.size(); ++i)

@@ -1,4 +1,4 @@
-// Shapes as a browser gets them.
+// Geometry in the format that browsers load.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -7,8 +7,9 @@
 
 namespace ostraka {
 
-/// A GLB file of one mesh: positions as 16 bit steps from `origin` (KHR_mesh_quantization), compressed (EXT_meshopt_compression;
-/// Kapoulkine, meshoptimizer) in the order of vertices and triangles that the mesh has. Corners of a triangle may turn.
+/// A GLB file of one mesh: positions as 16-bit steps from `origin` (KHR_mesh_quantization), compressed
+/// (EXT_meshopt_compression; Kapoulkine, meshoptimizer). The order of vertices and triangles is kept; the corners of a triangle
+/// may be rotated cyclically.
 std::string quantised_glb(const TriangleSoup& soup, const std::array<double, 3>& origin, double largest_side);
 
 }  // namespace ostraka

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint16_t no_value = 65535;
 
-/// Keeps bytes in the page and tells their number.
+/// Stores bytes in the page and returns their index.
 using Keep = std::function<std::size_t(std::string_view)>;
 using Relative = std::function<std::array<double, 3>(std::array<double, 3>)>;
 
@@ -32,7 +32,7 @@ void add_number(std::string& bytes, std::size_t value) {
     bytes += static_cast<char>(value);
 }
 
-/// Ascending numbers as gaps and runs.
+/// Encodes ascending numbers as gaps and runs.
 std::string runs_of(const std::vector<Index>& faces) {
     std::string bytes;
     std::size_t at = 0;
@@ -68,7 +68,7 @@ Box box_of(const TriangleSoup& soup) {
     return box;
 }
 
-/// Colours at even steps of a scale; it is linear between them.
+/// Colours at equal steps of a scale, to be interpolated linearly.
 std::vector<std::array<int, 3>> colours_of(const ColourScale& scale) {
     constexpr int steps = 8;
     std::vector<std::array<int, 3>> colours;
@@ -79,7 +79,7 @@ std::vector<std::array<int, 3>> colours_of(const ColourScale& scale) {
     return colours;
 }
 
-/// What the colours go over: all values, or, where a few lie far out, what holds 98 % of them.
+/// Range of the colours: all values or, if there are outliers, the range that contains 98 % of them.
 std::pair<double, double> coloured_range(const std::vector<double>& values, const ColourScale& scale) {
     std::vector<double> sorted;
     for (const double value : values)
@@ -101,7 +101,7 @@ std::string values_text(const Descriptor& descriptor) {
     return joined(texts, ", ") + (descriptor.unit.empty() ? "" : " " + descriptor.unit);
 }
 
-/// Positions relative to the box in single precision, and triangles, as they are.
+/// Exact positions, in single precision relative to the box, and triangles.
 JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObject::Exact& exact, const Keep& keep,
                      JsonAllocator& allocator) {
     JsonValue entry = json_object(allocator, "key", exact.key);
@@ -117,7 +117,7 @@ JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObje
     return entry;
 }
 
-/// The places of a curve a little off the surface, so that it is not half within it.
+/// The points of a curve, lifted slightly off the surface so that the curve is not partly inside.
 std::vector<Point> lifted(const Mesh& mesh, const SurfaceCurve& curve) {
     const double step = 0.002 * box_diagonal(mesh);
     std::vector<Point> places;
@@ -181,7 +181,7 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
     return annotations;
 }
 
-/// Values as steps: numbers between the ends of the scale, or places in the categories.
+/// Values as 16-bit steps: numbers between the ends of the scale, or indices of categories.
 JsonValue map_json(const PageMap& map, const Keep& keep, JsonAllocator& allocator) {
     std::vector<std::uint16_t> steps;
     const auto bytes_of_steps = [&] { return std::string_view(reinterpret_cast<const char*>(steps.data()), 2 * steps.size()); };
@@ -328,7 +328,7 @@ std::size_t Page::add(const PageObject& object) {
                     object.whole ? object.whole->faces : soup.triangles.size(), "origin", box.low, "size", box.size, "up",
                     set.up ? *set.up : object.up, "annotations", std::move(annotations), "maps", std::move(maps), "tree",
                     std::move(tree), "relations", relations_json(object, set, layout, allocator));
-    // Packed, or exact for a viewer beside the command.
+    // Packed, or exact for the viewer started by the command.
     const auto add_shape = [&](JsonValue& to, const TriangleSoup& of, const Box& around, const std::string& part) {
         if (!object.exact) {
             add_members(to, allocator, "geometry", add_bytes(quantised_glb(of, around.low, around.largest())));
@@ -351,7 +351,7 @@ std::size_t Page::add(const PageObject& object) {
         add_members(entry, allocator, "simplified",
                     json_object(allocator, "vertices", soup.points.size(), "deviation", object.whole->deviation));
     if (object.cage != nullptr) {
-        // In the object's own frame, which its steps begin below.
+        // Relative to the object's box; the positions of the cage start below its lower corner.
         TriangleSoup cage = to_soup(*object.cage);
         const Box around = box_of(cage);
         JsonValue shown = json_object(allocator, "vertices", cage.points.size(), "origin", relative(around.low));

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
-// The built page (web/README.md) as it lies in the project.
+// The built page (web/README.md), embedded as data.
 asm(".section .rodata\n"
     ".global ostraka_viewer_begin, ostraka_viewer_end\n"
     "ostraka_viewer_begin:\n"
@@ -38,13 +38,13 @@ std::string bytes_of_hexadecimal(const std::string& digits) {
     return bytes;
 }
 
-/// Whether a browser runs the text of a script with these attributes.
+/// Whether a browser executes a script with these attributes.
 bool runs(std::string_view attributes) {
     if (attributes.find(" src=") != std::string_view::npos) return false;
     return attributes.find("type=") == std::string_view::npos || attributes.find("type=\"module\"") != std::string_view::npos;
 }
 
-/// What stands before the data, the same in every page but for `beside`.
+/// The allowed sources before those of the data; they depend only on `beside`.
 std::string sources(std::string_view element, bool beside) {
     return (beside ? "'self' " : "") + inline_hashes(built_page(), element) + " ";
 }
@@ -82,7 +82,7 @@ std::string inline_hashes(std::string_view page, std::string_view element) {
 
 std::string viewer_with(const std::string& data, const std::string& bytes, bool beside) {
     static const std::string own[] = {sources("script", false), sources("script", true), sources("style", false)};
-    // What the policy says of scripts, styles and pictures.
+    // Adds the sources of scripts, styles and pictures to the policy.
     constexpr std::string_view scripts = "script-src ", styles = "style-src ", pictures = "img-src ";
     struct Place {
         std::string_view mark;

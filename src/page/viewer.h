@@ -1,4 +1,4 @@
-// The page without its data.
+// The HTML page without its data.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace ostraka {
 
-/// web/report.html, built, with the data (JSON, escaped for HTML) and the bytes (base64) in their places, and a content policy
-/// that runs the viewer's own script only. Throws Error (failure) where the built page has not each place once. `beside`: the
-/// page reads scripts and pictures that lie beside it.
+/// The built web/report.html with the data (JSON, escaped for HTML) and the bytes (base64) inserted, and a content policy that
+/// allows only the viewer's own script. Throws Error (failure) unless the built page has each placeholder exactly once.
+/// `beside`: the page loads scripts and pictures from its own folder.
 std::string viewer_with(const std::string& data, const std::string& bytes, bool beside);
 
 std::string base64(std::string_view bytes);

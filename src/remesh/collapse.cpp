@@ -4,7 +4,7 @@ namespace ostraka {
 
 namespace {
 
-/// The edges at the corner opposite to h both lie on the border: the collapse would leave them hanging in the air.
+/// Whether both edges at the corner opposite to h lie on the border: the collapse would leave them without a face.
 bool is_ear(const Mesh& mesh, Halfedge h) {
     return mesh.is_border(mesh.opposite(mesh.next(h))) && mesh.is_border(mesh.opposite(mesh.prev(h)));
 }
@@ -23,8 +23,8 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
     const Vertex x = right ? mesh.target(mesh.next(o)) : Mesh::null_vertex();
     if (w == x) return false;
 
-    // Common neighbours, from the end with the smaller ring: both rings are walked side by side until one is closed, so that a
-    // hub of a thousand spokes costs no more than its neighbour.
+    // Counts common neighbours from the end with the smaller ring: both rings are traversed side by side until one is closed,
+    // so that a vertex of very high valence costs no more than its neighbour.
     const Halfedge first_u = mesh.opposite(h), first_v = h;
     Halfedge at_u = first_u, at_v = first_v;
     std::size_t valence = 0;
@@ -49,7 +49,7 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
 
 namespace {
 
-/// Lets `kept` take the place of `outer` beside the face (or the border) beyond a removed face.
+/// Replaces `outer` by `kept` in the face (or border) beyond a removed face.
 void replace(Mesh& mesh, Halfedge outer, Halfedge kept) {
     const Face beyond = mesh.face(outer);
     mesh.set_face(kept, beyond);
@@ -91,7 +91,7 @@ void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor) {
     }
     mesh.remove_edge(mesh.edge(h));
     mesh.remove_vertex(u);
-    // Surface_mesh wants a border halfedge at a border vertex.
+    // Surface_mesh requires a border halfedge at a border vertex.
     Halfedge at_v = stays;
     for_each_incoming(mesh, stays, [&](Halfedge g) {
         if (mesh.is_border(g)) at_v = g;

@@ -1,16 +1,16 @@
-// The topological side of an edge collapse.
+// Topology of edge collapses.
 #pragma once
 
 #include "ostraka/remesh/simplify.h"
 
 namespace ostraka {
 
-/// Whether merging the ends of the halfedge keeps a triangle mesh manifold and its topology: the ends have no common neighbours
-/// but the corners opposite the edge (Dey et al. 1999), no border is pinched, and neither a tetrahedron nor a lone triangle is
-/// flattened.
+/// Whether merging the ends of the halfedge keeps a triangle mesh manifold and preserves its topology: the ends have no common
+/// neighbours except the corners opposite to the edge (Dey et al. 1999), no border is pinched, and neither a tetrahedron nor a
+/// single triangle is flattened.
 bool may_collapse(const Mesh& mesh, Halfedge h);
 
-/// Merges source(h) into target(h), which keeps its point. Edges of the target survive; the caller has asked may_collapse.
+/// Merges source(h) into target(h), which keeps its point. Edges of the target survive. Requires may_collapse(mesh, h).
 void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor);
 
 /// Calls action(halfedge) for each halfedge that ends where `first` ends.

@@ -1,4 +1,4 @@
-// Which collapses borders and marked parts allow, and which end keeps its place.
+// Collapses allowed by borders and marked parts, and the end that keeps its position.
 #pragma once
 
 #include "metric.h"
@@ -13,10 +13,10 @@ struct CollapsePlan {
     bool pinned = false;  ///< its target keeps its point
 };
 
-/// The marked edges form curves on the surface. While outlines are kept, a collapse must not merge two curves, close one up, or
-/// take a vertex off its curve; ends and branchings of curves and marked vertices stay where they are (link condition for
-/// embedded curves; compare Vivodtzev, Bonneau and Le Texier, "Topology preserving simplification of 2D non-manifold meshes with
-/// embedded structures", 2005).
+/// The marked edges form curves on the surface. While outlines are kept, a collapse must not merge two curves, close a curve
+/// up, or move a vertex off its curve. Ends and branch points of curves and marked vertices keep their position (link condition
+/// for embedded curves; compare Vivodtzev, Bonneau and Le Texier, "Topology preserving simplification of 2D non-manifold meshes
+/// with embedded structures", 2005).
 class CollapseRules {
 public:
     CollapseRules(const Mesh& mesh, Marks& marks, bool protect);
@@ -25,9 +25,9 @@ public:
     [[nodiscard]] bool any_marks() const { return any_; }
     [[nodiscard]] bool broken() const { return broken_; }
 
-    /// Nothing if the edge must stay.
+    /// None if the edge must not be collapsed.
     [[nodiscard]] std::optional<CollapsePlan> plan(const Mesh& mesh, Edge e) const;
-    /// Unites the marks of the edges and vertices that are about to merge.
+    /// Merges the marks of the edges and vertices that are about to be merged.
     void before_collapse(const Mesh& mesh, Halfedge h);
     void after_collapse(const Mesh& mesh, Vertex kept);
 

@@ -11,7 +11,7 @@ namespace {
 
 Vector position(const Mesh& mesh, Vertex v) { return mesh.point(v) - CGAL::ORIGIN; }
 
-/// Loop 1987: 3/8, 3/8, 1/8, 1/8 inside, the middle on the border.
+/// Loop 1987: 3/8, 3/8, 1/8, 1/8 inside, the midpoint on the border.
 Point loop_edge_point(const Mesh& mesh, Edge e) {
     const Halfedge h = mesh.halfedge(e, 0), o = mesh.opposite(h);
     if (mesh.is_border(e)) return midway(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
@@ -50,7 +50,7 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
         smoothed.reserve(V);
         for (const Vertex v : mesh.vertices()) smoothed.push_back(loop_vertex_point(mesh, v));
     }
-    std::vector<std::pair<Halfedge, Halfedge>> border;  // halfedge, the next one
+    std::vector<std::pair<Halfedge, Halfedge>> border;  // halfedge, next halfedge
     for (const Halfedge h : mesh.halfedges())
         if (mesh.is_border(h)) border.emplace_back(h, mesh.next(h));
 
@@ -62,16 +62,16 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
         result.parents.push_back({a, b});
     }
     for (Index v = 0; v < smoothed.size(); ++v) mesh.point(Vertex(v)) = smoothed[v];
-    for (Index e = E; e < 2 * E + 3 * F; ++e) mesh.add_edge(Vertex(0), Vertex(1));  // their true ends follow
+    for (Index e = E; e < 2 * E + 3 * F; ++e) mesh.add_edge(Vertex(0), Vertex(1));  // their ends are set below
     for (Index f = F; f < 4 * F; ++f) mesh.add_face();
 
-    // Halfedge 2 e runs into the middle of its edge, halfedge 2 (E + e) out of it; the other way round on the opposite side.
+    // Halfedge 2 e ends at the midpoint of its edge, halfedge 2 (E + e) starts there; vice versa on the opposite side.
     const auto first = [E](Halfedge h) { return h % 2 == 0 ? h : Halfedge(h + 2 * E); };
     const auto second = [E](Halfedge h) { return h % 2 == 0 ? Halfedge(h + 2 * E) : h; };
     for (Index f = 0; f < F; ++f) {
         std::array<Halfedge, 3> h;
         h[0] = mesh.halfedge(Face(f)), h[1] = mesh.next(h[0]), h[2] = mesh.next(h[1]);
-        std::array<Halfedge, 3> inner;  // from the middle of h[k] to the middle of h[k - 1], in the corner where they meet
+        std::array<Halfedge, 3> inner;  // from the midpoint of h[k] to that of h[k - 1], in their common corner
         for (Index k = 0; k < 3; ++k) inner[k] = Halfedge(2 * (2 * E + 3 * f + k));
         for (Index k = 0; k < 3; ++k) {
             const Halfedge before = h[(k + 2) % 3];

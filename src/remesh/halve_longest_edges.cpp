@@ -82,9 +82,9 @@ void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result)
     const auto squared_length = [&](Edge e) {
         return (frame.local(mesh.point(mesh.vertex(e, 0))) - frame.local(mesh.point(mesh.vertex(e, 1)))).squared_length();
     };
-    // Cutting a longest edge of length L makes edges of at most sqrt(3)/2 L: half of L, or the line from the middle to a corner
-    // whose own edges are not longer than L. So all edges longer than 0.867 L can be sorted once and cut one after the other, as
-    // a queue would do it.
+    // Halving a longest edge of length L creates edges of at most sqrt(3)/2 L: half of L, or the line from the midpoint to a
+    // corner whose edges are not longer than L. So all edges longer than 0.867 L can be sorted once and halved in this order,
+    // which is that of a priority queue.
     constexpr double share = 0.867 * 0.867;
     Halver halver(mesh, result);
     Progress progress("refine", cuts);

@@ -1,4 +1,4 @@
-// A binary heap over the indices 0 .. n-1 whose keys can change; equal keys come out in the order of the indices.
+// A binary heap over the indices 0 .. n-1 with mutable keys; ties are in the order of the indices.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -7,7 +7,7 @@
 
 namespace ostraka {
 
-/// 16 bytes an index. `set` and `remove` are O(log n).
+/// 16 bytes per index. `set` and `remove` are O(log n).
 class IndexedHeap {
 public:
     explicit IndexedHeap(std::size_t count) : key_(count, 0), place_(count, no_index) { heap_.reserve(count); }
@@ -68,7 +68,7 @@ private:
     }
 
     std::vector<double> key_;
-    std::vector<Index> place_;  ///< where index i stands in the heap
+    std::vector<Index> place_;  ///< position of index i in the heap
     std::vector<Index> heap_;
 };
 

@@ -10,15 +10,15 @@ namespace {
 
 double component(const Vector& v, int i) { return i == 0 ? v.x() : i == 1 ? v.y() : v.z(); }
 
-/// A unit vector at right angles to a non-zero one.
+/// A unit vector perpendicular to a non-zero vector.
 Vector perpendicular(const Vector& n) {
     const double x = std::abs(n.x()), y = std::abs(n.y()), z = std::abs(n.z());
     const Vector across = CGAL::cross_product(n, x <= y && x <= z ? Vector(1, 0, 0) : y <= z ? Vector(0, 1, 0) : Vector(0, 0, 1));
     return across / std::sqrt(across.squared_length());
 }
 
-/// Up to three linear conditions n . x = d that determine a point. A condition that is nearly parallel to what the earlier ones
-/// fix is not taken (Lindstrom and Turk 1998, section 4.1; their angle of one degree).
+/// Up to three linear conditions n . x = d that determine a point. A condition nearly parallel to the span of the earlier ones
+/// is ignored (Lindstrom and Turk 1998, section 4.1; their angle of one degree).
 class Conditions {
 public:
     [[nodiscard]] bool full() const { return count_ == 3; }
@@ -36,7 +36,7 @@ public:
         right_[count_++] = d / length;
     }
 
-    /// Minimises x^T H x + 2 c . x over what is still open: its gradient vanishes along the open directions.
+    /// Minimises x^T H x + 2 c . x over the remaining degrees of freedom: the gradient vanishes along the free directions.
     void add_minimum(const std::array<Vector, 3>& H, const Vector& c) {
         const auto times = [&](const Vector& z) { return Vector(H[0] * z, H[1] * z, H[2] * z); };
         if (count_ == 0) {
@@ -66,7 +66,7 @@ private:
     int count_ = 0;
 };
 
-/// Everything is taken relative to the middle of the edge, where determinants lose no digits.
+/// All positions are relative to the midpoint of the edge, to avoid cancellation in determinants.
 class LindstromTurkMetric final : public CollapseMetric {
 public:
     explicit LindstromTurkMetric(const Frame& frame) : frame_(frame) {}

@@ -1,4 +1,4 @@
-// What a collapse costs and where its vertex goes.
+// Cost of a collapse and position of its vertex.
 #pragma once
 
 #include "ostraka/remesh/simplify.h"
@@ -8,8 +8,8 @@
 
 namespace ostraka {
 
-/// Coordinates in which the box of the mesh is centred and its diagonal has length one, so that neither the unit nor the place of
-/// the object matters.
+/// Coordinates in which the bounding box of the mesh is centred and its diagonal has length one, so that results do not depend
+/// on the unit and position of the object.
 struct Frame {
     Vector centre{0, 0, 0};
     double size = 1;
@@ -18,7 +18,7 @@ struct Frame {
 };
 Frame make_frame(const Mesh& mesh);
 
-/// Marks that hold during the work; indices never change before the garbage is collected.
+/// Marks during the simplification; indices do not change before the garbage is collected.
 struct Marks {
     std::vector<bool> edges;     ///< outlines and poly-lines
     std::vector<bool> vertices;  ///< annotated points
@@ -32,13 +32,13 @@ struct CollapsePlace {
 class CollapseMetric {
 public:
     virtual ~CollapseMetric() = default;
-    /// The best place for the vertex that replaces the ends of h, if there is one.
+    /// The best position for the vertex that replaces the ends of h, if it exists.
     [[nodiscard]] virtual std::optional<CollapsePlace> best(const Mesh& mesh, Halfedge h) const = 0;
-    /// The cost of a given place.
+    /// The cost of a given position.
     [[nodiscard]] virtual double cost(const Mesh& mesh, Halfedge h, const Vector& position) const = 0;
-    /// To be called when `removed` has been merged into `kept`.
+    /// Call it after `removed` was merged into `kept`.
     virtual void merged(Vertex kept, Vertex removed) = 0;
-    /// Whether moving a vertex changes the cost of edges that do not touch it (but touch a neighbour).
+    /// Whether moving a vertex changes the cost of edges that touch only its neighbours.
     [[nodiscard]] virtual bool reaches_second_ring() const = 0;
 };
 

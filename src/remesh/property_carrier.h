@@ -1,4 +1,4 @@
-// Copies an element's values, in every property map of a plain type, to an element that was cut from it.
+// Copies the values of an element, in every property map of a plain type, to an element cut from it.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -7,8 +7,8 @@
 
 namespace ostraka {
 
-/// For maps keyed by Key with values of type Index, int, bool, double, float, std::uint8_t or arrays of four std::uint8_t
-/// (colours), whatever their names.
+/// For maps with key type Key and values of type Index, int, bool, double, float, std::uint8_t or arrays of four std::uint8_t
+/// (colours), under any name.
 template <class Key>
 class PropertyCarrier {
 public:

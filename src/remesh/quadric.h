@@ -14,7 +14,7 @@ struct Quadric {
     Vector b{0, 0, 0};
     double c = 0;
 
-    /// weight * (n . (x - p))^2, n of length one
+    /// weight * (n . (x - p))^2, n of unit length
     void add_plane(const Vector& n, const Vector& p, double weight) {
         const double d = -(n * p);
         xx += weight * n.x() * n.x(), xy += weight * n.x() * n.y(), xz += weight * n.x() * n.z();
@@ -39,7 +39,7 @@ struct Quadric {
                         xz * x.x() + yz * x.y() + zz * x.z());
         return x * Ax + 2 * (b * x) + c;
     }
-    /// The point where Q is smallest, by Cholesky; nothing where A is not safely positive definite.
+    /// The minimiser of Q, by Cholesky; none if A is not safely positive definite.
     [[nodiscard]] std::optional<Vector> minimum() const {
         const double tolerance = 1e-10 * (xx + yy + zz);
         if (!(xx > tolerance)) return {};

@@ -6,7 +6,7 @@ namespace ostraka {
 
 namespace {
 
-/// Share of a distance to the replaced vertices themselves in the cost. It makes every system solvable, spreads the vertices of
+/// Weight of the distance to the replaced vertices in the cost. It makes every system solvable, distributes the vertices of
 /// flat parts evenly, and is too small to move a vertex off the surface (compare Trettner and Kobbelt, "Fast and robust QEF
 /// minimization", 2020).
 constexpr double evenness = 1e-6;
@@ -55,7 +55,7 @@ private:
             quadric_[v].add_point(frame_.local(mesh.point(v)), evenness * third);
         }
     }
-    /// Planes through an edge, perpendicular to its faces: they keep a border or an outline where it is.
+    /// Planes through an edge, perpendicular to its faces, that keep a border or an outline in place.
     void add_fence(const Mesh& mesh, Edge e, double weight) {
         for (const Halfedge h : {mesh.halfedge(e, 0), mesh.halfedge(e, 1)}) {
             if (mesh.is_border(h)) continue;

@@ -10,14 +10,14 @@ namespace ostraka {
 
 namespace {
 
-/// A vertex of a fine mesh with its edges, its faces and where they come from.
+/// Memory for a vertex of a fine mesh, including its edges, faces and origins.
 void require_for(double vertices) {
     constexpr double bytes_of_vertex = 600;
     require_memory(bytes_of_vertex * vertices, "a mesh of " + std::to_string(static_cast<long long>(vertices)) + " vertices",
                    "ask for fewer vertices or levels");
 }
 
-constexpr std::uint64_t max_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges each must fit 32 bits
+constexpr std::uint64_t max_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges per edge must fit 32 bits
 
 void check_size(std::uint64_t edges) {
     if (edges > max_edges)

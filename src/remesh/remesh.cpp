@@ -21,11 +21,11 @@ namespace ostraka {
 
 namespace {
 
-/// Side of the equilateral triangles that cover `area` with `vertices` vertices: two triangles a vertex, sqrt(3)/4 L^2 each.
+/// Side of the equilateral triangles that cover `area` with `vertices` vertices: two triangles per vertex, sqrt(3)/4 L^2 each.
 double edge_length_for(double area, double vertices) { return std::sqrt(2 * area / (std::sqrt(3.0) * vertices)); }
 
-/// Edges are first cut into pieces of the wanted length. Where triangles are needles (one point far away is enough), their edges
-/// are long and their area, which sets that length, is next to nothing: the pieces would fill the memory before they are merged.
+/// Edges are first cut into pieces of the wanted length. With thin triangles (a single outlier vertex is enough), the edges are
+/// long but the area, which determines the length, is almost zero: the pieces would fill the memory before they are merged.
 bool too_many_pieces(const Mesh& mesh, double length, double wanted) {
     const auto edges = static_cast<double>(mesh.number_of_edges());
     return !(mean_edge_length(mesh) * edges / length <= 1e6 + 10 * (edges + 3 * wanted));
@@ -40,7 +40,7 @@ void mark_features(const Mesh& mesh, double degrees, Mesh::Property_map<Edge, bo
     }
 }
 
-/// The points of a mesh. The library's loops look up a point at every step: there the watch is asked.
+/// The points of a mesh. The library looks up a point at every step: each look-up also checks for cancellation.
 struct WatchedPoints {
     using key_type = Vertex;
     using value_type = Point;
@@ -55,9 +55,9 @@ struct WatchedPoints {
     friend void put(const WatchedPoints& points, Vertex v, const Point& point) { points.mesh->point(v) = point; }
 };
 
-/// The same where the library's tree of triangles is built, which compares them. Faces without area have a normal of next to no
-/// length here: at a vertex around which no face has a normal the library's relaxation (CGAL 5.5) reads an edge that does not
-/// exist.
+/// The kernel that also checks for cancellation, because building the library's AABB tree compares points. Faces without area
+/// get a normal of tiny length here: at a vertex around which no face has a normal, the library's relaxation (CGAL 5.5) reads
+/// an edge that does not exist.
 struct WatchedKernel : Kernel {
     struct Construct_cross_product_vector_3 {
         Vector operator()(const Vector& a, const Vector& b) const {
@@ -94,7 +94,7 @@ void run_rounds(Mesh& mesh, double length, const RemeshOptions& options) {
 using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
-/// Puts every vertex inside the surface onto the old one; returns the largest distance that is left (border vertices stay).
+/// Projects every interior vertex onto the old surface; returns the maximum remaining distance (border vertices are not moved).
 double project(Mesh& mesh, const Tree& tree, double size) {
     const std::size_t count = mesh.number_of_vertices();
     std::vector<double> distance(count, 0);
@@ -114,11 +114,11 @@ double project(Mesh& mesh, const Tree& tree, double size) {
 RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     check_options(options, "remesh");
     if (mesh.has_garbage()) throw std::logic_error("remesh: collect the garbage first");
-    constexpr double bytes_of_vertex = 1500;  // with the tree that vertices are put back onto the surface by
+    constexpr double bytes_of_vertex = 1500;  // including the AABB tree for the projection
     require_memory(
         bytes_of_vertex * (static_cast<double>(options.vertices) + 0.5 * static_cast<double>(mesh.number_of_vertices())),
         "remeshing to " + std::to_string(options.vertices) + " vertices", "ask for fewer vertices");
-    // The work is done on a centred copy of size one, so that tolerances inside the library mean the same for every object.
+    // Works on a centred copy of size one, so that tolerances inside the library have the same meaning for every object.
     const Frame frame = make_frame(mesh);
     TriangleSoup soup = to_soup(mesh);
     for (auto& p : soup.points) {
@@ -133,7 +133,7 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     RemeshResult result;
     const auto wanted = static_cast<double>(options.vertices);
     double length = edge_length_for(area, wanted);
-    // Borders, features and curvature shift the count: measured once, corrected once.
+    // Borders, features and curvature change the number of vertices: it is measured and corrected.
     constexpr double accepted = 0.03;
     for (int attempt = 0; attempt < 3; ++attempt) {
         if (too_many_pieces(old, length, wanted)) {

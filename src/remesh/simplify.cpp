@@ -15,10 +15,10 @@ namespace ostraka {
 
 namespace {
 
-/// What is asked of a collapse; asked less from stage to stage as long as the number is not reached.
+/// Requirements on a collapse; relaxed from stage to stage while the number is not reached.
 struct Stage {
     double max_normal_change;  ///< degrees
-    bool good_shapes;          ///< no face gets thinner than `thinnest` unless it was
+    bool good_shapes;          ///< no face becomes thinner than `thinnest` unless it was before
     bool keep_outlines;
 };
 
@@ -45,7 +45,7 @@ public:
         for (const Stage& stage : stages) {
             stage_ = stage;
             rules_.keep_outlines(stage.keep_outlines);
-            // What was refused may be possible now that the surroundings have changed: again, as long as that helps.
+            // Refused collapses may be possible after the neighbourhood has changed: repeat as long as that helps.
             std::size_t before;
             do {
                 before = remaining_;
@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    /// Collapses in the order of cost until the number is reached or no edge is left that may collapse.
+    /// Collapses in the order of cost until the number is reached or no edge may be collapsed.
     void sweep(std::size_t wanted, Progress& progress) {
         refused_topology_ = refused_shape_ = 0;
         CancelCheck check;
@@ -78,14 +78,14 @@ private:
         }
     }
 
-    /// Puts the edge into the heap under its cost, or takes it out.
+    /// Inserts the edge into the heap with its cost, or removes it.
     void evaluate(Edge e) {
         const std::optional<CollapsePlan> plan = rules_.plan(mesh_, e);
         if (!plan) return heap_.remove(e);
         heap_.set(e, places(*plan).front().cost);
     }
 
-    /// The places to try, the best first.
+    /// The candidate positions, the best first.
     struct Places {
         std::array<CollapsePlace, 4> list;
         std::size_t count = 0;
@@ -102,7 +102,7 @@ private:
         const Vector u = frame_.local(mesh_.point(mesh_.source(plan.halfedge)));
         const Vector middle = u + (v - u) / 2;
         const std::optional<CollapsePlace> best = metric_->best(mesh_, plan.halfedge);
-        // An ill-determined place far away would only be refused later.
+        // An ill-conditioned position far away would only be refused later.
         if (best && (best->position - middle).squared_length() <= 4 * (v - u).squared_length()) {
             result.add(*best);
             return result;
@@ -154,13 +154,13 @@ private:
         });
     }
 
-    /// No face around the ends of h is turned over, turned too far or squeezed flat when both ends move to x.
+    /// Whether no face around the ends of h is flipped, rotated too far or flattened when both ends move to x.
     [[nodiscard]] bool keeps_shape(Halfedge h, const Vector& x, bool target_stays) const {
         constexpr double thinnest = 0.02;  // area over sum of squared edge lengths, twice; 0.29 for an equilateral triangle
         constexpr double flat = 1e-9;
         const double min_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * pi / 180));
         bool fine = true;
-        const auto check = [&](Halfedge g) {  // g ends in the vertex that moves
+        const auto check = [&](Halfedge g) {  // g ends in the moved vertex
             if (mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h))) return;
             const Vector old = frame_.local(mesh_.point(mesh_.target(g)));
             const Vector p = frame_.local(mesh_.point(mesh_.source(g))),
@@ -171,7 +171,7 @@ private:
             const double sides_new = (q - x).squared_length() + (p - x).squared_length() + side;
             const double length_old = std::sqrt(n_old.squared_length()), length_new = std::sqrt(n_new.squared_length());
             fine = length_new > flat * sides_new;
-            if (!fine || !(length_old > flat * sides_old)) return;  // a face that was flat has no direction to keep
+            if (!fine || !(length_old > flat * sides_old)) return;  // a face that was flat has no orientation to preserve
             fine = n_old * n_new >= min_cosine * length_old * length_new;
             if (fine && stage_.good_shapes)
                 fine = length_new >= thinnest * sides_new || length_new * sides_old >= length_old * sides_new;
@@ -241,7 +241,7 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
         if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
             fail_input("face " + std::to_string(Index(f)), "is not a triangle");
 
-    // Border vertices must know a border halfedge, which not every algorithm takes care of.
+    // Border vertices must refer to a border halfedge, which not every algorithm guarantees.
     for (const Halfedge h : mesh.halfedges())
         if (mesh.is_border(h)) mesh.set_halfedge(mesh.target(h), h);
     SimplifyResult result;

@@ -1,24 +1,24 @@
-// The two ways of cutting: every triangle into four, or one edge into two.
+// The two subdivision operations: each triangle into four, or one edge into two.
 #pragma once
 
 #include "ostraka/remesh/refine.h"
 
 namespace ostraka {
 
-/// Halfway between two points, without overflow and the same from both sides.
+/// The midpoint of two points, without overflow and symmetric.
 inline Point midway(const Point& p, const Point& q) {
     return {p.x() / 2 + q.x() / 2, p.y() / 2 + q.y() / 2, p.z() / 2 + q.z() / 2};
 }
 
-/// Makes three halfedges, one after the other, a face's.
+/// Links three consecutive halfedges into a face.
 inline void link_triangle(Mesh& mesh, Face face, Halfedge a, Halfedge b, Halfedge c) {
     for (const Halfedge h : {a, b, c}) mesh.set_face(h, face);
     mesh.set_next(a, b), mesh.set_next(b, c), mesh.set_next(c, a);
     mesh.set_halfedge(face, a);
 }
 
-/// Cuts every triangle into four in place. Edge e becomes e and E + e; face f becomes the middle one f and the corners F + 3 f +
-/// k; the middle of edge e is vertex V + e. With `smooth`, points move as Loop's scheme has it. Keeps `result` up to date.
+/// Subdivides every triangle into four in place. Edge e becomes e and E + e; face f becomes the middle face f and the corners F
+/// + 3 f + k; the midpoint of edge e is vertex V + e. With `smooth`, points move by Loop's scheme. Updates `result`.
 void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result);
 
 /// Halves the longest edges, the longest first, until the mesh has `vertices` vertices.

@@ -12,7 +12,7 @@ namespace ostraka {
 namespace {
 Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// Tangent of half the angle under which the smaller side of a pane is seen in perspective: 30 degrees in all.
+/// Tangent of half the field of view of the smaller side of a pane in perspective (30 degrees in total).
 const double half_view = std::tan(15 * pi / 180);
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -42,8 +42,8 @@ Camera fit_camera(std::size_t count, const std::function<Eigen::Vector3d(std::si
     }
     const Eigen::Array3d middle = (low + high) / 2;
     camera.centre = middle[0] * camera.right + middle[1] * camera.up + middle[2] * camera.toward;
-    constexpr double margin = 0.92;   // share of the pane that the object may fill
-    constexpr double smallest = 0.1;  // what is seen end on is not blown up further
+    constexpr double margin = 0.92;   // fraction of the pane that the object may fill
+    constexpr double smallest = 0.1;  // objects seen end on are not enlarged further
     const double width = margin * pane_width, height = margin * pane_height;
     if (!perspective) {
         camera.scale = std::min(width / std::max(high[0] - low[0], smallest), height / std::max(high[1] - low[1], smallest));

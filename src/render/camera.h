@@ -1,4 +1,4 @@
-// From pixels to rays and back, in the surface's own coordinates (see surface.h).
+// Conversion between pixels and rays, in the surface's own coordinates (see surface.h).
 #pragma once
 
 #include "ostraka/render/camera.h"
@@ -11,9 +11,9 @@ namespace ostraka::detail {
 
 struct Camera {
     Eigen::Vector3d right, up, toward;  ///< unit vectors; right x up = toward, which points to the viewer
-    Eigen::Vector3d centre{0, 0, 0};    ///< the point that is seen in the middle
-    double scale = 1;                   ///< pixels per unit, in perspective at the centre's depth
-    double distance = 0;                ///< from the centre to the eye; 0 for parallel rays
+    Eigen::Vector3d centre{0, 0, 0};    ///< the point shown in the middle
+    double scale = 1;                   ///< pixels per unit; in perspective at the depth of the centre
+    double distance = 0;                ///< from the centre to the eye; 0 for parallel projection
     double middle_x = 0, middle_y = 0;  ///< the pixel coordinates of the centre
 
     struct Ray {
@@ -50,15 +50,16 @@ struct Camera {
     }
 };
 
-/// Places the camera so that all points fill a pane of this size but for a margin; `point(i)` gives `count` points. Independent
-/// of their order.
+/// Places the camera so that all points fit a pane of this size with a margin; `point(i)` returns the i-th of `count` points.
+/// Independent of their order.
 Camera fit_camera(std::size_t count, const std::function<Eigen::Vector3d(std::size_t)>& point, const View& view,
                   const std::array<double, 3>& up, double width, double height, bool perspective);
 
-/// The same camera in the mesh's coordinates: `middle` is the origin of the surface's own, `unit` the length of their unit.
+/// The same camera in the mesh's coordinates: `middle` is the origin of the surface coordinates, `unit` the length of their
+/// unit.
 PictureCamera in_mesh_coordinates(const Camera& camera, const std::array<double, 3>& middle, double unit);
 
-/// Height of the strip under an object that its scale bar takes, and the size that a picture's marks have.
+/// Height of the strip for the scale bar under an object, and size of the marks in a picture.
 inline constexpr double bar_strip = 44;
 double mark_size(int width, int height);
 

@@ -10,7 +10,7 @@
 #include <cstring>
 
 #if defined(__SANITIZE_ADDRESS__)
-// The font library keeps some hundred bytes of its settings for ever, which is none of our doing.
+// Fontconfig keeps some hundred bytes of settings allocated until exit; this is not our leak.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
 extern "C" const char* __lsan_default_options();
@@ -59,7 +59,7 @@ cairo_surface_t* surface_of(PictureKind kind, int width, int height, std::string
         constexpr double points = 72.0 / 96;
         cairo_surface_t* surface = cairo_pdf_surface_create_for_stream(&append_bytes, bytes, points * width, points * height);
         cairo_surface_set_device_scale(surface, points, points);
-        cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same drawing, the same bytes
+        cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");  // makes the output reproducible
         return surface;
     }
     return cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
@@ -200,7 +200,7 @@ void Canvas::upward_text(const std::string& words, double x, double y, double si
 }
 
 std::string Canvas::elide(const std::string& words, double size, double width) {
-    // Bounded, so that a text of megabytes costs no more than one of a line.
+    // Bounded, so that a text of megabytes costs no more than a single line.
     std::vector<std::size_t> ends;
     for (std::size_t i = 0; i < words.size() && ends.size() < 500;) {
         ++i;
@@ -208,7 +208,7 @@ std::string Canvas::elide(const std::string& words, double size, double width) {
         ends.push_back(i);
     }
     if (ends.empty() || (ends.back() == words.size() && text_width(words, size) <= width)) return words;
-    std::size_t low = 0, high = ends.size();  // characters kept
+    std::size_t low = 0, high = ends.size();  // number of characters kept
     const auto shortened = [&](std::size_t count) { return words.substr(0, count == 0 ? 0 : ends[count - 1]) + "\xE2\x80\xA6"; };
     while (low + 1 < high) {
         const std::size_t middle = (low + high) / 2;

@@ -11,20 +11,20 @@
 
 namespace ostraka::detail {
 
-/// Text fit for drawing: control characters and marks that turn the writing direction are left out, bytes that are not UTF-8
-/// become U+FFFD.
+/// Text that is safe to draw: removes control characters and bidirectional formatting characters, and replaces bytes that are
+/// not UTF-8 by U+FFFD.
 std::string clean_text(const std::string& text);
 
-/// For cairo to write to a std::string.
+/// Write function for cairo that appends to a std::string.
 cairo_status_t append_bytes(void* bytes, const unsigned char* data, unsigned int length);
 
 class Canvas {
 public:
-    /// Width and height in pixels; of a PDF document one is 1/96 inch.
+    /// Width and height in pixels; in a PDF document a pixel is 1/96 inch.
     Canvas(int width, int height, PictureKind kind = PictureKind::pixels);
 
     void fill(const Rgb& colour);
-    /// Lays pixels (0xAARRGGBB, premultiplied) over the canvas, `columns` by `rows` of them over this width and height.
+    /// Draws pixels (0xAARRGGBB, premultiplied) over the canvas: `columns` by `rows` pixels scaled to this width and height.
     void paint(const std::vector<std::uint32_t>& pixels, int columns, int rows, int left, int top, int width, int height);
 
     void clip(double left, double top, double width, double height);
@@ -40,18 +40,19 @@ public:
     void rectangle(double left, double top, double width, double height, const Rgb& colour);
 
     enum class Align { left, centre, right };
-    /// Text on the base line `y`; with a `halo` of that colour around the letters if given.
+    /// Draws text with the base line at `y`; `halo`, if given, is the colour of an outline around the letters.
     void text(const std::string& words, double x, double y, double size, const Rgb& colour, Align align = Align::left,
               const Rgb* halo = nullptr);
-    /// Upward text, centred at (x, y).
+    /// Draws text upwards, centred at (x, y).
     void upward_text(const std::string& words, double x, double y, double size, const Rgb& colour);
     double text_width(const std::string& words, double size);
-    /// The text, or as much of it as fits into `width` with an ellipsis behind.
+    /// The text, shortened with an ellipsis to fit into `width`.
     std::string elide(const std::string& words, double size, double width);
 
-    /// The finished picture, of a canvas of pixels. Throws Error (failure) if cairo failed at some step.
+    /// The finished picture of a pixel canvas. Throws Error (failure) if cairo reported an error.
     Picture picture();
-    /// The finished file, of a document. The same drawing has the same bytes. Throws as `picture`; nothing is drawn after it.
+    /// The finished file of a document; the same drawing gives the same bytes. Throws the errors of `picture`. Nothing can be
+    /// drawn afterwards.
     std::string document();
 
 private:
@@ -59,7 +60,7 @@ private:
     void colour(const Rgb& value);
     void trace(const std::vector<Place>& places);
     PictureKind kind_;
-    std::unique_ptr<std::string> bytes_;  ///< of a document: where cairo writes to
+    std::unique_ptr<std::string> bytes_;  ///< for documents: output buffer of cairo
     std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
     std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
 };

@@ -12,7 +12,7 @@
 namespace ostraka {
 
 namespace {
-/// Control points, evenly spaced, joined linearly. Lightness (CIE L*) rises evenly from 15 to 91.
+/// Evenly spaced control points of a piecewise linear scale. Lightness (CIE L*) increases uniformly from 15 to 91.
 constexpr std::array<Rgb, 9> sequential{{{68, 1, 84},
                                          {71, 44, 122},
                                          {59, 81, 139},
@@ -22,7 +22,7 @@ constexpr std::array<Rgb, 9> sequential{{{68, 1, 84},
                                          {92, 200, 99},
                                          {170, 220, 50},
                                          {253, 231, 37}}};
-/// Dark and blue through near white to dark and red.
+/// From dark blue through near white to dark red.
 constexpr std::array<Rgb, 9> diverging{{{33, 62, 148},
                                         {62, 107, 190},
                                         {118, 159, 219},
@@ -36,7 +36,7 @@ constexpr std::array<Rgb, 9> diverging{{{33, 62, 148},
 constexpr Rgb no_value{160, 160, 160};
 
 double share(const ColourScale& scale, double value) {
-    // Halves, so that a range as wide as the numbers go does not overflow.
+    // Halved to avoid overflow for very wide ranges.
     const double width = scale.maximum / 2 - scale.minimum / 2;
     if (!(width > 0)) return 0.5;
     return std::clamp((value / 2 - scale.minimum / 2) / width, 0.0, 1.0);
@@ -83,7 +83,7 @@ Rgb category_colour(std::size_t index) {
                                                           {17, 119, 51},
                                                           {170, 68, 153},
                                                           {68, 170, 153}}};
-    // Towards white, and towards black.
+    // Positive: towards white; negative: towards black.
     static constexpr std::array<double, category_count / category_hues> shades{0, 0.45, -0.35, 0.25, -0.18, 0.62, -0.5};
     const Rgb& hue = hues.at(index % category_hues);
     const double shade = shades.at(index / category_hues % shades.size());
@@ -99,7 +99,7 @@ double round_length(double length) {
     double best = 0;
     for (int e = exponent - 1; e <= exponent + 1; ++e)
         for (const int digit : {1, 2, 5}) {
-            // Read from text: the double nearest to the decimal number, so that it is printed with one digit.
+            // Parsed from text: the double nearest to the decimal number, so that it is printed with one digit.
             const double candidate = std::strtod((std::to_string(digit) + "e" + std::to_string(e)).c_str(), nullptr);
             if (std::isfinite(candidate) && candidate <= length * (1 + 1e-12)) best = std::max(best, candidate);
         }

@@ -19,7 +19,7 @@ struct Side {
     }
 };
 
-/// The sides of all triangles, those of one edge next to each other.
+/// The sides of all triangles, grouped by edge.
 std::vector<Side> sorted_sides(const Surface& surface) {
     std::vector<Side> sides;
     sides.reserve(3 * surface.triangle_count());
@@ -34,7 +34,7 @@ std::vector<Side> sorted_sides(const Surface& surface) {
     return sides;
 }
 
-template <class Visit>  // of each edge its sides
+template <class Visit>  // called with the range of sides of each edge
 void for_each_edge(const std::vector<Side>& sides, Visit visit) {
     for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
         while (end < sides.size() && sides[end].from == sides[begin].from && sides[end].to == sides[begin].to) ++end;
@@ -59,7 +59,7 @@ std::vector<Line> contour_lines(const Surface& surface, const Camera& camera, do
         for (const std::size_t v : chain) line.points.push_back(surface.point(static_cast<Index>(v)));
     }
 
-    // Where the surface turns away: across a triangle from side to side, numbered by their edges.
+    // Smooth silhouettes: segments across triangles from side to side, identified by edges.
     std::vector<std::size_t> edge_of_side(3 * surface.triangle_count());
     std::size_t edges = 0;
     for_each_edge(sides, [&](const Side* begin, const Side* end) {
@@ -95,7 +95,7 @@ std::vector<Line> contour_lines(const Surface& surface, const Camera& camera, do
             const double share = facing[k] / (facing[k] - facing[next]);
             const Eigen::Vector3d at = point[k] + share * (point[next] - point[k]);
             const Eigen::Vector3d outward = ((1 - share) * normal[k] + share * normal[next]).normalized();
-            // The facets bulge beyond the smooth contour by a share of their size.
+            // Lifted, because facets bulge beyond the smooth contour by a fraction of their size.
             const double lift = std::max(2e-3, 0.5 * (point[next] - point[k]).norm());
             crossed[count++] = edge_of_side[3 * t + k];
             places.try_emplace(crossed[count - 1], Place{at, at + lift * outward});

@@ -11,14 +11,14 @@ namespace ostraka::detail {
 namespace {
 
 constexpr double font = 14;   // nominal pixels
-constexpr double row = 1.45;  // of the font
-constexpr double gap = 14;    // between names and the pane: room for the first stretch of the lines
+constexpr double row = 1.45;  // line height, relative to the font
+constexpr double gap = 14;    // between names and the pane: space for the first segment of the lines
 constexpr int cell = 4;       // pixels
 constexpr int nobody = -1;
 
 using Place = Canvas::Place;
 
-/// Which label the surface in each cell of a pane has: of several regions the smallest.
+/// Label of the surface in each cell of a pane; of overlapping regions, the smallest.
 class Grid {
 public:
     Grid(const Scene& scene, const Surface& surface, const Camera& camera, const PixelBox& pane) : pane_(pane) {
@@ -44,7 +44,7 @@ public:
         });
     }
 
-    /// The middle of the cell farthest from cells without the label (chessboard distance); of equally far ones the first.
+    /// The centre of the cell farthest from cells without the label (chessboard distance); ties: the first.
     [[nodiscard]] std::optional<Place> deepest(int label) const {
         std::vector<int> depth(label_.size(), 0);
         const auto at = [&](int x, int y) { return x < 0 || y < 0 || x >= columns_ || y >= rows_ ? 0 : depth[place(x, y)]; };
@@ -79,7 +79,7 @@ bool within(const PixelBox& pane, const Place& at) {
     return at.x >= pane.left && at.x < pane.left + pane.width && at.y >= pane.top && at.y < pane.top + pane.height;
 }
 
-/// In the middle of the longest stretch that is in sight.
+/// The middle of the longest visible interval.
 std::optional<Place> middle_in_sight(const SceneLabel& label, const Surface& surface, const Camera& camera,
                                      const PixelBox& pane) {
     struct Seen {
@@ -120,11 +120,11 @@ std::optional<Place> middle_in_sight(const SceneLabel& label, const Surface& sur
         ->at;
 }
 
-/// Ordinates as near as possible to those wanted (in the mean square), ascending, at least a row apart and within the pane: what
-/// would overlap is joined to blocks that take the mean of their wishes.
+/// Moves labels to ascending positions as close as possible to the wanted ones (least squares), at least a row apart and within
+/// the pane: overlapping labels are merged into blocks placed at the mean of their wanted positions.
 void spread(std::vector<PaneLabel*>& labels, double top, double bottom) {
     struct Block {
-        double sum;  // of the wishes of its first row
+        double sum;  // sum of the wanted positions of the block's first row
         std::size_t count;
         double height;
         [[nodiscard]] double begin() const { return sum / static_cast<double>(count); }
@@ -149,14 +149,14 @@ void spread(std::vector<PaneLabel*>& labels, double top, double bottom) {
         for (std::size_t i = 0; i < block.count; ++i) labels[next++]->top = y, y += labels[next - 1]->height;
         free = y;
     }
-    double limit = bottom;  // from below, what stands too low
+    double limit = bottom;  // from below: moves up labels that are too low
     for (std::size_t i = labels.size(); i-- > 0;) {
         labels[i]->top = std::min(labels[i]->top, limit - labels[i]->height);
         limit = labels[i]->top;
     }
 }
 
-/// Where the line of a label begins.
+/// Start point of the line of a label.
 Place begin_of(const PaneLabel& label, double size) {
     const bool left = label.left < label.place_x;
     return {left ? label.left + label.width + gap / 3 * size : label.left - gap / 3 * size, label.top + label.height / 2};
@@ -195,7 +195,7 @@ std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Su
         label.place_x = at->x;
         label.place_y = at->y;
     }
-    // Sides: those of the left half to the left, as long as there are rows.
+    // Labels in the left half go to the left, as long as there are free rows.
     std::stable_sort(labels.begin(), labels.end(), [](const PaneLabel& a, const PaneLabel& b) { return a.place_x < b.place_x; });
     const auto rows = static_cast<std::size_t>(std::max(1.0, pane.height / height));
     if (labels.size() > 2 * rows) labels.resize(2 * rows);
@@ -212,7 +212,7 @@ std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Su
         std::stable_sort(side.begin(), side.end(),
                          [](const PaneLabel* a, const PaneLabel* b) { return a->place_y < b->place_y; });
         spread(side, pane.top, pane.top + pane.height);
-        // Each exchange makes the lines shorter, so that this ends; the bound is for rounding.
+        // Each exchange shortens the lines, so that the loop ends; the bound is a safeguard against rounding.
         bool crossing = true;
         for (std::size_t round = 0; crossing && round < side.size() * side.size() + 1; ++round) {
             crossing = false;

@@ -1,4 +1,4 @@
-// Names beside an object, with lines to what they name.
+// Labels beside an object, with lines to the labelled parts.
 #pragma once
 
 #include "canvas.h"
@@ -7,13 +7,12 @@
 
 namespace ostraka::detail {
 
-/// How wide the columns of names at both sides of a pane of this width are.
+/// Width of the label columns on both sides of a pane of this width.
 double label_column(Canvas& canvas, const Scene& scene, double pane_width, const Style& style);
 
-/// Names of what is in sight, in two columns of this width beside the pane: each on the side that its place is nearer to as far
-/// as there is room, in the order of the places from top to bottom, moved apart where they would overlap and exchanged where
-/// their lines would cross. A region is named at the place in it that is farthest from its seen border. O(pixels / 16 +
-/// labels^2).
+/// Places the labels of visible parts in two columns of this width beside the pane. Each label goes to the side nearer to its
+/// part while there is room, in the vertical order of the parts; labels are moved apart if they overlap and exchanged if their
+/// lines cross. A region is labelled at its point farthest from its visible border. O(pixels / 16 + labels^2).
 std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera,
                                     const PixelBox& pane, double column, const Style& style);
 

@@ -13,8 +13,8 @@
 namespace ostraka::detail {
 
 namespace {
-/// How far in front of the surface a ray to the viewer starts, in units of half the box's largest side: what lies on the surface
-/// is then not hidden by the surface itself.
+/// Distance from the surface at which a ray to the viewer starts, in units of half the box's largest side, so that points on
+/// the surface are not hidden by it.
 constexpr double sight_tolerance = 4e-3;
 
 Rgb darker(const Rgb& colour) {
@@ -28,7 +28,7 @@ struct Stroke {
     bool hidden;
 };
 
-/// A point of a line about every pixel and a half.
+/// A sample of a line, about every 1.5 pixels.
 struct Step {
     Eigen::Vector3d sight;
     Canvas::Place place;
@@ -37,7 +37,7 @@ struct Step {
 
 std::vector<Step> steps_along(const Line& line, const Camera& camera) {
     constexpr double spacing = 1.5;
-    constexpr double maximum = 4096;  // of one segment: enough for any that lies within the picture
+    constexpr double maximum = 4096;  // maximum number of samples per segment: sufficient for any segment within the picture
     const auto& sight = line.sight.empty() ? line.points : line.sight;
     std::vector<Step> steps;
     const auto add = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& from) {
@@ -67,7 +67,7 @@ double length_between(const std::vector<Step>& steps, std::size_t begin, std::si
 }
 
 void bridge(std::vector<Step>& steps, double longest) {
-    std::size_t after_shown = 0;  // of the last that is in sight
+    std::size_t after_shown = 0;  // index after the last visible sample
     for (std::size_t i = 0; i < steps.size(); ++i) {
         if (!steps[i].shown) continue;
         if (after_shown > 0 && i > after_shown && length_between(steps, after_shown - 1, i + 1) < longest)
@@ -83,7 +83,7 @@ double length_of(const std::vector<Canvas::Place>& places) {
     return length;
 }
 
-/// Without corners that lie no farther than `tolerance` from the line between those kept (Douglas and Peucker 1973).
+/// Removes points that lie no farther than `tolerance` from the line between kept points (Douglas and Peucker 1973).
 std::vector<Canvas::Place> thinned(const std::vector<Canvas::Place>& places, double tolerance) {
     namespace bg = boost::geometry;
     using Corner = bg::model::d2::point_xy<double>;
@@ -203,7 +203,7 @@ void draw_axes(Canvas& canvas, const PixelBox& pane, const Camera& camera, const
                             {tip.x - along_x + 0.45 * along_y, tip.y - along_y - 0.45 * along_x}},
                            axis.colour);
         }
-        // Of an axis towards the viewer the name stands below the dot.
+        // The name of an axis that points to the viewer is below its dot.
         const double name_x = seen < 0.1 ? 0 : x / seen, name_y = seen < 0.1 ? 1 : y / seen;
         canvas.text(axis.name, origin.x + x * length + name_x * 10 * style.size,
                     origin.y + y * length + name_y * 10 * style.size + 5 * style.size, 14 * style.size, style.ink,

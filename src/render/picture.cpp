@@ -101,7 +101,7 @@ void write_png(const Path& file, const DeepPicture& picture) {
         to->append(reinterpret_cast<const char*>(data), length);
     };
     const auto flush = [](png_structp) {};
-    // Rows as the format has them: the more significant byte first.
+    // The format stores the more significant byte first.
     const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
     std::vector<png_byte> data(width * height * 8);
     for (std::size_t i = 0; i < width * height; ++i)
@@ -111,7 +111,7 @@ void write_png(const Path& file, const DeepPicture& picture) {
         }
     std::vector<png_bytep> rows;
     for (std::size_t row = 0; row < height; ++row) rows.push_back(data.data() + row * width * 8);
-    bytes.reserve(data.size() + data.size() / 64 + 4096);  // no exception may pass through the library
+    bytes.reserve(data.size() + data.size() / 64 + 4096);  // reserved, because no exception may pass through the library
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, failed, ignore);
     png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
     if (info == nullptr) throw std::bad_alloc();

@@ -41,16 +41,16 @@ Size parse_size(const std::string& text) {
     return size;
 }
 
-/// Where a scene's view goes and through which camera.
+/// A view of a scene with its pane and camera.
 struct Plan {
     Pane pane;
     View view;
     std::string caption;
     Camera camera;
-    double label_column = 0;  ///< at both sides of the pane
+    double label_column = 0;  ///< width on both sides of the pane
 };
 
-/// One scale for the panes of one scene, or of all scenes.
+/// Sets one scale for the panes of each scene, or of all scenes.
 void share_scale(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Surface>>& surfaces, bool all) {
     double largest = 0;
     for (const auto& surface : surfaces) largest = std::max(largest, surface->unit_length());
@@ -80,15 +80,15 @@ std::vector<LegendEntry> merged_legend(const std::vector<Scene>& scenes) {
     return list;
 }
 
-/// Room for the panes of a sheet.
+/// Available size for the panes of a sheet.
 struct PaneSize {
-    double width = 0, height = 0;  ///< of all panes
-    double strip = 0;              ///< under each: scale bar and caption
+    double width = 0, height = 0;  ///< total of all panes
+    double strip = 0;              ///< height under each pane for scale bar and caption
 };
 
-/// Six views stand in one row, three in two of one object; up to three panes stand side by side. More are set in the number of
-/// columns that lets the objects be largest: the smallest of them if they share one scale, else their logarithms in the mean.
-/// `extents` are width and height of each pane's object in its view.
+/// Number of columns. Six views of one object are in three columns, of several objects in one row each; up to three panes are
+/// side by side. Otherwise the number of columns maximises the size of the objects: of the smallest one if they share a scale,
+/// else the mean of the logarithms. `extents` holds width and height of each pane's object in its view.
 std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool six, std::size_t scenes, bool one_scale,
                          const PaneSize& room) {
     const std::size_t panes = extents.size();
@@ -105,13 +105,13 @@ std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool
             minimum = std::min(minimum, scale);
             sum += std::log(scale);
         }
-        // Rounding shall not choose among columns that do as well.
+        // Rounding must not decide between equivalent numbers of columns.
         if (const double value = one_scale ? std::log(minimum) : sum; value > maximum + 1e-9) maximum = value, best = columns;
     }
     return best;
 }
 
-/// What a picture has to show of a scene.
+/// All points that the picture of a scene must contain.
 class Framed {
 public:
     Framed(const Scene& scene, const Surface& surface) : scene_(scene), surface_(surface) {}
@@ -128,7 +128,7 @@ private:
 
 /// Width and height of an object in a view, in the mesh's unit.
 std::array<double, 2> extent_of(const Scene& scene, const Surface& surface, const View& view, const std::array<double, 3>& up) {
-    // What alone limits the scale of a pane that is narrow, or low.
+    // The scale of a pane limited only by its width, and only by its height.
     const Framed framed(scene, surface);
     const double narrow = detail::fit_camera(framed.count(), framed, view, up, 1, 1e9, false).scale;
     const double low = detail::fit_camera(framed.count(), framed, view, up, 1e9, 1, false).scale;
@@ -180,7 +180,7 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
     detail::draw_scale_bar(canvas, pane.left + 14 * style.size, pane.top + pane.height + strip - 8 * style.size, pane.bar_pixels,
                            text, style);
 }
-/// The light of a pane into that of the whole picture.
+/// Copies the light of a pane into the whole picture.
 void copy_into(std::vector<detail::Light>& whole, int width, const std::vector<detail::Light>& light, const Pane& pane) {
     const auto columns = static_cast<std::size_t>(pane.width);
     for (std::size_t row = 0; row < static_cast<std::size_t>(pane.height); ++row)
@@ -190,7 +190,7 @@ void copy_into(std::vector<detail::Light>& whole, int width, const std::vector<d
                                                     static_cast<std::size_t>(pane.left)));
 }
 
-/// What was drawn over the surface, and that over the background, as cairo lays coded colours over each other.
+/// The picture `over` composited over the surface, and this over the background, with gamma-coded colours as in cairo.
 DeepPicture composed(const std::vector<detail::Light>& under, const Picture& over, std::optional<Rgb> background) {
     DeepPicture picture{over.width, over.height, {}};
     picture.rgba.resize(under.size());
@@ -217,7 +217,7 @@ DeepPicture composed(const std::vector<detail::Light>& under, const Picture& ove
     return picture;
 }
 
-/// Lines and dots that stand for the surface or lie on it.
+/// Draws the lines and dots that represent the surface or lie on it.
 void draw_over(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const RenderOptions& options,
                const detail::Style& style, double drawn_size, PictureKind kind) {
     using Drawing = RenderOptions::Drawing;
@@ -277,7 +277,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
         surfaces.push_back(std::make_unique<Surface>(scene, contours || options.shading == RenderOptions::Shading::smooth));
     rendering.build_seconds = seconds_since(start);
 
-    // The sheet: panes in columns and rows, each with a strip for a scale bar and a caption; a column at the right.
+    // The sheet: panes in columns and rows, each with a strip for scale bar and caption; a side column on the right.
     const auto drawing_start = std::chrono::steady_clock::now();
     Canvas canvas(size.width, size.height, kind);
     if (!options.transparent && !deep) canvas.fill(style.background);
@@ -336,7 +336,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
         plan.camera.scale *= options.zoom;
         pane.pixels_per_unit = plan.camera.scale / surface.unit_length();
         if (options.drawing == RenderOptions::Drawing::surface) {
-            // More samples than pixels: averaged where the picture is pixels, kept where it is a document.
+            // Supersampling: averaged for pixel output, kept for documents.
             const int wanted = options.supersample > 0 ? options.supersample : kind == PictureKind::pixels ? 1 : 2;
             const int share = std::clamp(16384 / std::max(pane.width, pane.height), 1, wanted);
             detail::Shading finer = shading;

@@ -14,7 +14,7 @@
 namespace ostraka::detail {
 
 namespace {
-/// Light adds up in linear intensities; files and screens hold them gamma-coded (sRGB, IEC 61966-2-1).
+/// Light adds up in linear intensities; files and screens use gamma-coded values (sRGB, IEC 61966-2-1).
 double linear(double coded) { return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4); }
 double coded(double intensity) {
     return intensity <= 0.0031308 ? 12.92 * intensity : 1.055 * std::pow(intensity, 1 / 2.4) - 0.055;
@@ -51,20 +51,20 @@ std::uint32_t to_pixel(const Light& light) {
     return alpha << 24 | channel(0) << 16 | channel(1) << 8 | channel(2);
 }
 
-/// Differs enough to be seen; roots stand for the gamma code.
+/// Whether two colours differ visibly; square roots approximate the gamma code.
 bool differs(const Light& a, const Light& b) {
     if (a[3] != b[3]) return true;
     const Light roots = (a.sqrt() - b.sqrt()).abs();
     return roots.head<3>().maxCoeff() > 0.06F;
 }
 
-/// A channel under light of some strength: in proportion up to 1, beyond it on towards white without a kink.
+/// A channel at a light strength: proportional up to 1, then smoothly approaching white.
 float lit(float channel, float strength) {
     if (strength <= 1 || channel >= 1) return channel * std::min(strength, 1.0F);
     return 1 - (1 - channel) * std::exp(-channel / (1 - channel) * (strength - 1));
 }
 
-/// Directions spread evenly over the sphere (a spherical Fibonacci lattice).
+/// Directions distributed evenly on the sphere (a spherical Fibonacci lattice).
 std::vector<Eigen::Vector3d> sphere_directions(int count) {
     std::vector<Eigen::Vector3d> list;
     for (int i = 0; i < count; ++i) {
@@ -111,7 +111,7 @@ public:
     }
 
 private:
-    /// 1 for a surface that faces the viewer, so that it is seen in its own colour.
+    /// 1 for a surface that faces the viewer, so that it has its own colour.
     [[nodiscard]] double brightness(const Eigen::Vector3d& normal, const Eigen::Vector3d& viewer) const {
         const auto sum = [&](double facing, double key, double up) {
             return 0.14 + 0.07 * up + 0.25 * std::max(0.0, facing) + 0.75 * std::max(0.0, key);
@@ -120,7 +120,7 @@ private:
                sum(1, viewer.dot(key_), viewer.dot(camera_.up));
     }
 
-    /// Share of the sky above the surface from which light comes, weighted by the cosine.
+    /// Cosine-weighted fraction of the sky above the surface that is not occluded.
     [[nodiscard]] double openness(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
         constexpr double max_distance = 0.6;
         double open = 0, total = 0;
@@ -157,7 +157,7 @@ private:
                 static_cast<std::uint8_t>(std::lround(sum[2]))};
     }
 
-    /// Of the patches of a triangle, from this place in the list on.
+    /// Colour of the patches of a triangle, which start at index `first`.
     [[nodiscard]] Rgb patch_colour(std::size_t first, const Surface::Hit& hit) const {
         Rgb colour;
         double most = -1;
@@ -169,7 +169,7 @@ private:
         return colour;
     }
 
-    /// How much of an edge line covers the pixel: 1 on the edge, 0 beyond its width.
+    /// Coverage of the pixel by an edge line: 1 on the edge, 0 beyond its width.
     [[nodiscard]] double edge_share(const Surface::Hit& hit, double x, double y) const {
         std::array<Eigen::Vector2d, 3> screen;
         for (std::size_t k = 0; k < 3; ++k)
@@ -183,7 +183,7 @@ private:
             if (length > 0) nearest = std::min(nearest, std::abs(side.x() * offset.y() - side.y() * offset.x()) / length);
             longest = std::max(longest, length);
         }
-        // Triangles of few pixels would be all edge: their lines fade.
+        // Triangles of a few pixels would consist of edge only: their lines fade.
         const double height = longest > 0 ? twice_area / longest : 0;
         return std::clamp(shading_.edge_width / 2 + 0.5 - nearest, 0.0, 1.0) * std::clamp(height / 3, 0.0, 1.0);
     }
@@ -193,7 +193,7 @@ private:
     const Camera& camera_;
     const Shading& shading_;
     std::vector<Eigen::Vector3d> sky_;
-    std::unordered_map<Index, std::size_t> patches_;  ///< where those of a triangle begin
+    std::unordered_map<Index, std::size_t> patches_;  ///< index of the first patch of a triangle
     Eigen::Vector3d key_;
 };
 }  // namespace
@@ -223,7 +223,8 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
                     ((column > 0 && differs(sum, light[here - 1])) || (column + 1 < columns && differs(sum, light[here + 1])) ||
                      (row > 0 && differs(sum, light[here - columns])) || (row + 1 < rows && differs(sum, light[here + columns])));
                 if (busy) {
-                    // The plastic-number sequence: any number of its points is spread evenly over the pixel (Roberts 2018).
+                    // The plastic-number sequence (Roberts 2018): any number of its points is distributed evenly over the
+                    // pixel.
                     for (int i = 1; i < shading.samples; ++i)
                         sum += shader.sample(static_cast<double>(column) + std::fmod(0.5 + i * 0.7548776662466927, 1.0),
                                              static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));

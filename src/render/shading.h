@@ -1,4 +1,4 @@
-// The coloured, lit surface as pixels.
+// Rendering of the coloured, lit surface to pixels.
 #pragma once
 
 #include "camera.h"
@@ -13,27 +13,27 @@ namespace ostraka::detail {
 struct Shading {
     bool smooth = true;
     double crease_cosine = 0.77;
-    int ambient_occlusion = 0;  ///< rays a sample
-    int samples = 8;            ///< rays a pixel where colours change
+    int ambient_occlusion = 0;  ///< rays per sample
+    int samples = 8;            ///< rays per pixel where colours change
     bool edges = false;
     double edge_width = 1;  ///< pixels
     ColourScale scale;
 };
 
-/// Linear red, green, blue, multiplied by the coverage, and the coverage.
+/// Linear red, green, blue, premultiplied by the coverage, and the coverage.
 using Light = Eigen::Array4f;
 
-/// Rows from the top; nothing where no triangle is seen.
+/// Rows from the top; zero coverage where no triangle is visible.
 std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camera& camera, int width, int height,
                          const Shading& shading);
 
-/// Each the mean of `share` by `share`.
+/// The means of blocks of `share` by `share` pixels.
 std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int share);
 
 /// Pixels 0xAARRGGBB, premultiplied.
 std::vector<std::uint32_t> to_pixels(const std::vector<Light>& light);
 
-/// Red, green, blue and alpha, not premultiplied, as an sRGB file of 16 bits holds them.
+/// Red, green, blue and alpha, not premultiplied, for a 16-bit sRGB file.
 std::array<std::uint16_t, 4> to_deep(const Light& light);
 
 }  // namespace ostraka::detail

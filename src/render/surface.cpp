@@ -13,7 +13,7 @@
 namespace ostraka::detail {
 
 namespace {
-constexpr Index largest_fan = 64;  ///< corners of more faces than this are shaded flat: their faces are slivers
+constexpr Index largest_fan = 64;  ///< corners of more faces are shaded flat: their faces are slivers
 
 void check(const Scene& scene) {
     const auto& mesh = scene.mesh;
@@ -44,8 +44,8 @@ void check(const Scene& scene) {
             if (face >= mesh.triangles.size()) fail_input(where, "names a triangle that it does not have");
 }
 
-/// Keeps the nearest hit, and of equal ones the smallest index. The ray stays a little longer than the nearest hit, so that no
-/// equal one is pruned, whatever the tree looks like.
+/// Keeps the nearest hit; ties: the smallest index. The ray extends slightly beyond the nearest hit, so that no equal hit is
+/// pruned, for any tree.
 struct Nearest {
     RTCIntersectContext context;
     float distance = std::numeric_limits<float>::infinity();
@@ -180,8 +180,8 @@ bool Surface::first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& di
     rtcIntersect1(tree_.get(), &nearest.context, &query);
     if (nearest.triangle == RTC_INVALID_GEOMETRY_ID) return false;
     hit.triangle = nearest.triangle;
-    // The place within the triangle once more in double precision (Moeller and Trumbore 1997): what is seen then depends on the
-    // triangle hit alone.
+    // The position within the triangle is recomputed in double precision (Moeller and Trumbore 1997), so that it depends only
+    // on the triangle hit.
     const auto& [a, b, c] = triangles_[hit.triangle];
     const Eigen::Vector3d start = point(a), side_b = point(b) - start, side_c = point(c) - start, offset = origin - start;
     const Eigen::Vector3d p = direction.cross(side_c), q = offset.cross(side_b);

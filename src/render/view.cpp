@@ -27,7 +27,7 @@ Triple unit(const Triple& a) {
     return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-/// Numbers separated by commas; empty if the text is anything else.
+/// Numbers separated by commas; empty for any other text.
 std::vector<double> numbers(const std::string& text) {
     std::vector<double> list;
     const char* place = text.c_str();
@@ -43,7 +43,7 @@ std::vector<double> numbers(const std::string& text) {
     }
 }
 
-/// Exact at the multiples of a right angle, so that the standard views have exact axes.
+/// Sine that is exact at multiples of a right angle, so that the standard views have exact axes.
 double sine(double degrees) {
     const double turn = std::remainder(degrees, 360.0);
     if (turn == 0 || std::abs(turn) == 180) return 0;

@@ -41,7 +41,7 @@ std::string draw(const BracketGraph& graph, Sheet::Format format) {
         for (const std::size_t row : bracket.rows) sheet.line(x - 0.5 * lane_width, middle(row), x, middle(row), colour, width);
         if (bracket.directed) sheet.dot(x - 0.5 * lane_width, middle(bracket.rows.front()), colour, 3);
     }
-    std::vector<std::size_t> above;  // the row of each depth on the way down
+    std::vector<std::size_t> above;  // current row at each depth
     for (std::size_t r = 0; r < graph.rows.size(); ++r) {
         const auto& row = graph.rows[r];
         const auto depth = static_cast<std::size_t>(std::max(0, row.depth));

@@ -93,7 +93,7 @@ std::string draw(const Dendrogram& d, Sheet::Format format) {
         const Rgb colour = of < 0 ? between : classes.empty() ? category_colour(static_cast<std::size_t>(of)) : ink;
         sheet.line(x1, y1, x2, y2, colour, of < 0 ? 1.2 : 2);
     };
-    // The number of a group stands at the branch that leaves it.
+    // The number of a group is at the branch that leaves it.
     std::vector<std::tuple<double, double, int>> numbers;
     for (std::size_t m = 0; m < d.tree.merges.size(); ++m) {
         const Merge& merge = d.tree.merges[m];

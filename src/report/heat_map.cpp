@@ -64,7 +64,7 @@ std::string draw(const HeatMap& map, Sheet::Format format) {
         for (Eigen::Index j = 0; j < map.values.cols(); ++j) {
             const double x = left + static_cast<double>(j) * cell, y = top + static_cast<double>(i) * cell;
             const Rgb colour = colour_of(scale, map.values(i, j));
-            // A little over the edge, so that no light shines through between fields.
+            // Overlaps the edge slightly, so that no gap appears between cells.
             sheet.rectangle({x, y, std::min(x + cell + 0.3, right), std::min(y + cell + 0.3, bottom)}, colour);
         }
     if (map.numbers && cell >= 24)

@@ -26,7 +26,7 @@ void check(const Plot& plot) {
     }
 }
 
-/// Draws the series of a plot whose axes have their places.
+/// Draws the series of a plot whose axes are laid out.
 class Drawing {
 public:
     Drawing(Sheet& sheet, const Plot& plot, const Ruler& x, const Ruler& y) : sheet_(sheet), plot_(plot), x_(x), y_(y) {
@@ -59,8 +59,8 @@ public:
             }
     }
 
-    /// After all marks: each label near its point where it covers nothing, farther ones with a line to it. Labels that find no
-    /// room are left out; returns their number.
+    /// Call it after all marks are drawn. Places each label near its point where it covers nothing, connected by a line if it
+    /// is farther away. Labels without room are left out; returns their number.
     std::size_t draw_labels(const Box& area) {
         std::size_t left_out = 0;
         for (const PlotSeries& series : plot_.series)
@@ -171,7 +171,7 @@ std::string draw(const Plot& plot, Sheet::Format format) {
     }
     const double left = margin + 1.6 * text_size + widest_tick + 8, top = margin + 1.8 * text_size;
     double right = plot.width - (widest_name > 0 ? 2 * margin + 34 + widest_name : 2 * margin);
-    // Names that do not fit side by side stand upright.
+    // Names that do not fit side by side are written vertically.
     const bool upright = !plot.x.names.empty() && widest_below + 8 > (right - left) / static_cast<double>(plot.x.names.size());
     double bottom = plot.height - margin - (upright ? 1.9 * text_size + widest_below + 4 : 3.2 * text_size);
     right = std::max(right, left + 80);

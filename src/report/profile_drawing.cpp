@@ -1,4 +1,4 @@
-// A profile as pottery is drawn.
+// Pottery drawing of a profile.
 #include "ostraka/report/slice_drawing.h"
 
 #include "drawing_elements.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr double points_a_mm = 72 / 25.4;
 constexpr double above = 64, below = 62, beside = 64;
 
-/// Points of the sheet a unit, and its name ("1 : 2") where lengths are known.
+/// Points of the sheet per unit, and the name of the scale ("1 : 2") if the unit is known.
 struct Scale {
     double points = 1;
     std::string name;
@@ -42,7 +42,7 @@ Scale scale_of(double width, double height, const std::string& unit) {
     return best;
 }
 
-/// A thin line with short strokes at its ends.
+/// A dimension line: a thin line with short strokes at its ends.
 void dimension(Sheet& sheet, double x1, double y1, double x2, double y2) {
     const double dx = y1 == y2 ? 0 : 4, dy = y1 == y2 ? 4 : 0;
     sheet.line(x1, y1, x2, y2, ink, 0.5);
@@ -50,7 +50,7 @@ void dimension(Sheet& sheet, double x1, double y1, double x2, double y2) {
     sheet.line(x2 - dx, y2 - dy, x2 + dx, y2 + dy, ink, 0.5);
 }
 
-/// What of the outline lies beyond the section on its side, by more than a hundredth of the size.
+/// The parts of the outline that lie beyond the section on its side, by more than a hundredth of the size.
 std::vector<std::vector<Vector2d>> beyond_section(const Profile& profile) {
     const double height = profile.high - profile.low, step = height / 200;
     std::vector<std::vector<Vector2d>> runs;
@@ -92,7 +92,7 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
         const Placing placing{scale.points, middle, above + scale.points * profile.high};
         const double top = placing({0, profile.high})[1], bottom = placing({0, profile.low})[1];
         sheet.text(sheet.fitted(title, sheet_width - 2 * margin, 12), margin, margin + 8, 0, 12);
-        // The wall, cut.
+        // Left: the section of the wall.
         sheet.clip({0, 0, middle, sheet_height});
         for (const Slice& part : components(profile.section)) {
             std::vector<std::vector<std::array<double, 2>>> curves;
@@ -103,7 +103,7 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
         open_contours(sheet, profile.section, placing);
         for (const auto& curve : beyond_section(profile)) sheet.polyline(placing(curve, false), ink, true, 0.7);
         sheet.unclip();
-        // The outside, seen.
+        // Right: the view of the outside.
         sheet.clip({middle, 0, sheet_width, sheet_height});
         for (const auto& curve : profile.outline) sheet.polyline(placing(curve, true), ink, false, 1.1);
         for (const auto& edge : profile.edges) {
@@ -114,7 +114,7 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
         sheet.line(middle, top - 12, middle, bottom + 12, ink, 0.6);
         if (profile.rim_diameter > 0) {
             const double r = profile.rim_diameter / 2;
-            // The mouth is seen as a line across at the top.
+            // The mouth is shown as a line across the top.
             sheet.line(placing({-r, 0})[0], top, placing({r, 0})[0], top, ink, 0.6);
             dimension(sheet, placing({-r, 0})[0], top - 16, placing({r, 0})[0], top - 16);
             std::string words = "\u2300 " + length_text(profile.rim_diameter, unit);

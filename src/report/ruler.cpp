@@ -52,7 +52,7 @@ Ruler::Ruler(const Plot& plot, std::size_t coordinate)
         maximum_ += half;
     } else if (axis_->names.empty()) {
         const double rim = 0.03 * (maximum_ - minimum_);
-        // Bars stand on their line.
+        // The lower end stays at the base line of bars.
         const bool on_zero =
             coordinate == 1 && minimum_ == 0 && !logarithmic_ &&
             std::any_of(plot.series.begin(), plot.series.end(), [](const auto& s) { return s.mark == Mark::bars; });

@@ -1,4 +1,4 @@
-// An axis of a plot: its range, its ticks, its places on the sheet.
+// An axis of a plot: its range, ticks, and positions on the sheet.
 #pragma once
 
 #include "ostraka/report/plot.h"
@@ -19,7 +19,7 @@ bool has_place(const PlotAxis& axis, double value);
 /// One axis with its range, along the sheet from `low` to `high`.
 class Ruler {
 public:
-    /// coordinate 0: x; 1: y. Throws Error (input) where no point has a place.
+    /// coordinate 0: x; 1: y. Throws Error (input) if no point can be shown.
     Ruler(const Plot& plot, std::size_t coordinate);
 
     void stretch_over(double low, double high) { low_ = low, high_ = high; }
@@ -28,10 +28,10 @@ public:
     }
     [[nodiscard]] std::vector<Tick> ticks() const;
     [[nodiscard]] bool inside(double value) const { return place(value) >= minimum_ && place(value) <= maximum_; }
-    /// Lower end, as a value.
+    /// Value at the lower end.
     [[nodiscard]] double lowest() const;
     [[nodiscard]] double extent() const { return maximum_ - minimum_; }
-    /// Makes the range `extent` wide about its middle.
+    /// Sets the width of the range to `extent`, keeping its midpoint.
     void widen(double extent);
 
 private:
@@ -41,7 +41,7 @@ private:
 
     const PlotAxis* axis_;
     bool logarithmic_;
-    double minimum_, maximum_;  ///< places: values, or their logarithms
+    double minimum_, maximum_;  ///< on the scale of the axis: values, or their logarithms
     double low_ = 0, high_ = 1;
 };
 

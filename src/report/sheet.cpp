@@ -24,7 +24,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// What characters can be drawn: damaged and steering ones become U+FFFD or blanks.
+/// Makes text drawable: damaged characters become U+FFFD, control characters become blanks.
 std::string drawable(const std::string& words) {
     std::string result;
     for (std::size_t at = 0; at < words.size();) {

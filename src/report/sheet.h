@@ -1,4 +1,4 @@
-// A sheet to draw on, that becomes an SVG, a PDF or a PNG file.
+// A drawing sheet that is written as an SVG, a PDF or a PNG file.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -18,9 +18,9 @@ namespace ostraka::report {
 inline constexpr double text_size = 13, margin = 14;
 inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, quiet_line{150, 150, 150}, paper{255, 255, 255};
 
-/// Colours that colour-blind eyes distinguish too (Okabe and Ito), others after them.
+/// Colours that colour-blind readers can distinguish (Okabe and Ito), followed by further colours.
 Rgb series_colour(std::size_t index);
-/// The colour with paper mixed in: 0 is the colour, 1 is paper.
+/// The colour mixed with the paper colour: 0 is the colour, 1 is paper.
 Rgb lighter(const Rgb& colour, double share);
 
 struct Box {
@@ -30,7 +30,7 @@ struct Box {
     }
 };
 
-/// Lengths are in points of the SVG, y downward.
+/// Lengths are in points of the SVG, y points downwards.
 class Sheet {
 public:
     enum class Format { svg, png, pdf };
@@ -46,21 +46,21 @@ public:
     void rectangle(const Box& box, const Rgb& colour);
     void frame(const Box& box, const Rgb& colour, double width);
     void dot(double x, double y, const Rgb& colour, double radius = 3);
-    /// A mark distinguished by its form: dot, square, triangle, rhomb, cross, ring ...
+    /// A mark identified by its shape: dot, square, triangle, rhomb, cross, ring ...
     void mark(double x, double y, std::size_t form, const Rgb& colour);
 
     [[nodiscard]] double width_of(const std::string& words, double size = text_size);
-    /// `anchor`: the share of the text's width that lies left of x. y is the base line.
+    /// `anchor`: fraction of the text's width to the left of x. y is the base line.
     void text(const std::string& words, double x, double y, double anchor, double size = text_size, const Rgb& colour = ink);
-    /// Turned to read upward, and `anchor` the share of its length below y.
+    /// Text rotated to read upwards; `anchor` is the fraction of its length below y.
     void upward_text(const std::string& words, double x, double y, double anchor = 0.5, double size = text_size);
-    /// The text, cut with an ellipsis where it would be wider.
+    /// The text, shortened with an ellipsis to fit the width.
     [[nodiscard]] std::string fitted(const std::string& words, double width, double size = text_size);
 
     void clip(const Box& box);
     void unclip();
 
-    /// The file's bytes; nothing may be drawn afterwards. Throws Error (failure) where drawing failed.
+    /// The file's bytes; nothing may be drawn afterwards. Throws Error (failure) if drawing failed.
     std::string finish();
 
 private:
@@ -74,7 +74,7 @@ private:
     std::unique_ptr<_cairo, void (*)(_cairo*)> context_;
 };
 
-/// Writes what `draw` makes in the format that the file's ending names, folders and all.
+/// Writes the output of `draw` in the format given by the file's extension, creating folders.
 void write_sheet(const Path& file, const std::function<std::string(Sheet::Format)>& draw);
 
 }  // namespace ostraka::report

@@ -1,4 +1,4 @@
-// A sheet of slices.
+// Sheets of slices.
 #include "ostraka/report/slice_drawing.h"
 #include "ostraka/core/angles.h"
 
@@ -27,7 +27,7 @@ struct Extent {
 
 constexpr double caption = 24, gap = 10, title_height = 30, foot_height = 40;
 
-/// Columns, rows and the width of a field that fill a sheet of about 3 : 2 best.
+/// Columns, rows and cell size that best fill a sheet of about 3 : 2.
 struct Grid {
     int columns = 1, rows = 1;
     double width = 100, height = 100;
@@ -42,7 +42,7 @@ Grid grid_of(std::size_t count, const Vector2d& size) {
             std::min({(width - gap * (columns - 1)) / columns, ((height - (gap + caption) * rows) / rows) / aspect, 300.0});
         if (field > maximum) maximum = field, best = {columns, rows, field, field * aspect};
     }
-    // Very many slices stay legible: the sheet grows downward.
+    // Many slices stay legible: the sheet grows downwards.
     if (best.width < 56) {
         best.columns = 10, best.rows = (static_cast<int>(count) + 9) / 10;
         best.width = (width - gap * 9) / 10, best.height = best.width * aspect;
@@ -105,7 +105,7 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
     if (!(extent.size().maxCoeff() > 0)) fail_input("drawing", "no slice has a contour", "choose heights that meet the mesh");
     for (const auto& curve : content.view)
         for (const auto& p : curve) side.add(p);
-    // A thin figure still gets a field.
+    // A thin figure still gets a cell of minimum width.
     const Vector2d centre = (extent.low + extent.high) / 2;
     Vector2d size = 1.04 * extent.size();
     size = size.cwiseMax(0.15 * size.maxCoeff());
@@ -135,7 +135,7 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
             for (std::size_t i = 0; i < content.slices.size(); ++i) {
                 const double y = placing({0, content.slices[i].slice->height})[1];
                 sheet.line(margin - 3, y, right + 6, y, guide, 0.5);
-                if (std::abs(y - last) < 9) continue;  // numbers would touch
+                if (std::abs(y - last) < 9) continue;  // numbers would overlap
                 sheet.text(slice_number(content, i), right + 9, y + 3, 0, 9, guide);
                 last = y;
             }

@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-/// One line of shown characters: what breaks lines or steers becomes a blank.
+/// A single line of printable characters: line breaks and control characters become blanks.
 std::string one_line(std::string_view text) { return without_controls(text, " "); }
 
 bool is_number(const std::string& cell) {
@@ -23,7 +23,7 @@ bool is_number(const std::string& cell) {
     return number_of(bare).has_value();
 }
 
-/// Text that LaTeX sets as it stands.
+/// Escapes text for LaTeX.
 std::string latex_text(const std::string& text) {
     static const std::map<char, std::string> names{{'\\', "\\textbackslash{}"},
                                                    {'{', "\\{"},
@@ -45,7 +45,7 @@ std::string latex_text(const std::string& text) {
     const std::string line = one_line(text);
     for (std::size_t i = 0; i < line.size(); ++i) {
         const auto found = names.find(line[i]);
-        // Hyphens in a row would be joined to a dash; one by itself stays.
+        // Consecutive hyphens would become a dash; a single hyphen stays.
         const bool alone = line[i] == '-' && (i == 0 || line[i - 1] != '-') && (i + 1 == line.size() || line[i + 1] != '-');
         if (found == names.end() || alone) result += line[i];
         else result += found->second;
@@ -80,7 +80,7 @@ std::string markdown_paragraphs(std::string_view text) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         std::string line = markdown_text(trimmed(text.substr(0, end)));
         text.remove_prefix(std::min(end + 1, text.size()));
-        // "- ", "===", and a number with a point, too, would be marks.
+        // "- ", "===", and a number with a point would be read as markup.
         const std::size_t mark = std::min(line.find_first_not_of("0123456789"), line.size());
         const bool is_mark =
             mark == 0 ? line.find_first_of("-+=") == 0 : line.find_first_of(".)", mark) == mark && (line + " ")[mark + 1] == ' ';
@@ -185,7 +185,7 @@ std::string TextTable::latex(const std::string& caption, const std::string& labe
     const auto row_text = [](const std::vector<std::string>& cells) {
         std::string text;
         for (std::size_t j = 0; j < cells.size(); ++j) text += (j == 0 ? "" : " & ") + latex_text(cells[j]);
-        // A bracket at the beginning of the next row would be read as an argument of the line break.
+        // A bracket at the start of the next row would be read as an argument of the line break.
         return text + " \\\\\\relax\n";
     };
     std::string text = "\\begin{tabular}{" + columns + "}\n\\toprule\n" + row_text(columns_) + "\\midrule\n";

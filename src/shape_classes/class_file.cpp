@@ -107,8 +107,8 @@ Path beside(const Path& file, const std::string& name, const std::string& where)
                        "learn the class anew");
 }
 
-/// What learning makes, and what no other file has: a mean of the members' size, modes of length one, and coefficients with the
-/// modes' variances.
+/// Checks properties that learning guarantees and other files lack: a mean of the members' size, unit modes, and coefficients
+/// with the variances of the modes.
 void check_shape(const ShapeModes& modes, const std::string& where) {
     const auto refuse = [&](const std::string& what) { fail_input(where, what, "learn the class anew"); };
     const double size = centroid_size(modes.mean);

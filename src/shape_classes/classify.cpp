@@ -46,13 +46,13 @@ std::string words(const QuantityCheck& check) {
            (check.worst.empty() ? "" : "; most of all " + check.worst);
 }
 
-/// The value of the quantity that has this key; none where there is none.
+/// The value of the quantity with this key, if any.
 std::optional<double> value_of(const std::vector<ClassQuantity>& quantities, const std::string& key) {
     const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& one) { return one.key() == key; });
     return found == quantities.end() ? std::nullopt : found->value;
 }
 
-/// Adds what is measured of all parts together; `worst` gets, by key, which of them is farthest off.
+/// Adds the combined quantities of the parts; `worst` gets, by key, the part that is farthest off.
 void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
     for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
@@ -72,7 +72,7 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const Shap
         const FitResiduals& r = *object.fit.residuals;
         score = 10 * (r.distance + r.back) + r.unmatched + r.unexplained + r.stretch + r.bend;
     }
-    // What no fit changes: by how much the object's own surface differs from the members' mean.
+    // Invariant to the fit: the difference of the object's own surface from the members' mean.
     for (const char* name : {"compactness", "geodesic mean", "geodesic most", "geodesic variation"}) {
         const std::string key = "geometry " + std::string(name);
         const LearntRange* range = learnt.find(key);
@@ -83,7 +83,7 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const Shap
     return score;
 }
 
-/// Parts together: roots of mean squared logarithms, and how far its own annotations are from those of the template.
+/// Combined parts: root mean squared logarithms, and the disagreement of its own annotations with those of the template.
 double score_of_parts(const std::vector<ClassQuantity>& quantities) {
     double score = 0;
     for (const ClassQuantity& quantity : quantities)
@@ -91,7 +91,7 @@ double score_of_parts(const std::vector<ClassQuantity>& quantities) {
     return score;
 }
 
-/// Adds how unlike the members it is; `worst` gets what is farthest off.
+/// Adds the dissimilarity to the members; `worst` gets the quantity that is farthest off.
 void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, ClassAnswer& answer,
                     std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
@@ -107,13 +107,14 @@ void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quanti
                             " the members' mean";
 }
 
-/// Members in correspondence show nothing of the error of a fit, which slides along the surface.
+/// Whether the object is fitted but all members are in correspondence: these do not show the error of a fit, which slides along
+/// the surface.
 bool fitted_to_given(const ShapeClass& learnt, const LearntMember& object) {
     return object.fit.residuals && std::all_of(learnt.members.begin(), learnt.members.end(),
                                                [](const auto& m) { return m.placed_by == "correspondence"; });
 }
 
-/// All that speaks against it are distances of vertices.
+/// Whether the object is rejected only by distances of vertices.
 bool only_shape(const ClassAnswer& answer) {
     return !answer.against.empty() && std::all_of(answer.against.begin(), answer.against.end(), [&](std::size_t i) {
         const std::string& name = answer.checks[i].quantity.name;
@@ -143,7 +144,7 @@ std::vector<std::string> odd_of(const ShapeClass& learnt, const LearntMember& ob
     return odd;
 }
 
-/// What is neither refused nor recognised; null if nothing is.
+/// The first quantity that is neither rejected nor recognised; null if there is none.
 const QuantityCheck* not_recognised(const ClassAnswer& answer) {
     for (const QuantityCheck& check : answer.checks)
         if (check.decides && check.recognised && *check.quantity.value > *check.recognised) return &check;

@@ -33,7 +33,7 @@ double rigid_scale_between(const Landmarks& from, const Landmarks& to) {
 
 double per_cent_more(double a, double b) { return 100 * (std::max(a, b) / std::min(a, b) - 1); }
 
-/// Worst residual and worst difference of scale over the pieces.
+/// Maximum residual and maximum difference of scale over the pieces.
 std::optional<std::array<double, 2>> worst_piece(const Landmarks& rest, const Landmarks& member) {
     const Eigen::Index n = rest.rows();
     ProcrustesOptions scaled;
@@ -59,8 +59,8 @@ std::optional<std::array<double, 2>> worst_piece(const Landmarks& rest, const La
         if (!(own > 0) || !(theirs > 0)) continue;
         any = true;
         worst[0] = std::max(worst[0], std::sqrt(std::max(0.0, left) / static_cast<double>(count)) / spread);
-        // As the verdict on fragments compares sizes: by all landmarks and by those that move rigidly together, the lesser of
-        // both.
+        // As the verdict on fragments compares sizes: by all landmarks and by those that move rigidly together; the smaller
+        // difference counts.
         const double rigid = rigid_scale_between(piece, goal), rigid_others = rigid_scale_between(others, other_goal);
         double apart = per_cent_more(own, theirs);
         if (rigid > 0 && rigid_others > 0) apart = std::min(apart, per_cent_more(rigid, rigid_others));

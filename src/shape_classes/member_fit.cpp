@@ -83,7 +83,7 @@ MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member) 
 
 namespace {
 
-/// A triangle's edges as two columns, in a frame of its plane.
+/// The edge vectors of a triangle as two columns, in a frame of its plane.
 Matrix2d flat(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     const Vector3d u = b - a, v = c - a;
     const double length = u.norm(), along = length > 0 ? u.dot(v) / length : 0;
@@ -99,7 +99,7 @@ double angle_at(const Mesh& mesh, Edge edge, const std::vector<Vector3d>& p) {
     return std::atan2((b - a).norm() > 0 ? n.cross(m).dot((b - a).normalized()) : 0, n.dot(m));
 }
 
-/// Residuals and regions of one placement, as the member fit keeps them.
+/// Residuals and off-surface regions of one placement, as stored in the member fit.
 struct Residuals {
     FitResiduals numbers;
     std::vector<OffRegion> foreign, missing;
@@ -121,8 +121,8 @@ Residuals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object,
     return residuals;
 }
 
-/// The object without the insides of its walls, closed where these are cut off, and their share of its surface; none where there
-/// are none, or where nothing else is left.
+/// The object without the insides of its walls, closed where these are cut off, and their share of its surface. None if there
+/// are no such insides, or if nothing else is left.
 std::optional<std::pair<Mesh, double>> without_insides(const Mesh& fitted, const Mesh& object, double near) {
     std::vector<bool> keep = insides_of_walls(object, SurfaceSearch(fitted), near);
     double share = 0;
@@ -138,7 +138,7 @@ std::optional<std::pair<Mesh, double>> without_insides(const Mesh& fitted, const
     return std::pair(std::move(outer), share);
 }
 
-/// The regions moved.
+/// The regions transformed by a motion.
 std::vector<OffRegion> moved_regions(std::vector<OffRegion> regions, const Motion& motion) {
     for (OffRegion& region : regions) {
         region.middle = point_of(motion(eigen(region.middle)));
@@ -147,10 +147,10 @@ std::vector<OffRegion> moved_regions(std::vector<OffRegion> regions, const Motio
     return regions;
 }
 
-/// Where the template is at its scale, and how the object gets there.
+/// Scale of the template, and the motion of the object to the template at this scale.
 struct Place {
     double scale = 1;
-    Motion pose;  ///< rigid, of the object
+    Motion pose;  ///< rigid motion of the object
 };
 
 std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member, const MemberFitOptions& options) {
@@ -159,7 +159,7 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
     const Mesh scaled = scaled_by(mesh, ratio);
     const AlignSurface whole(scaled, options.alignment.samples);
     std::vector<Motion> starts = principal_starts(whole, object);
-    // As the files have it, middle on middle.
+    // The given pose, centroid on centroid.
     const auto middle = [](const Mesh& surface) {
         Vector3d sum = Vector3d::Zero();
         double area = 0;
@@ -178,7 +178,8 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
     std::stable_sort(found.begin(), found.end(), [](const Alignment& a, const Alignment& b) { return a.distance < b.distance; });
     std::vector<Place> places;
     for (const Alignment& alignment : found) {
-        // x = s R (ratio p) + t for a point p of the template: the object goes back by R and t, the template gets the scale.
+        // x = s R (ratio p) + t for a point p of the template: the inverse of R and t is applied to the object, the scale to
+        // the template.
         Place place;
         place.scale = ratio * alignment.motion.scale;
         place.pose.rotation = alignment.motion.rotation.transpose();
@@ -201,7 +202,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
         now.push_back(eigen(points[v]));
     }
     double area = 0, squares = 0;
-    constexpr double maximum = 3;  // of a logarithm: triangles that collapse do not count without end
+    constexpr double maximum = 3;  // of a logarithm: limits the weight of triangles that collapse
     for (const Face face : mesh.faces()) {
         const auto c = corners(mesh, face);
         const double weight = face_area(mesh, face);
@@ -230,7 +231,7 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
 
 namespace {
 
-/// A tag without the number at its end: "part 12" is "part", "finger" stays.
+/// A tag without the number at its end: "part 12" becomes "part", "finger" stays.
 std::string without_number(const std::string& tag) {
     std::size_t end = tag.size();
     while (end > 0 && std::isdigit(static_cast<unsigned char>(tag[end - 1])) != 0) --end;
@@ -239,8 +240,8 @@ std::string without_number(const std::string& tag) {
     return tag.substr(0, end);
 }
 
-/// Tags of regions that are counted up ("part 0", "part 1") become one tag in both sets, so that place and shape say which is
-/// which: who counted them need not have begun at the same one. Landmarks keep their names. Returns the tags that were counted.
+/// Gives regions with numbered tags ("part 0", "part 1") a common tag in both sets, so that they are matched by position and
+/// shape: the two numberings need not agree. Landmarks keep their names. Returns the common tags.
 std::set<std::string> forget_numbers(AnnotationSet& a, AnnotationSet& b) {
     std::set<std::string> counted;
     for (const AnnotationSet* set : {&a, &b}) {
@@ -286,7 +287,7 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         places = places_by_surface(mesh, member, options);
         best.placed_by = "surface";
     }
-    AnnotationSet ours, theirs;  // with tags that are not counted
+    AnnotationSet ours, theirs;  // with common tags instead of numbered ones
     if (!set.annotations.empty() && !member.annotations.annotations.empty()) {
         ours = set;
         theirs = member.annotations;

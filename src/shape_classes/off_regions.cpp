@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-/// Points spread evenly over a surface: so many, or each face's middle where there are fewer faces.
+/// Points sampled evenly over a surface: the given number, or the centroid of each face if there are fewer faces.
 struct Spread {
     std::vector<Index> faces;
     std::vector<Point> points;
@@ -42,10 +42,10 @@ struct SampleOff {
 };
 
 constexpr std::size_t max_samples = 5000;
-constexpr double like_normals = 0.5;  ///< cosine: 60 degrees
-constexpr double least_share = 0.01;  ///< of a region that is named
+constexpr double like_normals = 0.5;  ///< cosine of 60 degrees
+constexpr double least_share = 0.01;  ///< minimum area of a reported region
 
-/// Of each face a sample that lies on it, or on the nearest face that has one.
+/// For each face, a sample on it, or on the nearest face that has one.
 std::vector<std::size_t> samples_of_faces(const Mesh& mesh, const Spread& spread) {
     constexpr auto none = static_cast<std::size_t>(-1);
     std::vector<std::size_t> sample(mesh.number_of_faces(), none);

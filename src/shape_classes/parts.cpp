@@ -49,7 +49,7 @@ FaceMoments face_moments(const Mesh& mesh, const Vector3d& origin) {
     return moments;
 }
 
-/// Of what the outline encloses: faces that it cuts count with their share.
+/// Moments of the area enclosed by the outline; faces that it cuts count with their share.
 FaceMoments part_moments(const Mesh& mesh, const Annotation& part, const Vector3d& origin) {
     FaceMoments moments;
     for (const auto& [face, share] : face_shares(mesh, part)) moments.add(mesh, Face(face), origin, share);
@@ -63,7 +63,7 @@ AnnotationSet parts_of(const Mesh& mesh, const AnnotationSet& set) {
     return parts;
 }
 
-/// Area that each pair of a carried and an own label share on the member.
+/// Area shared on the member by each pair of a transferred and an own label.
 using Overlap = std::map<std::pair<std::int32_t, std::int32_t>, double>;
 
 Overlap overlap_of(const ClassTemplate& known, const Mesh& fitted, const AnnotationSet& parts, const WholeObject& member,
@@ -78,7 +78,7 @@ Overlap overlap_of(const ClassTemplate& known, const Mesh& fitted, const Annotat
     return overlap;
 }
 
-/// Carried label -> own label where each has most of its area in the other.
+/// Transferred label -> own label, where each has most of its area in the other.
 std::map<std::int32_t, std::int32_t> counterparts(const Overlap& overlap) {
     std::map<std::int32_t, std::pair<double, std::int32_t>> best, back;
     for (const auto& [pair, area] : overlap) {
@@ -118,7 +118,7 @@ std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std
     struct Part {
         const Annotation* annotation;
         FaceMoments moments;
-        Vector3d from;  ///< centroid of the whole it belongs to
+        Vector3d from;  ///< centroid of the surface that contains the part
         double size = 1;
     };
     std::map<std::int32_t, Part> measured;
@@ -169,7 +169,7 @@ std::optional<double> own_disagreement(const ClassTemplate& known, const std::ve
     const AnnotationSet parts = parts_of(known.mesh, known.set), own = parts_of(member.mesh, member.annotations);
     if (parts.annotations.empty() || own.annotations.empty()) return {};
     const Overlap overlap = overlap_of(known, with_points(known.mesh, points), parts, member, own);
-    // The index of areas as if each were made of so many equal grains that a grain never pairs with itself: their number cancels.
+    // The index for areas, as the limit of a division into many equal grains; the number of grains cancels.
     std::map<std::int32_t, double> rows, columns;
     double all = 0, both = 0, row = 0, column = 0;
     for (const auto& [pair, area] : overlap) all += area;

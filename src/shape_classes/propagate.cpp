@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// Without provenance: that of the template is not that of the copy.
+/// Copy without provenance: the template's does not apply to the copy.
 AnnotationSet copy_of(const AnnotationSet& set) {
     AnnotationSet copy;
     copy.object_class = set.object_class;

@@ -69,7 +69,7 @@ std::vector<Point> in_template_frame(const Mesh& mesh, const std::vector<Point>&
 
 namespace {
 
-/// The measure that a constraint names by id or name; nullptr if there is none.
+/// The measure to which a constraint refers by id or name; nullptr if there is none.
 const Attribute* named(const JsonValue& parameters, const char* member, const Annotation& annotation) {
     const JsonValue* name = find_member(parameters, member);
     if (name == nullptr) return nullptr;
@@ -81,7 +81,7 @@ const Attribute* named(const JsonValue& parameters, const char* member, const An
     return nullptr;
 }
 
-/// The ratio of a proportion's two measures.
+/// The ratio of the two measures of a proportion.
 std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& set, const Relationship& relationship) {
     if (relationship.annotations.size() != 2) return {};
     const Annotation *a = set.find(relationship.annotations[0]), *b = set.find(relationship.annotations[1]);
@@ -106,7 +106,7 @@ void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<Cla
             } else if (attribute.type == AttributeType::descriptor && !attribute.descriptor.is_list &&
                        attribute.descriptor.file.empty() && attribute.descriptor.values.size() == 1) {
                 quantity.value = evaluate(shape, annotation, attribute.name);
-                if (!quantity.value) continue;  // not one that is known how to take
+                if (!quantity.value) continue;  // of a kind that cannot be computed
                 quantity.unit = descriptor_unit(attribute.name, set.unit);
             } else {
                 continue;
@@ -121,7 +121,7 @@ void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<Cla
 std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes) {
     std::vector<ClassQuantity> list;
     const std::vector<Point> normal = in_template_frame(known.mesh, points, sizes);
-    // Attributes of the object's own size, but where the template stands: measures have directions.
+    // Attributes are measured at the object's own size but in the pose of the template, because measures have directions.
     const Mesh framed = with_points(known.mesh, normal),
                shape = with_points(known.mesh, in_template_frame(known.mesh, points, true));
     std::map<int, ConstraintReport> constraints;
@@ -135,7 +135,7 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const 
         const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {
             for (const Deviation& deviation : deviations) {
                 ClassQuantity quantity{kind, relationship.id, deviation.quantity, relationship.type, deviation.unit};
-                quantity.one_sided = deviation.tolerance.has_value();  // a residual: it holds up to its tolerance
+                quantity.one_sided = deviation.tolerance.has_value();  // a residual: it is satisfied up to its tolerance
                 if (deviation.value && std::isfinite(*deviation.value)) quantity.value = deviation.value;
                 list.push_back(std::move(quantity));
             }

@@ -25,7 +25,7 @@ using Pairs = std::vector<std::pair<Index, Index>>;
 
 Pairs crossings(const Mesh& mesh) { return self_intersections(to_soup(mesh)).pairs; }
 
-/// 1 on the vertices given, falling smoothly to 0 within `fading_length` along edges.
+/// 1 at the given vertices, decreasing smoothly to 0 at distance `fading_length` along edges.
 std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, double fading_length) {
     std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
     using Entry = std::pair<double, Index>;
@@ -83,7 +83,7 @@ public:
 private:
     Landmarks sized(Landmarks shape, Random& random) const {
         if (learnt_.sizes) return shape;
-        // One of the members' sizes, or between two of them.
+        // A size drawn between the members' sizes, by linear interpolation of the sorted sizes.
         auto sizes = learnt_.modes.centroid_sizes;
         std::sort(sizes.begin(), sizes.end());
         const double at = random.uniform() * static_cast<double>(sizes.size() - 1);
@@ -131,7 +131,7 @@ private:
         return sized(shape, random);
     }
 
-    /// Restores the constraints and looks whether the shape may stay.
+    /// Restores the constraints and tests whether the shape is accepted.
     bool keep(const Landmarks& shape, ClassSample& sample, Sampling& result) {
         const auto reject = [&](std::size_t& count, const std::string& why) {
             if (count++ == 0) result.examples.push_back(why);

@@ -36,7 +36,7 @@ LearntMember learn_member(const ClassTemplate& known, const WholeObject& member,
 
 namespace {
 
-/// The regions of the template that hold a face, the smallest first, in words.
+/// Names of the template's regions that contain a face, the smallest first.
 std::string parts_at(const ClassTemplate& known, Index face) {
     std::vector<const Annotation*> list;
     for (const Annotation& annotation : known.set.annotations)
@@ -92,8 +92,8 @@ std::vector<double> known_of(const LearntRange& range) {
     return known;
 }
 
-/// A distance of a member from the others: the root of a sum of squares, whose members' values stand about zero in all
-/// directions.
+/// Whether the quantity is a distance of a member from the others: the root of a sum of squares of deviations that scatter
+/// about zero in all directions.
 bool is_distance(const ClassQuantity& quantity) {
     const std::string& name = quantity.name;
     return quantity.one_sided && quantity.id < 0 &&
@@ -101,7 +101,8 @@ bool is_distance(const ClassQuantity& quantity) {
             name == "places of the parts");
 }
 
-/// Shares, lengths, ratios: what ranges below zero would say nothing of. Deviations have signs, attributes may have.
+/// Whether the quantity is never negative (shares, lengths, ratios), so that a negative bound is meaningless. Deviations are
+/// signed, and attributes may be.
 bool is_never_negative(const ClassQuantity& quantity) {
     return quantity.kind == QuantityKind::proportion || quantity.kind == QuantityKind::part ||
            quantity.kind == QuantityKind::geometry;
@@ -128,11 +129,12 @@ void summarise_range(LearntRange& range) {
 
 bool single_part(const LearntRange& range) { return range.quantity.kind == QuantityKind::part && range.quantity.id >= 0; }
 
-/// Values as they count as normal.
+/// Moments of the values on the scale that is taken as normal.
 SampleMoments range_moments(const LearntRange& range) {
     std::vector<double> known = known_of(range);
     if (is_distance(range.quantity)) {
-        // Left out, a member is n / (n - 1) times as far from the mean of the others as from that of all: the variance about it.
+        // The leave-one-out distance of a member is n / (n - 1) times its distance from the mean of all: this is the variance
+        // about that mean.
         SampleMoments about;
         about.count = known.size();
         const auto n = static_cast<double>(about.count);
@@ -147,16 +149,16 @@ SampleMoments range_moments(const LearntRange& range) {
 
 void set_bounds(LearntRange& range, const SampleMoments& known, double resolution) {
     const double largest = std::max(std::abs(range.min), std::abs(range.max));
-    // A distance has no side: of one direction t is the widest, of more than one the bound is that much safer.
+    // A distance has no side. In one dimension the two-sided t is exact; in more dimensions the bound is conservative.
     const PredictionInterval interval = predict(known, range.quantity.one_sided && !is_distance(range.quantity), range.reject,
                                                 range.logarithm ? resolution : resolution * largest);
-    // Rounding does not refuse, nor what a range in per cent tolerates (solver: a tenth).
+    // Does not reject for rounding, nor within the tolerance of a range in per cent (solver: a tenth).
     const bool per_cent = range.quantity.kind == QuantityKind::constraint && range.quantity.unit == "%";
     const double more = per_cent ? 0.1 : 1e-6;
     const double low = (range.logarithm ? std::exp(interval.low) : interval.low) - more,
                  high = (range.logarithm ? std::exp(interval.high) : interval.high) + more;
     if (!std::isfinite(low) || !std::isfinite(high)) return;
-    // Where members differ so much that the bound is what chance gives, it refuses nothing.
+    // If members differ so much that the bound is at chance level, it rejects nothing.
     if (range.quantity.name == "own annotations elsewhere" && high >= 1) {
         range.reject = 0;
         return;
@@ -165,30 +167,32 @@ void set_bounds(LearntRange& range, const SampleMoments& known, double resolutio
     if (!range.quantity.one_sided) range.low = is_never_negative(range.quantity) ? std::max(0.0, low) : low;
 }
 
-using Moments = std::map<std::string, SampleMoments>;  ///< by key: what to take instead of the range's own
+using Moments = std::map<std::string, SampleMoments>;  ///< moments by key that replace those of the range
 
 bool is_unlikeness(const ClassQuantity& quantity) {
     return quantity.kind == QuantityKind::geometry && quantity.name == unlike_the_members;
 }
 
-/// Only with others it decides.
+/// Whether the quantity can reject only in combination with others.
 bool only_together(const LearntRange& range) { return single_part(range) || counts_for_unlikeness(range.quantity); }
 
-/// Logarithms; members nearer to the others than a tenth of a deviation are so by the resolution.
+/// Logarithms. Values below a tenth of a deviation are due to the resolution and are clamped.
 std::vector<double> unlikeness_logs(const LearntRange& range) {
     std::vector<double> logs;
     for (const double value : known_of(range)) logs.push_back(std::log(std::max(value, 0.1)));
     return logs;
 }
 
-/// Less than one deviation refuses nobody, and half of one is recognised where strangers do not say otherwise.
+/// A dissimilarity below one deviation never rejects; half a deviation is recognised unless out-of-class objects indicate
+/// otherwise.
 void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members, const SampleMoments& strangers,
                            std::size_t asked) {
     range.high = std::max(1.0, std::exp(predict(members, true, range.reject).high));
     set_recognised(range, members, strangers, learnt.accept / static_cast<double>(asked), learnt.unsure);
 }
 
-/// `strangers`: what they show of unlikeness to all classes that are asked together, instead of what they do to this one.
+/// `strangers`: the moments of the out-of-class objects over all classes that are queried together, instead of those of this
+/// class.
 void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::optional<SampleMoments>& strangers = {},
                     std::size_t asked = 1) {
     std::map<QuantityKind, std::size_t> counts;
@@ -238,7 +242,7 @@ void moderate_thresholds(std::vector<ShapeClass>& classes) {
     std::map<std::string, VariancePrior> priors;
     for (const auto& [key, list] : samples)
         if (const auto prior = variance_prior(list)) priors.emplace(key, *prior);
-    // How unlike the others members are is counted in deviations: it is one sample for all classes, and so it is of strangers.
+    // Dissimilarities are in units of deviations: members of all classes form one sample, and so do out-of-class objects.
     std::vector<double> unlike, strange;
     std::size_t several = 0;
     std::optional<Dependence> dependence;
@@ -342,7 +346,7 @@ std::vector<LearntRange> collected(const std::vector<const LearntMember*>& membe
     return ranges;
 }
 
-/// Each has its share of the rate at which members are refused.
+/// Each quantity has an equal share of the rate at which members are rejected.
 void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
     learnt.fragments = collected(members, &LearntMember::fragments);
     for (LearntRange& range : learnt.fragments) {
@@ -353,7 +357,7 @@ void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMembe
     }
 }
 
-/// What each range is on the strangers.
+/// Adds the values of the ranges on the out-of-class objects.
 void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& strangers) {
     for (const LearntMember& stranger : strangers) {
         if (!stranger.fit.problem.empty()) {
@@ -370,7 +374,8 @@ void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& stranger
     }
 }
 
-/// How off the template is on one more member: the prediction bound of the logits; more than half of both surfaces is no member.
+/// Bound on how far the template is off on one more member: the prediction bound of the logits. More than half of both surfaces
+/// is never accepted.
 void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
     constexpr double least = 0.01;
     std::vector<double> logits;
@@ -394,7 +399,7 @@ void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& memb
         for (std::size_t i = 0; i < values.size(); ++i) range.values[i] = values[i];
     };
     const std::size_t n = members.size();
-    // Of each member against the others.
+    // Each member compared with the others.
     std::vector<std::vector<PartsTogether>> together;
     for (std::size_t i = 0; n > 1 && i < n; ++i) {
         std::vector<std::optional<double>> own;
@@ -417,7 +422,7 @@ void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& memb
     learn_thresholds(learnt);
 }
 
-/// The member nearest the mean; not one of `poor`, if there are others.
+/// Selects the member nearest to the mean, excluding those in `poor` if there are others.
 void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& poor) {
     if (poor.size() >= modes.distances.size()) return;
     std::size_t best = modes.distances.size();
@@ -439,7 +444,7 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     learnt.accept = options.accept;
     std::vector<const LearntMember*> used;
     std::vector<Landmarks> shapes;
-    std::set<std::size_t> poor;  // no archetype
+    std::set<std::size_t> poor;  // members not eligible as archetype
     for (const LearntMember& member : members) {
         if (!member.fit.problem.empty()) {
             learnt.notes.push_back(member.name + " is left out: " + member.fit.problem);

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double nothing = 1e-10;  ///< eigenvalues below this share of the largest are rounding
+constexpr double nothing = 1e-10;  ///< eigenvalues below this fraction of the largest are rounding errors
 
 RowVectorXd row_of(const Landmarks& shape) {
     RowVectorXd row(3 * shape.rows());
@@ -30,10 +30,10 @@ Landmarks shape_from(const RowVectorXd& row) {
     return shape;
 }
 
-/// Squared distance of member i from the mean of the others, and what of it is outside of their span, from the inner products.
+/// Squared distance of member i from the mean of the others, and its part outside their span, from the inner products.
 std::pair<double, double> left_out(const MatrixXd& inner, Eigen::Index i) {
     const Eigen::Index n = inner.rows(), m = n - 1;
-    // Members as columns of A in terms of all: the others less their mean, and member i less it.
+    // Columns of A are members in terms of all members: the others minus their mean, and member i minus that mean.
     MatrixXd others = MatrixXd::Zero(n, m);
     VectorXd own = VectorXd::Zero(n);
     for (Eigen::Index k = 0, column = 0; k < n; ++k) {
@@ -107,7 +107,7 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
         const double value = eigen.eigenvalues()[kept[k]];
         result.variances.push_back(value / static_cast<double>(n - 1));
         RowVectorXd mode = eigen.eigenvectors().col(kept[k]).transpose() * centred / std::sqrt(value);
-        // The sign of an eigenvector is open: its greatest entry is positive.
+        // The sign of an eigenvector is arbitrary: its largest entry is made positive.
         Eigen::Index at = 0;
         mode.cwiseAbs().maxCoeff(&at);
         if (mode[at] < 0) mode = -mode;

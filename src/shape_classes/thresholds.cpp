@@ -14,7 +14,7 @@ namespace ostraka {
 
 namespace {
 
-/// Where the trigamma function has the value `y` > 0: it falls, so by halving between bounds (in the logarithm).
+/// Inverse of the trigamma function at `y` > 0, by bisection of the logarithm (the function decreases).
 double inverse_trigamma(double y) {
     double low = 1e-8, high = 1e8;
     for (int i = 0; i < 200; ++i) {
@@ -24,7 +24,7 @@ double inverse_trigamma(double y) {
     return std::sqrt(low * high);
 }
 
-constexpr double many = 1e6;  ///< degrees of freedom from which on Student's distribution is the normal one
+constexpr double many = 1e6;  ///< degrees of freedom above which Student's distribution is treated as normal
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-/// Names of what counts: all but what refers to the mean shape.
+/// Names of the quantities that count: all except those relative to the mean shape.
 const std::set<std::string>& names_that_count() {
     static const std::set<std::string> names = [] {
         std::set<std::string> list;
@@ -21,8 +21,8 @@ const std::set<std::string>& names_that_count() {
     return names;
 }
 
-/// What counts as normal. Shares between 0 and 1 by their logits, a per cent away from the ends; a length of a ten-thousandth is
-/// none.
+/// Scale that is taken as normal. Shares between 0 and 1 by logits, kept a per cent away from the ends; other values by
+/// logarithms, at least 1e-4.
 double normal_scale(const ClassQuantity& quantity, double value) {
     constexpr double end = 0.01, least = 1e-4;
     if (is_share_of_surface(quantity)) return std::log((value + end) / (1 - value + end));
@@ -44,7 +44,7 @@ SampleMoments unlikeness_moments(const LearntRange& range, std::optional<std::si
 
 namespace {
 
-/// What the members of a class, or all but one, say of how far an object is off them.
+/// Means and deviations of the members of a class, or of all but one, by which the dissimilarity of an object is measured.
 class Yardstick {
 public:
     Yardstick(const ShapeClass& learnt, std::optional<std::size_t> without) {
@@ -91,11 +91,11 @@ private:
         [[nodiscard]] double counted(double off) const { return quantity.one_sided ? std::max(0.0, off) : off; }
     };
 
-    /// R^-1/2, from the cross products less those of the member that is left out.
+    /// Sets R^-1/2 from the cross products, without those of the member that is left out.
     void decorrelate(const ShapeClass& learnt, std::optional<std::size_t> without) {
         const Dependence& known = *learnt.dependence;
         const auto n = static_cast<Eigen::Index>(scales_.size());
-        std::vector<Eigen::Index> rows;  // -1: not known
+        std::vector<Eigen::Index> rows;  // -1: unknown
         for (const Scale& scale : scales_) {
             const auto row = known.rows.find(scale.quantity.key());
             rows.push_back(row == known.rows.end() ? -1 : row->second);
@@ -109,7 +109,7 @@ private:
             for (Eigen::Index j = 0; j < n; ++j)
                 if (const Eigen::Index column = rows[static_cast<std::size_t>(j)]; column >= 0)
                     products(i, j) = known.products(row, column);
-            // A member is n / (n - 1) times as far from the mean of all as from that of the others, n of these.
+            // Downdate: a member adds count / (count + 1) times its squared distance from the mean of the others.
             const LearntRange& range = learnt.ranges[scale.range];
             if (without && range.values[*without]) {
                 const SampleMoments others = unlikeness_moments(range, without);
@@ -128,13 +128,13 @@ private:
                     correlation(i, j) = weight * products(i, j) / std::sqrt(products(i, i) * products(j, j));
         const SymmetricEigenX eigen(correlation);
         if (!eigen.found()) return;
-        constexpr double least = 0.05;  // missing values can make it indefinite
+        constexpr double least = 0.05;  // missing values can make the matrix indefinite
         const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse();
         root_ = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();
     }
 
     std::vector<Scale> scales_;
-    Eigen::MatrixXd root_;  ///< empty where nothing is known of how they depend on each other
+    Eigen::MatrixXd root_;  ///< empty if the dependence is unknown
 };
 
 }  // namespace

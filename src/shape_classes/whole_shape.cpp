@@ -30,7 +30,7 @@ Mesh simplified_to(const Mesh& mesh, std::uint64_t count) {
     return small;
 }
 
-/// What of the surface, by area, has at most `share` of the values below it. Sorted by value.
+/// Quantile by area: the value below which the area share `share` lies. `values` are sorted.
 double area_quantile(const std::vector<std::pair<double, double>>& values, double area, double share) {
     double sum = 0;
     for (const auto& [value, weight] : values)
@@ -62,7 +62,7 @@ void measure_thickness(const Mesh& small, WholeShape& shape) {
 
 double compactness_of(double volume, double area) { return 6 * std::sqrt(pi) * volume / std::pow(area, 1.5); }
 
-/// None of an open surface, or one turned inside out.
+/// None if the surface is open or inside out.
 std::optional<double> volume_of(const Mesh& mesh) {
     for (const Halfedge h : mesh.halfedges())
         if (mesh.is_border(h)) return {};
@@ -115,7 +115,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
     std::vector<double> weights(small.number_of_vertices(), 0);
     for (const Face face : small.faces())
         for (const Vertex v : corners(small, face)) weights[v] += face_area(small, face) / 3;
-    // The first source is the vertex farthest from the middle, the next ones are farthest from all before.
+    // The first source is the vertex farthest from the centre; each further source is the farthest from all before it.
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const Vertex v : small.vertices()) middle += weights[v] * eigen(small.point(v));
     middle /= surface_area(small);
@@ -139,7 +139,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
             weight += weights[v];
             maximum = std::max(maximum, distances[v]);
         }
-        // Other components are not reached: sources stay in the first one.
+        // Unreachable vertices are in other components: sources stay in the first component.
         for (std::size_t v = 0; v < distances.size(); ++v)
             if (!std::isfinite(distances[v])) nearest[v] = -1;
     }

@@ -13,15 +13,16 @@ namespace ostraka {
 
 namespace {
 
-/// What is known of one layer.
+/// Values of one layer.
 struct Layer {
     bool met = false, outlined = false, cavity = false, crossing = false;
     double material = 0;                          ///< area that may be clay
     double outline = 0;                           ///< area within outer contours
-    double wall = 0, thinnest = 0, thickest = 0;  ///< of those with a cavity: mean, and over its outline
+    double wall = 0, thinnest = 0, thickest = 0;  ///< layers with a cavity: mean, min and max thickness over the outline
 };
 
-/// No more than contours that cross enclose together: neither more than all of them one by one, nor than their convex hull.
+/// Upper bound of the area that intersecting contours enclose together: the smaller of the sum of their areas and the area of
+/// their convex hull.
 double max_of(const Slice& slice) {
     double sum = 0;
     std::vector<Eigen::Vector2d> points;
@@ -55,7 +56,7 @@ Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     return layer;
 }
 
-/// The least clay of a slice: contours with a hole are as they are, others may be hollow but for a wall.
+/// Lower bound of the clay of a slice: contours with a hole are taken as they are, others as hollow except for a wall.
 double min_of(const Slice& slice, double wall) {
     double sum = 0;
     std::vector<bool> holed(slice.contours.size(), false);
@@ -68,8 +69,8 @@ double min_of(const Slice& slice, double wall) {
         if (contour.hole) {
             if (contour.parent >= 0) sum -= area;
         } else {
-            // What is left inside a wall of t, grown by t again, lies within: by Brunn and Minkowski its area is at most that
-            // of the circle of equal area with its radius less t.
+            // The cavity, dilated by the wall thickness t, lies within the contour: by Brunn-Minkowski its area is at most that
+            // of the circle of equal area with its radius reduced by t.
             const double inside = holed[i] ? 0 : std::max(0.0, std::sqrt(area / pi) - wall);
             sum += area - pi * inside * inside;
         }
@@ -77,7 +78,7 @@ double min_of(const Slice& slice, double wall) {
     return std::max(0.0, sum);
 }
 
-/// Layers that the object crosses without an outline are as those next to them, above and below, in the mean by distance.
+/// Interpolates layers that the object crosses without an outline from the nearest layers above and below.
 void fill_between(std::vector<Layer>& layers) {
     const auto next = [&](std::size_t i, int step) {
         auto k = static_cast<long long>(i);

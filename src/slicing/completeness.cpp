@@ -1,4 +1,4 @@
-// What is there of a slice's outline.
+// Completeness of the outline of a slice.
 #include "settling.h"
 
 #include "ostraka/core/angles.h"
@@ -19,7 +19,7 @@ void add_pieces(PlaneSegments& segments, const Contour& contour) {
         segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
 }
 
-/// What joins the ends of open contours is at least as long: from each end to the nearest beginning.
+/// Lower bound of the length that joins the ends of open contours: from each end to the nearest start.
 double least_gap(const std::vector<Contour>& contours) {
     std::vector<Point> beginnings;
     for (const Contour& contour : contours)

@@ -1,4 +1,4 @@
-// Contours that cross one another, or themselves.
+// Intersections of contours with one another and with themselves.
 #include "ostraka/core/angles.h"
 #include "settling.h"
 
@@ -14,7 +14,7 @@ namespace ostraka::detail {
 namespace {
 
 using Eigen::Vector2d;
-using Pair = std::pair<int, int>;  ///< of contours, the lower number first
+using Pair = std::pair<int, int>;  ///< two contours, the lower index first
 
 enum class Meeting { apart, touching, crossing };
 
@@ -35,10 +35,10 @@ Meeting meeting(const std::pair<double, double>& d, const std::pair<double, doub
     return Meeting::crossing;
 }
 
-/// The most that a curve of this length can enclose.
+/// The maximum area that a curve of this length can enclose.
 double disc_of(double length) { return length * length / (4 * pi); }
 
-/// A curve that is cut at these places (an even number of them) lies on two sides by turns: the length on the lesser side.
+/// A curve cut at these (evenly many) positions lies alternately on two sides: the length on the shorter side.
 double lesser_side(std::vector<double> places, double length) {
     std::sort(places.begin(), places.end());
     double sum = 0;
@@ -79,7 +79,7 @@ private:
     }
     void mark(const Pair& pair) { contour(pair.first).crosses = contour(pair.second).crosses = true; }
 
-    /// The length of the contour up to a point of it.
+    /// Arc length of the contour up to one of its points.
     double length_up_to(int c, std::size_t point) {
         auto& sums = lengths_[c];
         if (sums.empty()) {
@@ -110,7 +110,7 @@ private:
         second.push_back(e.contour < f.contour ? t : s);
     }
 
-    /// On which sides of `outer` the points of `inner` and the middles of its edges lie, by more than the tolerance.
+    /// On which sides of `outer` the points of `inner` and the midpoints of its edges lie, beyond the tolerance.
     [[nodiscard]] std::pair<bool, bool> sides(int inner, int outer) const {
         const auto& points = contour(inner).points;
         const auto& others = contour(outer).points;
@@ -151,9 +151,10 @@ private:
     std::size_t closed_;
     double tolerance_;
     Strips strips_;
-    std::map<Pair, std::pair<std::vector<double>, std::vector<double>>> crossings_;  ///< where along each of the two
+    /// Arc lengths of the intersections on each contour.
+    std::map<Pair, std::pair<std::vector<double>, std::vector<double>>> crossings_;
     std::map<Pair, bool> touching_;
-    std::map<int, double> loops_;  ///< what a contour that crosses itself may enclose twice, at most
+    std::map<int, double> loops_;  ///< upper bound of the area that a self-intersecting contour encloses twice
     std::map<int, std::vector<double>> lengths_;
 };
 

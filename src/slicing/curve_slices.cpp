@@ -1,4 +1,4 @@
-// Planes across a curve, and what of each belongs to it.
+// Planes across a curve, and the component of each that belongs to the curve.
 #include "ostraka/slicing/curve_slices.h"
 
 #include "joining.h"
@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// The place at a length along the curve; before its start and behind its end, those.
+/// Point at an arc length along the curve, clamped to its ends.
 class Walk {
 public:
     explicit Walk(const std::vector<Point>& curve) : curve_(curve), lengths_{0} {
@@ -39,7 +39,7 @@ private:
     std::vector<double> lengths_;
 };
 
-/// Distance of the origin from a contour; 0 within a closed one.
+/// Distance of the origin from a contour; 0 inside a closed contour.
 double distance_from(const Contour& contour) {
     double minimum = std::numeric_limits<double>::infinity();
     bool inside = false;
@@ -56,7 +56,7 @@ Slice nearest_part(const Slice& slice) {
     double minimum = std::numeric_limits<double>::infinity();
     Slice kept{slice.height, {}, {}};
     for (const Slice& part : components(slice))
-        // Later ones are smaller.
+        // Components are sorted by decreasing size.
         if (const double d = distance_from(part.contours[0]); d <= minimum) minimum = d, kept = part;
     for (const auto& contour : slice.contours) {
         if (contour.closed) continue;
@@ -67,7 +67,7 @@ Slice nearest_part(const Slice& slice) {
     return kept;
 }
 
-/// As `slice_mesh` at height 0.
+/// Like `slice_mesh` at height 0.
 std::vector<Contour> cut(const Mesh& mesh, const detail::PlaneSearch& search, const SliceFrame& frame, double tolerance) {
     const auto height = [&](Vertex v) { return frame.height(mesh.point(v)); };
     std::vector<Index> faces = search.near(frame, 2 * tolerance);

@@ -88,7 +88,7 @@ SliceFrame median_frame(const CutObject& cut) {
     std::vector<double> x, y;
     for (const auto& d : cut.descriptors)
         if (d.outline_barycentre.allFinite()) x.push_back(d.outline_barycentre.x()), y.push_back(d.outline_barycentre.y());
-    // Of open contours the centres of circles that are told to a tenth.
+    // For open contours, the centres of circles determined to a tenth of the radius.
     if (x.empty())
         for (const auto& d : cut.descriptors)
             if (d.fitted_radius_high - d.fitted_radius_low < 0.2 * d.fitted_radius)

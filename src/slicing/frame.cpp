@@ -63,7 +63,7 @@ std::vector<double> slice_heights_spaced(double lowest, double highest, double s
                        digits(height, 4),
                    "use at least " + digits(1.001 * height / max_planes, 4) + " for the most there may be, a million; " +
                        digits(height / 200, 4) + " gives two hundred");
-    // The last one may be missed by rounding only.
+    // Includes the last height if only rounding misses it.
     const double steps = std::floor((highest - lowest) / spacing * (1 + 1e-12));
     std::vector<double> heights;
     for (double i = 0; i <= steps; ++i) heights.push_back(std::min(lowest + i * spacing, highest));

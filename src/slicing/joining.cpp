@@ -1,4 +1,4 @@
-// Pieces of faces joined to contours.
+// Joins face segments to contours.
 #include "joining.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ using Eigen::Vector2d;
 
 namespace {
 
-/// Takes pieces without length out, and pieces that run there and back along one another. False if nothing is left.
+/// Removes segments without length and segments traversed back and forth. Returns false if nothing is left.
 bool clean(Contour& contour) {
     const std::vector<Vector2d> raw = std::move(contour.points);
     const std::vector<Index> faces = std::move(contour.faces);
@@ -26,7 +26,7 @@ bool clean(Contour& contour) {
     }
     std::size_t begin = 0, end = points.size();
     if (contour.closed) {
-        // The last point repeats the first: it stands for the piece that closes the contour.
+        // The last point repeats the first: it represents the segment that closes the contour.
         --end;
         while (end - begin >= 3 && points[begin + 1] == points[end - 1]) ++begin, --end;
         if (end - begin < 3) return false;

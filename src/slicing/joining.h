@@ -1,4 +1,4 @@
-// Pieces of faces joined to contours.
+// Joins face segments to contours.
 #pragma once
 
 #include "ostraka/slicing/slice.h"
@@ -7,18 +7,20 @@
 
 namespace ostraka::detail {
 
-/// Adds the contour without pieces that have no length or run there and back, and measures it; nothing if nothing is left.
+/// Adds the contour without degenerate segments (no length, or traversed back and forth), and measures it; does nothing if
+/// nothing is left.
 void add_contour(std::vector<Contour>& contours, Contour contour);
 
-/// The other way round: an outer contour becomes a hole.
+/// Reverses a contour: an outer contour becomes a hole.
 void turn_around(Contour& contour);
 
-/// Where the plane at `plane` meets the edge: at the vertex that lies on it, or between. `height` gives that of a vertex.
+/// Intersection of the plane at height `plane` with the edge: the vertex on the plane, or a point between. `height` returns the
+/// height of a vertex.
 template <class Height>
 Eigen::Vector2d crossing(const Mesh& mesh, const SliceFrame& frame, Halfedge h, double plane, double tolerance,
                          const Height& height) {
     Vertex a = mesh.source(h), b = mesh.target(h);
-    if (b < a) std::swap(a, b);  // both faces of the edge shall come to the same bits
+    if (b < a) std::swap(a, b);  // both faces of the edge must give identical bits
     const double s = height(a) - plane, t = height(b) - plane;
     if (std::abs(s) <= tolerance) return frame.place(mesh.point(a));
     if (std::abs(t) <= tolerance) return frame.place(mesh.point(b));
@@ -26,12 +28,12 @@ Eigen::Vector2d crossing(const Mesh& mesh, const SliceFrame& frame, Halfedge h, 
     return from + s / (s - t) * (to - from);
 }
 
-/// The contours of one plane through the faces [begin, end), ascending, each of which has vertices above the plane and others.
-/// `above` says which vertices count as above, `place` where the plane meets an edge.
+/// The contours of one plane through the faces [begin, end), which ascend and have vertices both above and not above the plane.
+/// `above` tests whether a vertex counts as above, `place` returns the intersection of the plane with an edge.
 template <class Faces, class Above, class Place>
 std::vector<Contour> join(const Mesh& mesh, Faces begin, Faces end, const Above& above, const Place& place) {
     const auto count = static_cast<std::size_t>(end - begin);
-    // The material lies to the left of the pieces if each runs from the halfedge that goes down to the one that goes up.
+    // The material lies to the left of a segment that runs from the descending halfedge to the ascending one.
     std::vector<Index> next(count, no_index);
     std::vector<Halfedge> down(count), up(count);
     std::vector<bool> follows(count, false);
@@ -44,7 +46,7 @@ std::vector<Contour> join(const Mesh& mesh, Faces begin, Faces end, const Above&
         const Face other = mesh.face(mesh.opposite(up[i]));
         if (!other.is_valid()) continue;
         const auto at = std::lower_bound(begin, end, other.idx());
-        if (at == end || *at != other.idx()) continue;  // not of the part
+        if (at == end || *at != other.idx()) continue;  // not in the selected part
         next[i] = static_cast<Index>(at - begin);
         follows[next[i]] = true;
     }

@@ -1,4 +1,4 @@
-// Voronoi edges of boundary samples, pruned and joined to poly-lines.
+// Voronoi edges of boundary samples, pruned and joined into poly-lines.
 #include "ostraka/slicing/medial_axis.h"
 
 #include "strips.h"
@@ -23,7 +23,7 @@ namespace {
 struct Sample {
     Vector2d place;
     int contour = 0;
-    double along = 0;  ///< length of the contour up to here
+    double along = 0;  ///< arc length up to here
 };
 
 using Info = CGAL::Triangulation_vertex_base_with_info_2<std::size_t, Kernel>;
@@ -72,7 +72,7 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
     Graph graph;
     const detail::Strips strips(contours);
     std::vector<int> inside, on;
-    // In the order of their samples: that in which CGAL walks over edges hangs on addresses in memory.
+    // Sorted by samples: CGAL's traversal order of edges depends on memory addresses.
     std::vector<std::pair<std::array<std::size_t, 3>, Delaunay::Face_handle>> triangles;
     for (auto f = delaunay.all_faces_begin(); f != delaunay.all_faces_end(); ++f) f->info() = -1;
     for (auto f = delaunay.finite_faces_begin(); f != delaunay.finite_faces_end(); ++f) {
@@ -83,7 +83,7 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
     std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [corners, f] : triangles) {
         const Sample& first = list[corners[0]];
-        // About the first corner, or digits are lost far away.
+        // Relative to the first corner, to avoid cancellation far from the origin.
         const Vector2d b = list[corners[1]].place - first.place, c = list[corners[2]].place - first.place;
         const double twice = 2 * (b.x() * c.y() - b.y() * c.x());
         const Vector2d centre(c.y() * b.squaredNorm() - b.y() * c.squaredNorm(),
@@ -91,7 +91,7 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
         const Vector2d place = first.place + centre / twice;
         if (!place.allFinite()) continue;
         strips.locate(place, inside, on);
-        // The signed number of contours around it: within the material, outer ones prevail.
+        // Number of outer contours around the point minus that of holes: positive within the material.
         int around = 0;
         for (const int k : inside) around += contours[static_cast<std::size_t>(k)].hole ? -1 : 1;
         if (around <= 0 || !on.empty()) continue;
@@ -118,7 +118,7 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
     return graph;
 }
 
-/// The nodes of links no longer than `minimum` become one: the node of the lowest number.
+/// Merges the nodes of links no longer than `minimum` into the node with the lowest index.
 void contract(Graph& graph, double minimum, double floor) {
     DisjointSets sets(graph.places.size());
     for (const auto& link : graph.links) {
@@ -135,7 +135,7 @@ void contract(Graph& graph, double minimum, double floor) {
 MedialAxis::Level prune(const Graph& graph, double residue) {
     MedialAxis::Level level;
     level.residue = residue;
-    std::vector<std::vector<std::pair<int, int>>> around(graph.places.size());  // link, node at its other end
+    std::vector<std::vector<std::pair<int, int>>> around(graph.places.size());  // link, node at the other end
     int alone = -1;
     double strongest = -1;
     for (std::size_t k = 0; k < graph.links.size(); ++k) {

@@ -1,4 +1,4 @@
-// Which contours contain which, by votes of their points.
+// Nesting of contours, by votes of their points.
 #include "settling.h"
 
 #include "strips.h"
@@ -15,8 +15,8 @@ struct Votes {
     int contour, inside, decided;
 };
 
-/// Whether `inner`, all of whose points tried lie on `outer`, is inside it: the first of its points, then of the middles of its
-/// edges that is on neither side by a hair decides. Contours that cover each other: a hole lies in the outer one.
+/// Whether `inner`, all of whose tested points lie on `outer`, is inside it. The first of its points, then of its edge
+/// midpoints, that is strictly on one side decides. If the contours coincide, the hole lies inside the outer contour.
 bool inside_by_all_points(const Strips& strips, const std::vector<Contour>& contours, std::size_t inner, std::size_t outer) {
     const auto& points = contours[inner].points;
     std::vector<int> inside, on;
@@ -55,7 +55,7 @@ void nest(std::vector<Contour>& contours) {
         auto& contour = contours[c];
         std::vector<Votes> votes;
         const auto vote = [&](int other, int in, int decided) {
-            if (static_cast<std::size_t>(other) >= c) return;  // as large at most: it cannot contain this one
+            if (static_cast<std::size_t>(other) >= c) return;  // no larger than this contour: cannot contain it
             for (auto& entry : votes)
                 if (entry.contour == other) {
                     entry.inside += in, entry.decided += decided;

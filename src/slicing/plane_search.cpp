@@ -1,4 +1,4 @@
-// The faces near a plane.
+// Search for the faces near a plane.
 #include "plane_search.h"
 
 #include "ostraka/geom/eigen.h"
@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// The bits of 21-bit numbers spread out to every third place.
+/// Spreads the bits of a 21-bit number to every third bit.
 std::uint64_t spread(std::uint64_t x) {
     x = (x | x << 32) & 0x1f00000000ffff;
     x = (x | x << 16) & 0x1f0000ff0000ff;
@@ -20,7 +20,7 @@ std::uint64_t spread(std::uint64_t x) {
     return (x | x << 2) & 0x1249249249249249;
 }
 
-/// The least and largest height of a box.
+/// The minimum and maximum height of a box.
 std::pair<double, double> heights(const Eigen::AlignedBox3d& box, const SliceFrame& frame) {
     const double middle = eigen(frame.normal).dot(box.center() - eigen(frame.origin));
     const double half = eigen(frame.normal).cwiseAbs().dot(box.sizes()) / 2;
@@ -43,7 +43,7 @@ PlaneSearch::PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces) : me
     Box whole;
     for (const Index f : faces_) whole.extend(box_of(mesh, f));
     const double scale = 2097151 / std::max(whole.sizes().maxCoeff(), std::numeric_limits<double>::min());
-    std::vector<std::pair<std::uint64_t, Index>> order;  // along Morton's curve
+    std::vector<std::pair<std::uint64_t, Index>> order;  // in Morton order
     for (const Index f : faces_) {
         const Vector3d at = scale * (box_of(mesh, f).center() - whole.min());
         std::uint64_t code = 0;

@@ -1,4 +1,4 @@
-// The faces near a plane.
+// Search for the faces near a plane.
 #pragma once
 
 #include "ostraka/slicing/slice.h"
@@ -7,22 +7,22 @@
 
 namespace ostraka::detail {
 
-/// A binary tree of boxes over faces in the order of a curve through space, built once for many planes.
+/// A binary tree of bounding boxes over faces in the order of a space-filling curve, built once for many planes.
 class PlaneSearch {
 public:
-    /// Over the given faces, or all. O(n log n).
+    /// Builds the tree over the given faces, or all faces. O(n log n).
     PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces);
 
-    /// Faces, ascending, whose boxes have heights within `search_radius` of the frame's origin.
+    /// The faces, ascending, whose boxes come within `search_radius` of height 0 of the frame.
     [[nodiscard]] std::vector<Index> near(const SliceFrame& frame, double search_radius) const;
-    /// The lowest height of all faces.
+    /// The minimum height of all faces.
     [[nodiscard]] double lowest(const SliceFrame& frame) const;
 
 private:
     using Box = Eigen::AlignedBox3d;
     static constexpr std::size_t leaf = 8;
     [[nodiscard]] static Box box_of(const Mesh& mesh, Index face);
-    /// Calls `visit(face)` for those in the boxes that, like all around them, are to be entered.
+    /// Calls `visit(face)` for the faces in the boxes for which `enter` holds at every level.
     template <class Enter, class Visit>
     void each_face(const Enter& enter, const Visit& visit) const;
 

@@ -1,4 +1,4 @@
-// Half sections around an axis, and what a drawing needs beside them.
+// Half sections around an axis, and the additional elements of a drawing.
 #include "ostraka/slicing/profile.h"
 #include "ostraka/core/angles.h"
 
@@ -23,7 +23,7 @@ SliceFrame section_frame(const SliceFrame& axis, double angle) {
     return frame;
 }
 
-/// Area of the closed contours, and length of the open ones, where x <= 0.
+/// Area of the closed contours and length of the open contours in the half plane x <= 0.
 struct Half {
     double angle = 0, area = 0, open = 0;
 };
@@ -48,7 +48,7 @@ Half half_of(const Slice& section, double angle) {
     return half;
 }
 
-/// How far the section reaches from the axis at a height, to the left; 0 where it does not.
+/// Distance of the section from the axis at a height, on the left side; 0 where there is no section.
 double extent(const Slice& section, double height) {
     double maximum = 0;
     for (const auto& contour : section.contours)
@@ -62,8 +62,8 @@ double extent(const Slice& section, double height) {
 
 constexpr int steps = 200;
 
-/// Corners of the outer profile: of the poly-line of 200 reaches, where it turns by more than 25 degrees over 1/40 of the height,
-/// at the sharpest place of each such stretch.
+/// Corners of the outer profile: where the poly-line of 200 distances bends by more than 25 degrees over 1/40 of the height, at
+/// the sharpest point of each such interval.
 std::vector<Profile::Edge> breaks(const Profile& profile) {
     constexpr int window = 5;
     std::vector<Vector2d> line;
@@ -85,7 +85,7 @@ std::vector<Profile::Edge> breaks(const Profile& profile) {
     return edges;
 }
 
-/// The one of 36 directions in which the mesh stands out farthest from the section's outer side.
+/// The one of 36 directions in which the mesh protrudes farthest from the section's outer side.
 double widest(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
     std::vector<double> maximum(36, -std::numeric_limits<double>::infinity());
     for (const Vertex v : mesh.vertices()) {
@@ -101,7 +101,7 @@ double widest(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) 
     return double(best) * pi / 18;
 }
 
-/// Whether something stands out that lies before or behind the body in the view.
+/// Whether a protruding part is in front of or behind the body in the view.
 bool hides(const Mesh& mesh, const SliceFrame& axis, const Profile& profile) {
     const double size = profile.high - profile.low;
     const Vector2d along(std::cos(profile.view_angle), std::sin(profile.view_angle));
@@ -160,7 +160,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
         profile.open += descriptors[i].open_length > descriptors[i].closed_length ? 1 : 0;
     }
     profile.turned = 2 * round >= 24;
-    // A wall without thickness has its mouth where the mesh ends.
+    // A wall without thickness has its mouth at the border of the mesh.
     const bool ends_open = std::any_of(mesh.vertices().begin(), mesh.vertices().end(), [&](Vertex v) {
         return !mesh.is_isolated(v) && mesh.is_border(v) && axis.height(mesh.point(v)) > profile.high - 0.03 * size;
     });
@@ -176,7 +176,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     }
     profile.view_angle = angle + pi;
     if (profile.turned) {
-        // Only where what is there is round and as wide: no edge of an arm or a handle.
+        // Only where the slice is round and of similar radius: not on the edge of an arm or a handle.
         for (const auto& edge : breaks(profile)) {
             const auto layer = static_cast<std::size_t>(std::clamp((edge.height - profile.low) / size * 24, 0.0, 23.0));
             const auto& d = descriptors[layer];

@@ -1,4 +1,4 @@
-// Nearest points on curves given by many short pieces in order.
+// Nearest points on curves given as ordered lists of many short segments.
 #pragma once
 
 #include "ostraka/geom/circle.h"
@@ -8,8 +8,8 @@
 
 namespace ostraka::detail {
 
-/// A binary tree of boxes over consecutive pieces: neighbours in the list are neighbours in the plane, so that no sorting is
-/// needed.
+/// A binary tree of bounding boxes over consecutive segments: neighbours in the list are neighbours in the plane, so that no
+/// sorting is needed.
 class SegmentTree {
 public:
     explicit SegmentTree(PlaneSegments segments) : segments_(std::move(segments)) {
@@ -20,7 +20,7 @@ public:
         for (std::size_t n = leaves_ - 1; n > 0; --n) boxes_[n].extend(boxes_[2 * n]), boxes_[n].extend(boxes_[2 * n + 1]);
     }
 
-    /// Distance to the nearest piece. `hint` is a piece that is near, and becomes the nearest.
+    /// Distance to the nearest segment. `hint` is a nearby segment, and is set to the nearest.
     double distance(const Eigen::Vector2d& p, std::size_t& hint) const {
         double best = squared(p, hint);
         search(1, p, best, hint);

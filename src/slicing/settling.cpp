@@ -15,7 +15,7 @@ namespace {
 
 struct Sense {
     bool closed = true;
-    bool inside_out = false;  ///< closed, and holds a negative volume
+    bool inside_out = false;  ///< closed, with negative volume
 };
 
 Sense sense_of(const Mesh& mesh) {
@@ -50,9 +50,9 @@ bool has_outermost_hole(const Slice& slice) {
     return std::any_of(slice.contours.begin(), slice.contours.end(), [](const Contour& c) { return c.hole && c.parent < 0; });
 }
 
-/// Whether each contour runs against its nesting: material and what is none take turns from the outside in. An outermost hole is
-/// wrong where the whole mesh is closed; else its outer contour may be open, or not seen. What crosses, or lies along another
-/// contour, says nothing: 0 right, 1 wrong, 2 in doubt.
+/// Whether each contour contradicts its nesting: from the outside in, material and empty space alternate. An outermost hole is
+/// wrong only if the whole mesh is closed; otherwise its outer contour may be open or unseen. Contours that intersect or
+/// coincide with others are uninformative. 0 right, 1 wrong, 2 undetermined.
 std::vector<char> against_nesting(const std::vector<Contour>& contours, const Crossings& crossings, bool closed) {
     std::vector<char> wrong(contours.size(), 2);
     for (std::size_t c = 0; c < contours.size() && contours[c].closed; ++c) {
@@ -69,7 +69,7 @@ std::vector<char> against_nesting(const std::vector<Contour>& contours, const Cr
     return wrong;
 }
 
-/// Which faces belong to shells most of whose contours, by length, are wrong: a number that is true for them.
+/// Faces of shells whose contours are mostly wrong, by length.
 class WrongShells {
 public:
     WrongShells(const Mesh& mesh, const std::vector<Slice>& slices, const std::vector<std::vector<char>>& wrong)
@@ -97,7 +97,7 @@ public:
     [[nodiscard]] bool holds(const Contour& contour) const { return balance_[shell_[contour.faces[0]]] > 0; }
 
 private:
-    std::vector<Index> shell_;  ///< of each face
+    std::vector<Index> shell_;  ///< shell of each face
     std::vector<double> balance_;
 };
 

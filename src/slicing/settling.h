@@ -1,4 +1,4 @@
-// What is done with the contours of slices once they are joined.
+// Post-processing of joined contours.
 #pragma once
 
 #include "ostraka/geom/circle.h"
@@ -6,34 +6,35 @@
 
 namespace ostraka::detail {
 
-/// Sorts and nests the contours of each slice, finds those that cross, turns those around whose orientation is not that of their
-/// nesting, and says how complete each slice is. `whole`: no part of the mesh was left out. Returns whether all contours were
-/// turned around because the mesh is closed and inside out. O(n log n) but for a sorting of the edges whose boxes overlap; in
+/// Sorts and nests the contours of each slice, finds intersections, reverses contours whose orientation contradicts their
+/// nesting, and sets the completeness of each slice. `whole`: no part of the mesh was left out. Returns whether all contours
+/// were reversed because the mesh is closed and inside out. O(n log n), except for sorting the edges with overlapping boxes; in
 /// parallel.
 bool settle(std::vector<Slice>& slices, const Mesh& mesh, bool whole);
 
-/// Sets parent and depth of the closed contours, which stand in front, sorted by falling absolute area (nesting.cpp). Exact for
-/// the points as given, also where contours touch. O(n log n) for contours of even size: a horizontal line through a point is
-/// compared with the edges of one thin strip only.
+/// Sets parent and depth of the closed contours, which come first, sorted by decreasing absolute area (nesting.cpp). Exact for
+/// the given points, also where contours touch. O(n log n) for contours of similar size: a horizontal line through a point is
+/// compared only with the edges of one thin strip.
 void nest(std::vector<Contour>& contours);
 
 struct Crossings {
     double doubtful = 0;          ///< as in Completeness
-    std::vector<bool> cancelled;  ///< of each contour: it lies along another one that runs the other way round
+    std::vector<bool> cancelled;  ///< for each contour: it coincides with another contour of opposite orientation
 };
-/// Sets `crosses` of the closed contours, which stand in front (crossings.cpp). Contours that only touch (within `tolerance`, a
-/// length) do not cross, whatever they share; two that lie along one another in the same sense count as crossing. Edges are
-/// compared with those of their strip (strips.h) whose boxes overlap theirs.
+/// Sets `crosses` of the closed contours, which come first (crossings.cpp). Contours that only touch (within `tolerance`, a
+/// length) do not cross; two contours that coincide with the same orientation do. Edges are compared with those edges of their
+/// strip (strips.h) whose boxes overlap theirs.
 Crossings find_crossings(std::vector<Contour>& contours, double tolerance);
 
-/// The circle of the open contours, if they are longer than the longest closed outer contour; else none.
+/// The circle of the open contours, if they are longer than the longest closed outer contour; otherwise none.
 struct OpenArc {
     ArcFit fit;
-    bool outside = false;  ///< of those that run counter-clockwise around their own circle; there are only others: of those
+    /// Fitted to contours that run counter-clockwise around their own circle; false if there are only others.
+    bool outside = false;
 };
 OpenArc open_arc(const std::vector<Contour>& contours);
 
-/// How much of its outline a slice with these contours has: all but `doubtful` (completeness.cpp).
+/// Completeness of a slice with these contours, except `doubtful` (completeness.cpp).
 Completeness completeness(const std::vector<Contour>& contours);
 
 /// Throws Error (input) for a mesh without faces, Error (usage) for a face that is not in it.

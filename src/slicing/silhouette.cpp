@@ -1,4 +1,4 @@
-// Triangles sampled into a fine mask, its coverage traced by marching squares.
+// Triangles are rasterised into a fine mask, whose coverage is traced by marching squares.
 #include "ostraka/slicing/silhouette.h"
 
 #include "ostraka/core/error.h"
@@ -15,9 +15,9 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr int fine = 4;  ///< samples a cell and direction
+constexpr int fine = 4;  ///< samples per cell and direction
 
-/// What is covered, at samples `step` apart.
+/// Coverage mask, with samples `step` apart.
 class Mask {
 public:
     Mask(const Vector2d& low, const Vector2d& high, int cells) {
@@ -33,7 +33,7 @@ public:
         const Vector2d corner[3] = {(a - low_) / step_, (b - low_) / step_, (c - low_) / step_};
         const double bottom = std::min({corner[0].y(), corner[1].y(), corner[2].y()});
         const double top = std::max({corner[0].y(), corner[1].y(), corner[2].y()});
-        // Samples stand in the middles of their cells.
+        // Samples lie at the centres of their cells.
         for (int row = std::max(0, static_cast<int>(std::ceil(bottom - 0.5))); row <= std::min(rows_ - 1.0, top - 0.5); ++row) {
             const double y = row + 0.5;
             double left = std::numeric_limits<double>::infinity(), right = -left;
@@ -44,7 +44,7 @@ public:
                 left = std::min(left, at), right = std::max(right, at);
                 if (p.y() == q.y()) left = std::min(left, q.x()), right = std::max(right, q.x());
             }
-            // A hair more, so that no gap shows between neighbours.
+            // Slightly enlarged, so that no gap appears between neighbours.
             const int from = std::max(0, static_cast<int>(std::ceil(left - 0.5 - 1e-9)));
             for (int column = from; column <= std::min(columns_ - 1.0, right - 0.5 + 1e-9); ++column)
                 covered_[at(column, row)] = true;
@@ -53,7 +53,7 @@ public:
 
     [[nodiscard]] int cell_columns() const { return columns_ / fine; }
     [[nodiscard]] int cell_rows() const { return rows_ / fine; }
-    /// Share of a cell's samples that are covered.
+    /// Fraction of the samples of a cell that are covered.
     [[nodiscard]] double coverage(int column, int row) const {
         int count = 0;
         for (int i = 0; i < fine; ++i)
@@ -73,12 +73,12 @@ private:
     std::vector<bool> covered_;
 };
 
-/// From which side of a field to which a curve runs, in pairs (0 below, 1 right, 2 above, 3 left), by the corners that are
-/// covered (1, 2, 4, 8, counter-clockwise from the lower left one on). Covered corners are joined.
+/// Start and end sides of the curves in a square, in pairs (0 below, 1 right, 2 above, 3 left), indexed by the covered corners
+/// (1, 2, 4, 8, counter-clockwise from the lower left). Covered corners are connected.
 constexpr std::array<std::string_view, 16> curve_pieces{"",   "03", "10",   "13", "21", "0123", "20", "23",
                                                         "32", "02", "3012", "12", "31", "01",   "30", ""};
 
-/// Curves where the coverage is one half, with more of it to the left.
+/// Level curves of coverage one half, with the covered side to the left.
 std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
     const int columns = mask.cell_columns(), rows = mask.cell_rows();
     std::vector<double> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -87,7 +87,7 @@ std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
     };
     for (int r = 0; r < rows; ++r)
         for (int c = 0; c < columns; ++c) value(c, r) = mask.coverage(c, r);
-    // Edges of the grid of cell middles: even keys to the right of (c, r), odd ones above.
+    // Keys of the edges of the grid of cell centres: even to the right of (c, r), odd above.
     const auto right = [&](int c, int r) { return 2 * (static_cast<std::int64_t>(r) * columns + c); };
     const auto above = [&](int c, int r) { return right(c, r) + 1; };
     std::unordered_map<std::int64_t, std::int64_t> next;
@@ -124,7 +124,7 @@ std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
     return curves;
 }
 
-/// Points farther than `tolerance` from the line between those kept stay (Douglas and Peucker 1973).
+/// Keeps points farther than `tolerance` from the line between kept points (Douglas and Peucker 1973).
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& curve, double tolerance) {
     std::vector<bool> keep(curve.size(), false);
     std::size_t far = 0;

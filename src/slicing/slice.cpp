@@ -1,4 +1,4 @@
-// Faces sorted into the planes that cross them, joined by their halfedges.
+// Faces are sorted into the planes that cross them and joined by their halfedges.
 #include "ostraka/slicing/slice.h"
 
 #include "joining.h"
@@ -27,13 +27,13 @@ void check(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>&
     detail::check_faces(mesh, faces);
 }
 
-/// A plane and what counts as above it: heights of at least `threshold`.
+/// A plane; heights of at least `threshold` count as above it.
 struct Plane {
     double height = 0, threshold = 0;
-    std::size_t place = 0;  ///< in the order asked for
+    std::size_t place = 0;  ///< index in the input order
 };
 
-/// All planes, by rising threshold, with the faces that each crosses in rising order.
+/// All planes by increasing threshold, each with the faces that cross it in ascending order.
 class Sweep {
 public:
     Sweep(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>& heights, const std::vector<Index>& faces)
@@ -65,11 +65,11 @@ private:
     const Mesh& mesh_;
     const SliceFrame& frame_;
     std::vector<Index> faces_;
-    std::vector<double> height_;  ///< of each vertex
-    std::vector<Index> level_;    ///< of each vertex: how many planes it is above
+    std::vector<double> height_;  ///< one per vertex
+    std::vector<Index> level_;    ///< one per vertex: number of planes below it
     double tolerance_ = 0;
     std::vector<Plane> planes_;
-    std::vector<std::size_t> first_;  ///< of each plane in crossed_
+    std::vector<std::size_t> first_;  ///< one per plane: start of its range in crossed_
     std::vector<Index> crossed_;
 };
 
@@ -110,7 +110,7 @@ void Sweep::set_heights(const std::vector<double>& heights) {
 }
 
 void Sweep::sort_faces() {
-    // Counting sort in blocks: which faces of each cross planes, how many cross each plane, then where they go.
+    // Counting sort in blocks: find the crossing faces of each block, count them per plane, then place them.
     struct Crossing {
         Index face, low, high;
     };
@@ -187,7 +187,7 @@ std::vector<Slice> components(const Slice& slice) {
             list.back().contours[0].parent = -1, list.back().contours[0].depth = 0;
             continue;
         }
-        // The nearest outer contour around it.
+        // The nearest outer contour that contains it.
         int outer = contour.parent;
         while (outer >= 0 && slice.contours[static_cast<std::size_t>(outer)].hole)
             outer = slice.contours[static_cast<std::size_t>(outer)].parent;

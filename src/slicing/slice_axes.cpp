@@ -1,4 +1,4 @@
-// Axes, straightness, evenness, tubes.
+// Axes, straightness, wall evenness, tubes.
 #include "ostraka/slicing/slice_axes.h"
 
 #include "ostraka/core/error.h"
@@ -36,7 +36,7 @@ struct Wall {
     bool beside = false;  ///< there is more than the wall
 };
 
-/// Between the largest outer contour and the largest hole in it.
+/// Wall between the largest outer contour and the largest hole in it.
 Wall wall_of(const Slice& slice) {
     Wall wall;
     if (!slice.completeness.has_areas()) return wall;
@@ -56,7 +56,7 @@ Wall wall_of(const Slice& slice) {
     return wall;
 }
 
-/// k-means with the least number of groups whose rms distances from their centres are small enough.
+/// k-means with the smallest number of clusters whose rms distances from their centres are small enough.
 std::vector<int> similar_groups(const Eigen::MatrixXd& samples, const TubeOptions& options) {
     KMeansOptions means;
     means.seed = options.seed;

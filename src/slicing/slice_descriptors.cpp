@@ -22,15 +22,16 @@ void add_pieces(PlaneSegments& segments, const Contour& contour) {
         segments.emplace_back(contour.points[i], contour.points[(i + 1) % contour.points.size()]);
 }
 
-/// Whether an outer contour contains it.
+/// Whether an outer contour contains the contour.
 bool is_within(const Slice& slice, const Contour& contour) {
     for (int c = contour.parent; c >= 0; c = slice.contours[static_cast<std::size_t>(c)].parent)
         if (!slice.contours[static_cast<std::size_t>(c)].hole) return true;
     return false;
 }
 
-/// Mean squared distance of the pieces to the sides of the rectangle they lie in. The distance is the least of four that are
-/// linear along a piece: it is cut where two of them are the same, and Simpson's rule is exact between.
+/// Mean squared distance of the segments from the sides of the enclosing rectangle. The distance is the minimum of four
+/// functions that are linear along a segment: the segment is split where two of them are equal, and Simpson's rule is exact
+/// between.
 double rectangle_deviation(const PlaneSegments& segments, const PlaneRectangle& rectangle) {
     const Vector2d a = rectangle.along, b(-a.y(), a.x());
     const double x = rectangle.length / 2, y = rectangle.breadth / 2;
@@ -62,7 +63,7 @@ double rectangle_deviation(const PlaneSegments& segments, const PlaneRectangle& 
     return length > 0 ? sum / length : 0;
 }
 
-/// Distances from the outer contour of a component to its holes.
+/// Moments of the distances from the outer contour of a component to its holes.
 struct Walls {
     double length = 0, first = 0, second = 0;
     double minimum = std::numeric_limits<double>::infinity(), maximum = 0;
@@ -103,7 +104,7 @@ void describe_outline(SliceDescriptors& d, const PlaneSegments& outline, const s
     d.rectangular_variance = rectangle_deviation(outline, box) / (box.area() / pi);
 }
 
-/// From the first point on.
+/// Centroid relative to the first point.
 Vector2d polygon_centre(const Contour& contour) {
     const PolygonMoments moments = polygon_moments(contour.points, contour.points[0]);
     return moments.first / moments.area;
@@ -119,7 +120,7 @@ void describe_roundness(SliceDescriptors& d, const Contour& main) {
     d.roundness_equivalent_relative = circle.absolute / d.equivalent_radius;
 }
 
-/// The circle of open contours: what is not there need not be round.
+/// The circle of open contours, without roundness: the missing part need not be round.
 void describe_arc(SliceDescriptors& d, const ArcFit& arc) {
     if (!arc.is_round()) return;
     d.fitted_radius = arc.circle.radius, d.fitted_centre = arc.circle.centre;
@@ -131,7 +132,7 @@ void describe_circle(SliceDescriptors& d, const Contour& main) {
     PlaneSegments pieces;
     add_pieces(pieces, main);
     Circle circle = fit_circle(pieces);
-    // The circle that fits a bar best is as good as a straight line.
+    // Rejects the best circle of a bar, which degenerates to a straight line.
     if (!(circle.radius > 0) || circle.radius > d.box_length)
         circle = {main.points[0] + polygon_centre(main), d.equivalent_radius};
     if (!(circle.radius > 0)) return;
@@ -140,7 +141,7 @@ void describe_circle(SliceDescriptors& d, const Contour& main) {
     d.roundness_fitted_relative = d.roundness_fitted / circle.radius;
 }
 
-/// What is known of contours that cross: the hull is that of all.
+/// Descriptors of intersecting contours: only the hull, over all contours.
 SliceDescriptors describe_crossing(const Slice& slice) {
     SliceDescriptors d;
     d.counted = false;
@@ -260,7 +261,7 @@ std::vector<double> thickness_profile(const Slice& slice, int directions) {
     if (directions < 1 || directions > 1000000)
         fail_usage("the profile has " + std::to_string(directions) + " directions", "use 1 to a million");
     if (!slice.completeness.has_areas()) return {};
-    // Components and their holes come larger ones first.
+    // Components and holes are sorted by decreasing size.
     const auto parts = components(slice);
     if (parts.empty() || parts[0].contours.size() < 2) return {};
     const Contour& hole = parts[0].contours[1];
@@ -271,7 +272,7 @@ std::vector<double> thickness_profile(const Slice& slice, int directions) {
     const double step = 2 * pi / directions;
     std::vector<Vector2d> rays;
     for (int k = 0; k < directions; ++k) rays.emplace_back(std::cos(k * step), std::sin(k * step));
-    // Each crossing of a piece adds its distance on the way out of the material and takes it off on the way in.
+    // A crossing out of the material adds its distance, a crossing into it subtracts it.
     std::vector<double> sums(rays.size(), 0);
     std::vector<bool> met(rays.size(), false);
     for (const auto& [from, to] : pieces) {

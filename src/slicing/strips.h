@@ -8,14 +8,14 @@
 
 namespace ostraka::detail {
 
-/// Edges of all closed contours, sorted into horizontal strips.
+/// The edges of all closed contours, sorted into horizontal strips.
 class Strips {
 public:
     struct Edge {
         Eigen::Vector2d a, b;
         int contour;
-        std::size_t place;  ///< of `a` in its contour
-        bool last;          ///< it closes the contour
+        std::size_t place;  ///< index of `a` in its contour
+        bool last;          ///< the closing edge of the contour
     };
 
     explicit Strips(const std::vector<Contour>& contours) {
@@ -29,7 +29,7 @@ public:
         }
         low_ = high_ = edges_.front().a.y();
         for (const auto& edge : edges_) low_ = std::min(low_, edge.a.y()), high_ = std::max(high_, edge.a.y());
-        // As many strips as let the entries be about twice the edges.
+        // The number of strips for which the number of entries is about twice the number of edges.
         const double wanted = variation > 0 ? double(edges_.size()) * (high_ - low_) / variation : 1;
         strips_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, double(edges_.size())));
         first_.assign(strips_ + 1, 0);
@@ -46,7 +46,7 @@ public:
         }
     }
 
-    /// The contours that contain the point in their inside, and those that pass through it.
+    /// Finds the contours that contain the point in their interior, and those that pass through it.
     void locate(const Eigen::Vector2d& p, std::vector<int>& inside, std::vector<int>& on) const {
         inside.clear(), on.clear();
         std::vector<int>& crossed = inside;
@@ -67,13 +67,13 @@ public:
                     on.push_back(edge.contour);
                     continue;
                 }
-                if ((side == CGAL::LEFT_TURN) == (b.y() > a.y())) continue;  // it passes on the right
+                if ((side == CGAL::LEFT_TURN) == (b.y() > a.y())) continue;  // passes on the right
             }
             if ((a.y() <= p.y()) != (b.y() <= p.y())) crossed.push_back(edge.contour);
         }
         std::sort(on.begin(), on.end());
         on.erase(std::unique(on.begin(), on.end()), on.end());
-        // Odd crossings are inside.
+        // An odd number of crossings is inside.
         std::sort(crossed.begin(), crossed.end());
         std::size_t kept = 0;
         for (std::size_t i = 0; i < crossed.size();) {
@@ -86,7 +86,8 @@ public:
         crossed.resize(kept);
     }
 
-    /// Calls visit(edge, edge) once for every two edges whose boxes overlap, or nearly, but for neighbours in a contour.
+    /// Calls visit(edge, edge) once for every pair of edges whose boxes overlap within the tolerance, except consecutive edges
+    /// of a contour.
     template <class Visit>
     void overlapping(double tolerance, const Visit& visit) const {
         std::vector<std::pair<double, Index>> sorted;  // left end, edge
@@ -105,7 +106,7 @@ public:
                     const Edge& f = edges_[sorted[k].second];
                     const auto [minimum, maximum] = std::minmax(f.a.y(), f.b.y());
                     if (minimum > high + tolerance || maximum < low - tolerance || are_neighbours(e, f)) continue;
-                    // Only in the lowest strip that both lie in.
+                    // Only in the lowest strip that contains both.
                     if (std::max(range(e).first, range(f).first) == s) visit(e, f);
                 }
             }

@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t bins = 64;
 
-/// Few digits, so that a model written down is the model that was made.
+/// Rounds to four significant digits, so that a written model equals the trained model.
 float rounded(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value);
     return std::strtof(text, nullptr);
 }
 
-/// Sums of first and second derivatives of the loss.
+/// Sums of the first and second derivatives of the loss.
 struct Slope {
     double first = 0, second = 0;
     void add(const Slope& other) { first += other.first, second += other.second; }
@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    /// Thresholds of each feature at quantiles, and the bin of each value.
+    /// Computes thresholds of each feature at quantiles, and the bin of each value.
     void cut() {
         thresholds_.resize(table_.columns);
         binned_.resize(table_.columns);
@@ -183,7 +183,7 @@ double BoostedTrees::log_odds(std::span<const float> features) const {
 }
 
 JsonValue BoostedTrees::to_json(JsonAllocator& allocator) const {
-    // A tree is a list of nodes in preorder: feature and threshold, then both children; -1 and the value of a leaf.
+    // A tree is a list of nodes in preorder: feature and threshold, then both children; for a leaf -1 and its value.
     const auto number = [](float value) {
         char text[32];
         std::snprintf(text, sizeof text, "%.4g", static_cast<double>(value));

@@ -1,4 +1,4 @@
-// Checks that the headers of this module promise.
+// Argument checks of this module.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,14 +7,14 @@
 
 namespace ostraka {
 
-/// Throws Error (input) unless there is a row and a column and all values are finite.
+/// Throws Error (input) unless there is at least one row and one column and all values are finite.
 void require_samples(const Eigen::MatrixXd& samples, const std::string& where);
 
-/// Throws Error (input) unless the matrix is square, finite and symmetric to 1e-9 of its largest entry, and no entry is negative
-/// if these are distances.
+/// Throws Error (input) unless the matrix is square, finite and symmetric to 1e-9 of its largest entry; for distances, also
+/// unless all entries are non-negative.
 void require_symmetric(const Eigen::MatrixXd& matrix, bool distances, const std::string& where);
 
-/// How many rows differ from all before them.
+/// The number of rows that differ from all rows before them.
 std::size_t distinct_rows(const Eigen::MatrixXd& samples);
 
 }  // namespace ostraka

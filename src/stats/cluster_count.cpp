@@ -41,7 +41,7 @@ std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels
     return result;
 }
 
-/// Draws as many samples as there are, evenly from their box along the principal directions.
+/// Draws the same number of samples uniformly from the box along the principal directions.
 Eigen::MatrixXd reference(const Eigen::MatrixXd& turned, Random random) {
     Eigen::MatrixXd result(turned.rows(), turned.cols());
     for (Eigen::Index j = 0; j < turned.cols(); ++j) {
@@ -76,7 +76,7 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
         2 * different <= static_cast<std::size_t>(samples.rows()) ? different : std::max<std::size_t>(1, different - 1);
     const int maximum = static_cast<int>(std::min(static_cast<std::size_t>(options.max_clusters), possible));
 
-    // Version b of the paper: the box lies along the principal directions.
+    // Version b of the paper: the box is aligned with the principal directions.
     Eigen::MatrixXd centred = samples.rowwise() - samples.row(0);
     centred.rowwise() -= centred.colwise().mean().eval();
     const double largest = centred.cwiseAbs().maxCoeff();

@@ -74,7 +74,7 @@ Eigen::MatrixXd distance_matrix(const Eigen::MatrixXd& samples) {
 double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
     check_neighbourhood(0, minimum);
     require_samples(samples, "DBSCAN");
-    // The ball of radius r in d dimensions holds pi^(d/2) r^d / Gamma(d/2 + 1); in logarithms, so that nothing overflows.
+    // The ball of radius r in d dimensions has volume pi^(d/2) r^d / Gamma(d/2 + 1); computed in logarithms to avoid overflow.
     double log_volume = 0;
     int dimensions = 0;
     for (Eigen::Index j = 0; j < samples.cols(); ++j)
@@ -105,7 +105,7 @@ Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
             chain.push_back(start);
         }
         const Eigen::Index last = chain.back(), before = chain.size() > 1 ? chain[chain.size() - 2] : -1;
-        // The nearest other cluster; the one before in the chain is kept among equals, so that chains end.
+        // The nearest other cluster; ties keep the previous cluster of the chain, so that chains end.
         Eigen::Index nearest = before;
         double minimum = before < 0 ? std::numeric_limits<double>::infinity() : between(last, before);
         for (Eigen::Index j = 0; j < n; ++j)
@@ -156,7 +156,7 @@ std::vector<int> cut_at(const Linkage& tree, double height) {
         parent[static_cast<std::size_t>(tree.merges[m].first)] = static_cast<int>(n + m);
         parent[static_cast<std::size_t>(tree.merges[m].second)] = static_cast<int>(n + m);
     }
-    // Parents have larger numbers than their children.
+    // Parents have larger indices than their children.
     std::vector<int> top(parent.size());
     for (std::size_t i = parent.size(); i-- > 0;)
         top[i] = parent[i] < 0 ? static_cast<int>(i) : top[static_cast<std::size_t>(parent[i])];

@@ -16,7 +16,7 @@ void check_dimensions(int dimensions) {
     if (dimensions < 1) fail_usage("the number of dimensions is " + std::to_string(dimensions), "use 1 or more");
 }
 
-/// 1 or -1, so that the entry of largest magnitude, the first of equal ones, becomes positive.
+/// The sign (1 or -1) that makes the entry of largest magnitude, the first of equal ones, positive.
 double sign_of(const Eigen::VectorXd& vector) {
     const double largest = vector.cwiseAbs().maxCoeff();
     for (const double entry : vector)
@@ -36,7 +36,7 @@ Embedding spectral_embedding(const Eigen::MatrixXd& symmetric, int dimensions) {
                     "is the matrix far too large or small?");
     const Eigen::VectorXd& values = solver.eigenvalues();
     std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
-    // From the largest down, so that a positive eigenvalue comes before the negative one of the same magnitude.
+    // By decreasing value, so that a positive eigenvalue comes before a negative one of the same magnitude.
     for (Eigen::Index i = 0; i < n; ++i) order[static_cast<std::size_t>(i)] = n - 1 - i;
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return std::abs(values[a]) > std::abs(values[b]); });
     Embedding result{Eigen::MatrixXd(n, d), Eigen::VectorXd(d)};

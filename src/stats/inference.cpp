@@ -60,11 +60,11 @@ std::optional<Interval> deviation_interval(const std::vector<double>& values, bo
     if (values.size() < 3 || !(n > z)) return std::nullopt;
     const Summary summary = summarise(values);
     if (!(*summary.deviation > 0) || (relative && summary.mean == 0)) return std::nullopt;
-    // In units of the deviation, about the mean.
+    // Standardised: in units of the deviation, about the mean.
     std::vector<double> scaled;
     for (const double value : values) scaled.push_back((value - summary.mean) / *summary.deviation);
     std::sort(scaled.begin(), scaled.end());
-    // The mean without a share 1 / (2 sqrt(n - 4)) of the values at either end.
+    // Trimmed mean: a fraction 1 / (2 sqrt(n - 4)) of the values is removed at either end.
     const double share = values.size() > 4 ? std::min(0.5, 1 / (2 * std::sqrt(n - 4))) : 0.5;
     const auto cut = std::min(static_cast<std::size_t>(share * n), (values.size() - 1) / 2);
     double middle = 0;

@@ -24,7 +24,8 @@ struct Restart {
     bool converged = false;
 };
 
-/// The k-means++ beginning: each next centre is a sample, drawn with the square of its distance to those there are.
+/// k-means++ initialisation: each further centre is a sample drawn with probability proportional to its squared distance from
+/// the chosen centres.
 Rows first_centres(const Rows& samples, Eigen::Index clusters, Random& random) {
     const Eigen::Index n = samples.rows();
     Rows centres(clusters, samples.cols());
@@ -50,7 +51,7 @@ Rows first_centres(const Rows& samples, Eigen::Index clusters, Random& random) {
     return centres;
 }
 
-/// Puts every sample to its nearest centre, the first of equally near ones. Returns whether a label changed.
+/// Assigns every sample to its nearest centre, ties to the first. Returns whether a label changed.
 bool assign(const Rows& samples, Restart& run, std::vector<double>& distances) {
     bool changed = false;
     for (Eigen::Index i = 0; i < samples.rows(); ++i) {
@@ -67,7 +68,7 @@ bool assign(const Rows& samples, Restart& run, std::vector<double>& distances) {
     return changed;
 }
 
-/// Gives each cluster without samples the sample that lies farthest from its centre.
+/// Assigns to each empty cluster the sample that is farthest from its centre.
 bool refill(Restart& run, std::vector<double>& distances) {
     std::vector<std::size_t> counts(static_cast<std::size_t>(run.centres.rows()));
     for (const int label : run.labels) ++counts[static_cast<std::size_t>(label)];
@@ -113,7 +114,7 @@ Restart run_once(const Rows& samples, Eigen::Index clusters, int iterations, Ran
     return run;
 }
 
-/// The samples about their mean, by a power of two at most 1, so that no square overflows or vanishes.
+/// The samples about their mean, scaled by a power of two to at most 1, so that squares neither overflow nor underflow.
 struct Framed {
     Rows samples;
     Eigen::RowVectorXd centre;
@@ -141,7 +142,7 @@ Restart best_of(const Rows& samples, int clusters, const KMeansOptions& options)
     return std::move(*std::min_element(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; }));
 }
 
-/// Clusters in the order of their sizes.
+/// Sorts the clusters by size.
 void sort_clusters(Restart& run) {
     const auto count = static_cast<std::size_t>(run.centres.rows());
     std::vector<std::size_t> sizes(count), first(count, run.labels.size()), order(count);

@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-/// A number in which each bit of `x` has a part (SplitMix64; Steele, Lea and Flood 2014).
+/// A hash to which each bit of `x` contributes (SplitMix64; Steele, Lea and Flood 2014).
 std::uint64_t mixed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15U;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -27,7 +27,7 @@ double random_share(std::uint64_t seed, std::uint64_t counter) {
 Random::Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(mixed(seed) + stream)) {}
 
 std::size_t Random::below(std::size_t count) {
-    // Draws in the last, incomplete run of `count` numbers are thrown away, so that none is likelier than another.
+    // Rejects draws in the last, incomplete run of `count` numbers, so that all results are equally likely.
     const std::uint64_t n = count,
                         last = std::numeric_limits<std::uint64_t>::max() - std::numeric_limits<std::uint64_t>::max() % n;
     for (;;)

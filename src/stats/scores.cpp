@@ -35,7 +35,7 @@ std::size_t require_both(const std::vector<double>& values, const std::vector<bo
     return positives;
 }
 
-/// A distinct value and how many samples have it.
+/// A distinct value and the number of samples that have it.
 struct Step {
     double value;
     std::size_t positives = 0, negatives = 0;
@@ -99,7 +99,7 @@ RocCurve roc_curve(const std::vector<double>& values, const std::vector<bool>& t
     RocCurve curve;
     curve.points.push_back({0, 0, std::numeric_limits<double>::infinity()});
     std::size_t tp = 0, fp = 0;
-    double doubled = 0;  // twice the pairs below the curve: a whole number, so that nothing is rounded
+    double doubled = 0;  // twice the number of pairs below the curve: an integer, so that nothing is rounded
     for (const Step& step : steps) {
         doubled += static_cast<double>(step.negatives) * static_cast<double>(2 * tp + step.positives);
         tp += step.positives;
@@ -116,7 +116,7 @@ Threshold best_threshold(const std::vector<double>& values, const std::vector<bo
     Threshold best;
     double best_gap = -1;
     const auto consider = [&](double value, double gap, bool above, const ConfusionScores& scores) {
-        // Scores are compared without division, f1 = 2 tp / (tp + fp + positives).
+        // Compares scores without division, f1 = 2 tp / (tp + fp + positives).
         const double now = static_cast<double>(scores.true_positive) *
                            static_cast<double>(best.scores.true_positive + best.scores.false_positive + positives),
                      then = static_cast<double>(best.scores.true_positive) *

@@ -10,7 +10,7 @@ namespace ostraka {
 
 namespace {
 
-/// Values in ascending order with the sums of weights up to each.
+/// Values in ascending order with cumulative weights.
 struct Distribution {
     std::vector<double> values, sums;
 
@@ -53,7 +53,7 @@ void require_sample(const std::vector<double>& values, const std::string& where)
     require_finite(values, where);
 }
 
-/// Type 7 of Hyndman and Fan, of values in ascending order.
+/// Type 7 of Hyndman and Fan, for sorted values.
 double interpolated(const std::vector<double>& sorted, double share) {
     const double at = share * static_cast<double>(sorted.size() - 1);
     const auto below = std::min(static_cast<std::size_t>(at), sorted.size() - 1);
@@ -68,7 +68,7 @@ Statistics statistics(const std::vector<double>& values, const std::vector<doubl
     Statistics result;
     result.count = values.size();
     result.weight = sorted.sums.back();
-    // About the median, so that nothing is lost where values are large and near each other.
+    // About the median, to avoid cancellation for large values that are close together.
     result.median = sorted.at(0.5);
     double sum = 0, square = 0, before = 0;
     for (std::size_t i = 0; i < sorted.values.size(); ++i) {
@@ -110,7 +110,7 @@ Summary summarise(const std::vector<double>& values, const std::string& where) {
     result.min = sorted.front();
     result.max = sorted.back();
     result.median = interpolated(sorted, 0.5);
-    // About the median and in units of the range, so that nothing is lost, overflows or vanishes.
+    // About the median and in units of the range, to avoid cancellation, overflow and underflow.
     const double n = static_cast<double>(result.count);
     const double unit = std::max(result.max / 2 - result.min / 2, 0.0);
     double sum = 0, square = 0;

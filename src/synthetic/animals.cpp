@@ -1,4 +1,4 @@
-// Made animals: an elephant and a bird.
+// Synthetic animals: an elephant and a bird.
 #include "builder.h"
 
 namespace ostraka::shapes {
@@ -59,7 +59,7 @@ ObjectPointer make_bird() {
     const int body = add_part(*object, "body", {196, 170, 120}), head = add_part(*object, "head", {70, 120, 90});
     const int beak = add_part(*object, "beak", {230, 150, 40}), tail = add_part(*object, "tail", {120, 90, 70});
     add_member(*object, make_ellipsoid({{0, 0, 66}, turned(-8, Vector3d::UnitY())}, {62, 38, 36}), body, 0);
-    // The neck belongs to the body up to its middle.
+    // The lower half of the neck belongs to the body.
     const std::vector<Bead> neck{{{36, 0, 78}, 20}, {{56, 0, 106}, 14}, {{62, 0, 134}, 14}};
     add_divided_member(*object, make_tube(neck), neck, 14, {{1.3, body}, {99, head}});
     add_member(*object, make_ellipsoid({{67, 0, 150}, Matrix3d::Identity()}, {22, 18, 19}), head, 8);

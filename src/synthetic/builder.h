@@ -1,4 +1,4 @@
-// Words for describing synthetic objects.
+// Helper functions for describing synthetic objects.
 #pragma once
 
 #include "ostraka/synthetic/synthetic_object.h"
@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Colour3 = std::array<std::uint8_t, 3>;
 
-/// Turn by `degrees` around an axis.
+/// Rotation by `degrees` around an axis.
 inline Eigen::Matrix3d turned(double degrees, const Vector3d& axis) {
     return Eigen::AngleAxisd(degrees * 3.14159265358979323846 / 180, axis.normalized()).toRotationMatrix();
 }
@@ -42,7 +42,7 @@ inline void add_member(SyntheticObject& object, SolidPointer solid, int part, do
     object.members.push_back({std::move(solid), blend, false, {{std::numeric_limits<double>::infinity(), part}}});
 }
 
-/// A member in several parts: `until` pairs the number of a profile point or bead with the part that ends there.
+/// A member with several parts: `until` pairs the index of a profile point or bead with the part that ends there.
 template <class Items>
 void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items& items, double blend,
                         const std::vector<std::pair<double, int>>& until) {
@@ -58,7 +58,7 @@ void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items
     object.members.push_back(std::move(member));
 }
 
-/// Cuts a solid away; the walls it leaves become `part` (or, below 0, belong to what was cut).
+/// Subtracts a solid; the resulting walls become `part` (below 0: the part that was cut).
 inline void carve(SyntheticObject& object, SolidPointer solid, int part, double blend) {
     Member member{std::move(solid), blend, true, {}};
     if (part >= 0) member.stretches = {{std::numeric_limits<double>::infinity(), part}};

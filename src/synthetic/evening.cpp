@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A triangle may lean against the surface's normal by at most this (cosine).
+/// Minimum cosine between a triangle's normal and the surface normal.
 constexpr double min_agreement = 0.35;
-/// Twice the area over the square of the longest edge: 0.87 for an even triangle. Changes must not go below.
+/// Twice the area over the square of the longest edge: 0.87 for an equilateral triangle. Minimum after any change.
 constexpr double min_fullness = 0.12;
 
 class Evening {
@@ -39,7 +39,7 @@ public:
             if (!reached()) flip_all();
             relax();
         }
-        // Where the shape resists, edges of any length may go.
+        // If the shape allows no more collapses, collapse edges of any length.
         for (double share = 1.2; share < 6 && !reached(); share *= 1.2) {
             collapse_below(share);
             flip_all();
@@ -63,7 +63,7 @@ private:
         });
     }
 
-    /// Whether a triangle with these corners is full enough and faces outward.
+    /// Whether a triangle with these corners has good shape and faces outward.
     [[nodiscard]] static bool sound(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normals,
                                     double fullness) {
         const Vector3d cross = (b - a).cross(c - a);
@@ -91,10 +91,10 @@ private:
         if (!table_.can_collapse(h)) return;
         const Index a = table_.origin(h), b = table_.target(h);
         const Vector3d sum = normals_[a] + normals_[b];
-        if (sum.squaredNorm() < 1) return;  // the surface turns by more than 120 degrees between them
+        if (sum.squaredNorm() < 1) return;  // the surface normals differ by more than 120 degrees
         const Vector3d normal = sum.normalized();
         const double longest = std::max(1.5, 1.4 * share) * edge_;
-        // Thin triangles may stay thin (they will be mended later), but none may become thinner than the thinnest was.
+        // Thin triangles may stay thin (they are improved later), but none may become thinner than the thinnest was.
         double floor = min_fullness;
         for (const Index v : {a, b}) {
             table_.around(v, [&](Index g) {
@@ -120,7 +120,7 @@ private:
         }
     }
 
-    /// Sweeps over the edges until no flip mends an angle (at most four sweeps).
+    /// Sweeps over the edges until no flip improves an angle (at most four sweeps).
     void flip_all() {
         CancelCheck check;
         for (int sweep = 0; sweep < 4; ++sweep) {
@@ -138,7 +138,7 @@ private:
         const Index c = table_.target(HalfedgeTable::next(h)), d = table_.target(HalfedgeTable::next(o));
         const Vector3d ca = points_[a] - points_[c], cb = points_[b] - points_[c];
         const Vector3d da = points_[a] - points_[d], db = points_[b] - points_[d];
-        // Delaunay: flip where the opposite angles sum to more than 180 degrees, that is where the sine of the sum is negative.
+        // Delaunay: flip if the opposite angles sum to more than 180 degrees, that is, if the sine of the sum is negative.
         const double sine_c = ca.cross(cb).norm(), sine_d = da.cross(db).norm();
         const double cosine_c = ca.dot(cb), cosine_d = da.dot(db);
         const double size = std::sqrt(ca.squaredNorm() * cb.squaredNorm() * da.squaredNorm() * db.squaredNorm());
@@ -153,8 +153,8 @@ private:
         return true;
     }
 
-    /// Moves every vertex within its tangent plane towards the area-weighted centre of its triangles and back onto
-    /// the surface; moves that would spoil a triangle are taken back.
+    /// Moves every vertex within its tangent plane towards the area-weighted centre of its triangles and projects it onto the
+    /// surface; moves that degrade a triangle are undone.
     void relax() {
         std::vector<Vector3d> old_points = points_, old_normals = normals_;
         parallel_for(points_.size(), [&](std::size_t i) {
@@ -178,7 +178,7 @@ private:
                 if (correction.squaredNorm() < 1e-20 * edge_ * edge_) break;
                 p -= correction;
             }
-            // Whoever slid to another sheet of the surface comes back.
+            // Rejects moves to another sheet of the surface.
             if ((p - old_points[v]).squaredNorm() > edge_ * edge_ || s.gradient.normalized().dot(old_normals[v]) < 0.3) return;
             points_[v] = p;
             normals_[v] = s.gradient.normalized();
@@ -225,7 +225,7 @@ private:
 
     const SyntheticObject& object_;
     HalfedgeTable table_;
-    double edge_;  ///< of even triangles: each vertex has sqrt(3)/2 of its square to itself
+    double edge_;  ///< of uniform triangles: each vertex has an area of sqrt(3)/2 times its square
     std::vector<Vector3d> points_, normals_;
     std::size_t wanted_;
 };

@@ -1,11 +1,11 @@
-// Turns the uneven triangles of a marched surface into even ones, of a given number, without leaving the surface.
+// Remeshes the irregular triangles of a marched surface into a given number of uniform triangles, without leaving the surface.
 #pragma once
 
 #include "lattice.h"
 
 namespace ostraka::shapes {
 
-/// A closed triangle mesh as opposite halfedges: halfedge 3 f + k runs from corner k of face f to corner k + 1.
+/// A closed triangle mesh with opposite halfedges: halfedge 3 f + k goes from corner k of face f to corner k + 1.
 class HalfedgeTable {
 public:
     explicit HalfedgeTable(const Triangles& mesh);
@@ -15,7 +15,7 @@ public:
     [[nodiscard]] Index opposite(Index h) const { return opposite_[h]; }
     [[nodiscard]] Index origin(Index h) const { return origin_[h]; }
     [[nodiscard]] Index target(Index h) const { return origin_[next(h)]; }
-    [[nodiscard]] Index outgoing(Index v) const { return outgoing_[v]; }  ///< no_index if the vertex is gone
+    [[nodiscard]] Index outgoing(Index v) const { return outgoing_[v]; }  ///< no_index if the vertex was removed
     [[nodiscard]] bool alive(Index h) const { return origin_[h] != no_index; }
     [[nodiscard]] std::size_t halfedges() const { return origin_.size(); }
     [[nodiscard]] std::size_t vertices() const { return outgoing_.size(); }
@@ -32,13 +32,13 @@ public:
         } while (h != first);
     }
 
-    /// Whether the surface stays a manifold when the edge shrinks to its origin.
+    /// Whether the surface stays a manifold when the edge is collapsed to its origin.
     [[nodiscard]] bool can_collapse(Index h) const;
-    /// The target is merged into the origin.
+    /// Merges the target into the origin.
     void collapse(Index h);
-    /// Whether the two corners opposite to the edge are not joined by an edge yet.
+    /// Whether the two corners opposite to the edge are not yet connected by an edge.
     [[nodiscard]] bool can_flip(Index h) const;
-    /// Replaces the edge by that between the opposite corners.
+    /// Replaces the edge by the edge between the opposite corners.
     void flip(Index h);
 
 private:
@@ -48,8 +48,8 @@ private:
 };
 
 /// Collapses short edges until `vertices` are left, flips edges towards Delaunay triangles and moves vertices along the surface
-/// towards the centres of their neighbours. No triangle ever turns against the surface's normal, so the mesh stays as
-/// embedded as it was. Returns a mesh with `vertices` points, or more where the shape allows no further collapse.
+/// towards the centres of their neighbours. No triangle ever turns against the surface normal, so the mesh stays as embedded as
+/// before. Returns a mesh with `vertices` points, or more if the shape allows no further collapse.
 Triangles make_even(const SyntheticObject& object, Triangles mesh, std::size_t vertices);
 
 }  // namespace ostraka::shapes

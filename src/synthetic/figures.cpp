@@ -1,4 +1,4 @@
-// Made figures: a hand and a statuette with a drum.
+// Synthetic figures: a hand and a statuette with a drum.
 #include "builder.h"
 
 namespace ostraka::shapes {
@@ -9,7 +9,7 @@ ObjectPointer make_hand() {
     const int thumb = add_part(*object, "thumb", {200, 60, 60}), index = add_part(*object, "index finger", {220, 140, 50});
     const int middle = add_part(*object, "middle finger", {190, 180, 60}), ring = add_part(*object, "ring finger", {80, 150, 90});
     const int little = add_part(*object, "little finger", {70, 110, 180});
-    // Fingers point along z, the palm looks along -y. The metacarpals, widely blended, make the palm.
+    // Fingers point along z, the palm faces -y. The metacarpals, blended widely, form the palm.
     add_member(*object, make_tube({{{-6, 0, 6}, 15}, {{-22, 0, 42}, 13.5}, {{-31, 1, 82}, 11.5}}), palm, 0);
     add_member(*object, make_tube({{{-2, 0, 6}, 15}, {{-7, 1, 44}, 13.5}, {{-10, 2.5, 86}, 12}}), palm, 14);
     add_member(*object, make_tube({{{2, 0, 6}, 15}, {{7, 1, 44}, 13}, {{11, 2, 82}, 11.5}}), palm, 14);

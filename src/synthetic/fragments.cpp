@@ -19,7 +19,7 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
     const double area = surface_area(whole), diagonal = box_diagonal(whole);
     if (!(area > 0)) fail_input("mesh", "has no area, so that nothing can be broken off it");
     Random random(options.seed);
-    // Waves in space, of the fragment's size and shorter ones.
+    // Random waves in space, with wavelengths of the fragment's size and shorter.
     const double size = std::sqrt(options.share * area);
     struct Wave {
         Vector3d number;

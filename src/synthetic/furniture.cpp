@@ -1,10 +1,10 @@
-// Made furniture: a chair with arms.
+// Synthetic furniture: an armchair.
 #include "builder.h"
 
 namespace ostraka::shapes {
 
 namespace {
-/// The line of a front leg, which the support above it continues, at a height.
+/// Point at a height on the axis of a front leg, which continues as the arm support.
 Vector3d along_leg(double height, double side) {
     const Vector3d top(150, side * 214, 655), foot(226, side * 190, 17);
     return foot + (height - foot[2]) / (top[2] - foot[2]) * (top - foot);
@@ -16,7 +16,7 @@ ObjectPointer make_chair() {
     auto object = start_object("chair", "armchair", "chair with back, two arms on supports and four legs", 2, 1500, 18);
     const int seat = add_part(*object, "seat", {190, 140, 90}), back = add_part(*object, "back", {160, 100, 60});
     add_member(*object, make_box({{0, 0, 440}, Eigen::Matrix3d::Identity()}, {240, 230, 22}, 16), seat, 0);
-    // The back leans by 10 degrees; it stands on the rear edge of the seat.
+    // The back leans by 10 degrees, on the rear edge of the seat.
     const Eigen::Matrix3d lean = turned(-10, Vector3d::UnitY());
     add_member(*object, make_box({{-258, 0, 670}, lean}, {20, 215, 250}, 16), back, 14);
     for (const double side : {1.0, -1.0}) {

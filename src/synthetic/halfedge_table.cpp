@@ -9,7 +9,7 @@ HalfedgeTable::HalfedgeTable(const Triangles& mesh)
       opposite_(3 * mesh.faces.size(), no_index),
       outgoing_(mesh.points.size(), no_index),
       living_vertices_(mesh.points.size()) {
-    // Halfedges listed by origin; each looks for its reverse among those of its target.
+    // Halfedges sorted by origin; each finds its opposite among those of its target.
     std::vector<Index> begin(mesh.points.size() + 1, 0);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         for (int k = 0; k < 3; ++k) {
@@ -56,8 +56,8 @@ void HalfedgeTable::collapse(Index h) {
     const Index o = opposite(h), a = origin(h), b = target(h);
     const Index c = target(next(h)), d = target(next(o));
     around(b, [&](Index g) { origin_[g] = a; });
-    const Index to_c = opposite(previous(h)), from_c = opposite(next(h));  // a -> c and c -> b of the neighbours
-    const Index to_d = opposite(previous(o)), from_d = opposite(next(o));  // b -> d and d -> a
+    const Index to_c = opposite(previous(h)), from_c = opposite(next(h));  // edges a -> c and c -> b of the neighbouring faces
+    const Index to_d = opposite(previous(o)), from_d = opposite(next(o));  // edges b -> d and d -> a
     glue(to_c, from_c);
     glue(to_d, from_d);
     outgoing_[a] = to_c;

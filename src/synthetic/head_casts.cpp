@@ -26,7 +26,7 @@ enum Stream : std::uint64_t {
     body_stream
 };
 
-/// Of the surface of a head, mm^2.
+/// Surface area of a head, mm^2.
 constexpr double head_area = 4300;
 
 HandWork draw_hand_work(const CastOptions& options, bool beard) {
@@ -52,7 +52,7 @@ HandWork draw_hand_work(const CastOptions& options, bool beard) {
     return work;
 }
 
-/// A smooth field between 0 and 1: a few waves across the head.
+/// A smooth random field between 0 and 1, with a few periods across the head.
 class Waves {
 public:
     Waves(Random& draw) {
@@ -75,7 +75,7 @@ private:
     std::array<Wave, 3> waves_;
 };
 
-/// Where two features all but touch, one lattice in a few sees a handle between them: then another one is taken.
+/// If two features almost touch, some lattices connect them by a handle: then another lattice is tried.
 SyntheticMesh meshed(const SyntheticObject& head, MakeOptions options) {
     constexpr int attempts = 4;
     for (int attempt = 1;; ++attempt, options.seed += 1000003) {
@@ -140,7 +140,7 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
     if (options.noise > 0) scan(mesh, options.noise * head_height, noise);
 
     std::vector<bool> keep(mesh.number_of_faces(), true);
-    // A piece is struck off the brow, a cheek or the hair, never the whole face.
+    // A piece is broken off the brow, a cheek or the hair, never the whole face.
     const Vector3d struck(broken.uniform(6, 11), (broken.uniform() < 0.5 ? -1 : 1) * broken.uniform(6, 11),
                           broken.uniform(8, 36));
     const double reach = broken.uniform(4.5, 7);

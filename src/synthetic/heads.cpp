@@ -17,7 +17,7 @@ namespace {
 
 constexpr int label(HeadPart part) { return static_cast<int>(part); }
 
-/// Builds a head from the inside out: the bare skull and face first, then features that lie on its front.
+/// Builds a head from the inside out: skull and face first, then features on its front.
 class HeadBuilder {
 public:
     HeadBuilder(const HeadShape& shape, const HandWork& work)
@@ -64,7 +64,7 @@ private:
     }
     void add(SolidPointer solid, HeadPart part, double blend) { add_member(*object_, std::move(solid), label(part), blend); }
 
-    /// The foremost x of what stands so far, on the line (y, z).
+    /// The largest x of the members so far on the line (y, z).
     double front(double y, double z) {
         if (finished_ != object_->members.size()) object_->finish();
         finished_ = object_->members.size();
@@ -104,7 +104,7 @@ private:
             const double x = front(y, z);
             const Eigen::Matrix3d rotation =
                 turned(-side * s_.eye_tilt, Vector3d::UnitX()) * turned(side * 18, Vector3d::UnitZ());
-            // The socket, then the ball in it, then the lids around.
+            // The socket, the eyeball in it, then the lids around it.
             shapes::carve(*object_,
                           make_ellipsoid(at({x + 1.1, y, z + 0.4}, rotation), {2.4, s_.eye_width + 1.3, s_.eye_opening + 2}), -1,
                           2.5);
@@ -165,7 +165,7 @@ private:
         }
     }
 
-    /// A ring of curls along the hair line, and the cap behind it; locks at the sides if the hair is long.
+    /// A ring of curls along the hair line, the hair cap behind it, and side locks for long hair.
     void hair() {
         add(make_ellipsoid(
                 at({-3.6 - 0.5 * w_.back_depth, 0, 29.5}),
@@ -182,7 +182,7 @@ private:
             for (int k = 0; k <= ridges; ++k) {
                 const double u = static_cast<double>(k) / ridges;
                 const double radius = s_.lock_width + 0.3 * s_.hair_thickness - 0.4 + (k % 2 == 0 ? s_.curl : -s_.curl);
-                // Down to the shoulders, close to the jaw and the neck all the way.
+                // Down to the shoulders, close to the jaw and the neck.
                 const double out = s_.skull_width + 0.2, y = out - (out - 9.6) * std::pow(u, 1.2);
                 beads.push_back({{0.5 + s_.lock_forward - 2.5 * u, side * y, 25 - 28 * u}, radius});
             }
@@ -197,7 +197,7 @@ private:
             const double angle = (-1 + 2.0 * k / count) * 1.75;  // from ear to ear, over the forehead
             const double y = (s_.skull_width - 0.2) * std::sin(angle) / std::sin(1.57);
             const double z = 22.5 + (s_.hair_line - 22.5 + 0.5 * back) * std::pow(std::max(std::cos(angle * 0.9), 0.0), 0.7);
-            // Where the skull ends the line runs down its side.
+            // Beyond the skull the line runs down its side.
             const double reach = std::max(front(std::clamp(y, -s_.skull_width + 0.4, s_.skull_width - 0.4), z), -1.5);
             const double radius = size * (s_.hair_thickness * 0.75 + (k % 2 == 0 ? s_.curl : -s_.curl));
             beads.push_back({{reach - back - 0.3, y, z + 0.25 * back}, radius});
@@ -205,7 +205,7 @@ private:
         add(make_tube(beads), HeadPart::hair, 0.6);
     }
 
-    /// Clear of the brows, also where the hat leans forward.
+    /// Clear of the brows, also where the hat tilts forward.
     [[nodiscard]] double hat_rim() const { return std::max(s_.hair_line - 3, s_.brow_height + s_.brow_arch + 4.5); }
 
     void hat() {
@@ -224,7 +224,7 @@ private:
 
     void ears() {
         const bool hat = s_.hat != HeadShape::Hat::none;
-        // A hat's rim stays clear of them.
+        // Below the rim of a hat.
         const double height = hat ? std::min(s_.ear_height, hat_rim() - 2.5 - s_.ear_size) : s_.ear_height;
         for (const double side : {1.0, -1.0}) {
             const double out = s_.long_hair ? 1.6 : 0.3;
@@ -232,7 +232,7 @@ private:
             const Eigen::Matrix3d rotation = turned(side * 22, Vector3d::UnitZ()) * turned(-8, Vector3d::UnitY());
             add(make_ellipsoid(at(centre, rotation), {0.62 * s_.ear_size, 2.1, s_.ear_size}), HeadPart::ears, 1.4);
             if (hat) continue;
-            // A shallow dish, never through the ear.
+            // A shallow hollow that does not pierce the ear.
             shapes::carve(*object_,
                           make_ellipsoid(at(centre + Vector3d(0.6, side * 2.1, 0.5), rotation),
                                          {0.36 * s_.ear_size, 1.0, 0.5 * s_.ear_size}),
@@ -303,7 +303,7 @@ private:
     const HeadShape& s_;
     const HandWork& w_;
     std::unique_ptr<SyntheticObject> object_;
-    std::size_t finished_ = 0;  ///< members that the object's boxes are of
+    std::size_t finished_ = 0;  ///< number of members included in the object's boxes
 };
 
 }  // namespace
@@ -320,7 +320,7 @@ HeadShape head_archetype(const ArchetypeOptions& options) {
     HeadShape s;
     s.long_hair = options.long_hair;
     const double spread = 0.08 * options.difference * (options.hand_made ? 1.6 : 1);
-    // Proportions stay within two and a half deviations, so that every head can be held.
+    // Proportions are clamped to 2.5 standard deviations, so that every head can be built.
     const auto vary = [&](double& value, double factor = 1) {
         value *= 1 + factor * spread * std::clamp(draw.normal(), -2.5, 2.5);
     };

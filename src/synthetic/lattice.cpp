@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int block_cubes = 4;                     // cubes along a block's edge
-constexpr int block_points = 2 * block_cubes + 2;  // half-cube steps, with the next block's first centres
+constexpr int block_points = 2 * block_cubes + 2;  // in half-cube steps, including the first centres of the next block
 constexpr int coordinate_bits = 20;
 
 /// Lattice points have integer coordinates in half cubes: cube corners even, cube centres odd.
@@ -23,7 +23,7 @@ Vector3d position(const Lattice& lattice, const Place& place) {
     return lattice.origin + lattice.rotation * (0.5 * lattice.cube * Vector3d(place[0], place[1], place[2]));
 }
 
-/// The seven directions of lattice edges, first non-zero coordinate positive.
+/// The seven directions of lattice edges, with a positive first non-zero coordinate.
 constexpr std::array<std::array<int, 3>, 7> directions{
     {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}}};
 
@@ -53,13 +53,13 @@ std::pair<Place, Place> edge_ends(EdgeKey key) {
     return {a, {a[0] + d[0], a[1] + d[1], a[2] + d[2]}};
 }
 
-/// Blocks that the surface may cross, in depth-first order of an octree.
+/// Blocks that the surface may intersect, in depth-first order of an octree.
 class BlockFinder {
 public:
     BlockFinder(const SyntheticObject& object, const Lattice& lattice)
         : object_(object), lattice_(lattice), slack_(object.slack()) {}
     void visit(const Place& corner, int cubes) {
-        // A block owns the tetrahedra that reach half a cube beyond its upper sides.
+        // A block owns the tetrahedra that extend half a cube beyond its upper sides.
         const Vector3d low = position(lattice_, corner);
         const Vector3d half = lattice_.rotation * Vector3d::Constant(0.5 * lattice_.cube * (cubes + 0.5));
         const double radius = half.norm();
@@ -82,7 +82,7 @@ private:
     double slack_;
 };
 
-/// What one block contributes: its edges cut by the surface (sorted) and triangles over them.
+/// Output of one block: its edges cut by the surface (sorted) and the triangles over them.
 struct Piece {
     std::vector<EdgeKey> edges;
     std::vector<std::array<std::uint16_t, 3>> triangles;
@@ -128,7 +128,7 @@ private:
     }
     [[nodiscard]] Place global(const Place& p) const { return {corner_[0] + p[0], corner_[1] + p[1], corner_[2] + p[2]}; }
 
-    /// The twelve tetrahedra around the cube's three upper faces: two cube centres and an edge of the face between them.
+    /// The twelve tetrahedra around the cube's three upper faces: two cube centres and an edge of the shared face.
     void cube(const Place& c) {
         const Place centre{2 * c[0] + 1, 2 * c[1] + 1, 2 * c[2] + 1};
         for (int axis = 0; axis < 3; ++axis) {
@@ -148,7 +148,7 @@ private:
 
     /// Corners in positive orientation.
     void tetrahedron(const std::array<Place, 4>& corners) {
-        // Even permutations that bring one corner, or one pair of corners, to the front.
+        // Even permutations that move one corner, or a pair of corners, to the front.
         static constexpr std::array<std::array<int, 4>, 4> one{{{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
         static constexpr std::array<std::array<int, 4>, 6> two{
             {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {2, 3, 0, 1}, {3, 1, 0, 2}, {1, 2, 0, 3}}};
@@ -180,7 +180,8 @@ private:
     std::vector<std::array<EdgeKey, 3>> keys_;
 };
 
-/// The surface's place on a lattice edge: false position (Illinois), kept off the ends so that no triangle collapses.
+/// Intersection of the surface with a lattice edge: false position (Illinois), kept away from the ends so that no triangle
+/// degenerates.
 Vector3d crossing(const SyntheticObject& object, const Vector3d& a, const Vector3d& b) {
     double low = 0, high = 1, low_value = object.sample(a).value, high_value = object.sample(b).value;
     double t = 0.5;
@@ -211,7 +212,7 @@ double area(const Triangles& mesh) {
 
 Lattice seeded_lattice(const SyntheticObject& object, double cube, std::uint64_t seed) {
     const auto share = [&](std::uint64_t counter) { return random_share(seed, counter); };
-    // A quaternion from four numbers: no need for uniform rotations, any general position will do.
+    // A quaternion from four random numbers: the rotation need not be uniform, only in general position.
     const Eigen::Quaterniond rotation =
         Eigen::Quaterniond(0.3 + share(0), share(1) - 0.5, share(2) - 0.5, share(3) - 0.5).normalized();
     Lattice lattice{rotation.toRotationMatrix(), Vector3d::Zero(), cube};

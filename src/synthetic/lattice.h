@@ -8,7 +8,7 @@
 
 namespace ostraka::shapes {
 
-/// The lattice's frame and the length of its cubes' edges.
+/// The lattice's frame and the edge length of its cubes.
 struct Lattice {
     Eigen::Matrix3d rotation;
     Eigen::Vector3d origin;
@@ -23,16 +23,16 @@ struct Triangles {
 
 double area(const Triangles& mesh);
 
-/// Vertices that the lattice gives on a surface of one unit of area when its cubes have edge 1: the mean number of its
-/// edges that a unit of area cuts (8 of length sqrt(3)/2 and 6 of length 1 a cube, each seen at half its length).
+/// Number of vertices on a surface of unit area for cubes with edge 1: the mean number of lattice edges that intersect a unit
+/// of area (8 edges of length sqrt(3)/2 and 6 of length 1 per cube, each with half its length in projection).
 inline constexpr double lattice_vertices_per_area = 6.4641016151377546;
 
-/// Triangulates the surface; every edge has exactly two triangles whatever the function, and vertices lie on the surface
-/// (on lattice edges). Blocks far from the surface are skipped by the bound on the function's slope: work and memory grow with
-/// the area only. The seed turns and shifts the lattice. Same result for any number of threads.
+/// Triangulates the surface. Every edge has exactly two triangles for any function, and vertices lie on the surface (on lattice
+/// edges). Blocks far from the surface are skipped by the bound on the function's slope: time and memory are proportional to
+/// the area. The seed rotates and shifts the lattice. The result does not depend on the number of threads.
 Triangles march(const SyntheticObject& object, const Lattice& lattice);
 
-/// Frame turned and shifted by the seed.
+/// Lattice rotated and shifted by the seed.
 Lattice seeded_lattice(const SyntheticObject& object, double cube, std::uint64_t seed);
 
 }  // namespace ostraka::shapes

@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Lattice vertices made for each one wanted: with fewer, thin triangles must stay; with more, time is lost.
+/// Lattice vertices per wanted vertex: with fewer, thin triangles remain; with more, time is wasted.
 constexpr double surplus = 1.6;
 
-/// Closed surfaces have 3/2 edges a face, so V - E + F = V - F / 2.
+/// Closed surfaces have 3/2 edges per face, so V - E + F = V - F / 2.
 bool has_genus(const shapes::Triangles& mesh, int genus) {
     return static_cast<long long>(mesh.points.size()) - static_cast<long long>(mesh.faces.size() / 2) == 2 - 2 * genus;
 }
@@ -39,9 +39,9 @@ bool is_connected(const shapes::Triangles& mesh) {
                "ask for at least " + std::to_string(object.minimum_vertices));
 }
 
-/// The marched surface with about `vertices` vertices, or with more if it takes more to hold the shape.
+/// The marched surface with about `vertices` vertices, or more if the shape needs them.
 shapes::Triangles marched(const SyntheticObject& object, double vertices, std::uint64_t seed) {
-    // A first coarse surface tells the area.
+    // The area is estimated from a coarse surface.
     const double coarse = object.box().diagonal().norm() / 40;
     const double pilot_area = shapes::area(shapes::march(object, shapes::seeded_lattice(object, coarse, seed)));
     double cube = std::min(std::sqrt(shapes::lattice_vertices_per_area * pilot_area / vertices), 0.9 * object.thinnest);
@@ -54,8 +54,8 @@ shapes::Triangles marched(const SyntheticObject& object, double vertices, std::u
                 "ask for more vertices or use another seed");
 }
 
-/// Where parts meet in a narrow strip, centroids can cut a few faces off from their part: patches of fewer than four faces
-/// take the label most common around them (the smallest of equally common ones), unless they are all there is of the part.
+/// Where parts meet in a narrow strip, labelling by centroids can separate a few faces from their part: patches of fewer than
+/// four faces take the most common label around them (ties: the smallest), unless the patch is the whole part.
 void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_t parts) {
     constexpr std::size_t crumb = 4;
     const std::vector<std::int32_t> before = labels;
@@ -99,7 +99,7 @@ SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& option
     check_options(options, "mesh make");
     if (options.vertices < object.minimum_vertices) refuse(object, options.vertices);
     const auto wanted = static_cast<std::size_t>(options.vertices);
-    constexpr double bytes_of_vertex = 600;  // of the lattice, the points made even and the mesh
+    constexpr double bytes_of_vertex = 600;  // lattice, remeshed points and mesh
     require_memory(bytes_of_vertex * static_cast<double>(wanted), "a mesh of " + std::to_string(wanted) + " vertices",
                    "ask for fewer (--vertices)");
     shapes::Triangles even =

@@ -1,4 +1,4 @@
-// Objects with closed formulas for area and volume.
+// Objects with closed-form area and volume.
 #include "builder.h"
 #include "ostraka/core/angles.h"
 
@@ -21,7 +21,7 @@ ObjectPointer make_sphere() {
                         4.0 / 3 * pi * r * r * r);
     const int rest = add_part(*object, "rest", grey);
     add_member(*object, make_ellipsoid({}, {r, r, r}), rest, 0);
-    // A cap of height h has the area 2 pi r h, the share h / 2r of the sphere's.
+    // A cap of height h has the area 2 pi r h, a fraction h / 2r of the sphere's.
     const auto cap = [&](const std::string& name, const Colour3& colour, const Vector3d& axis, double share) {
         const int part = add_part(*object, name, colour);
         object->cuts.push_back(
@@ -46,7 +46,7 @@ ObjectPointer make_torus_object() {
 ObjectPointer make_box_object() {
     const Vector3d half(60, 40, 25);
     const double r = 8;
-    // Steiner: the box shrunk by r, grown again by balls of radius r.
+    // Steiner formula: the box reduced by r, dilated by balls of radius r.
     const Vector3d a = 2 * (half - Vector3d::Constant(r));
     const double flat = 2 * (a.x() * a.y() + a.y() * a.z() + a.z() * a.x()), edges = a.sum();
     auto object =
@@ -72,7 +72,7 @@ ObjectPointer make_capsule() {
 
 ObjectPointer make_cylinder_object() {
     const double radius = 30, half = 50, r = 6, core = radius - r;
-    // A quarter circle's centroid lies 2 r / pi from its centre (area by Pappus), the quarter disc's 4 r / 3 pi (volume).
+    // Centroid of a quarter circle: 2 r / pi from its centre (area by Pappus); of the quarter disc: 4 r / 3 pi (volume).
     const double area = 2 * (pi * core * core + 2 * pi * (core + 2 * r / pi) * (pi * r / 2)) + 2 * pi * radius * 2 * (half - r);
     const double volume = pi * radius * radius * 2 * (half - r) +
                           2 * (pi * core * core * r + 2 * pi * (core + 4 * r / (3 * pi)) * (pi * r * r / 4));

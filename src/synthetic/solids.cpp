@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A solid in its own frame, placed in the world.
+/// A solid in its own frame, with a pose in space.
 class PlacedSolid : public Solid {
 public:
     explicit PlacedSolid(const SolidPose& pose) : pose_(pose), back_(pose.rotation.transpose()) {}
@@ -38,13 +38,13 @@ private:
     Eigen::Matrix3d back_;
 };
 
-/// From a function of (distance to the vertical axis, height) to one of space.
+/// Converts value and gradient in (distance from the vertical axis, height) to space.
 Sample revolve(const Vector3d& p, double distance, double value, const Vector2d& gradient) {
     if (distance < 1e-300) return {value, {0, 0, gradient.y()}};
     return {value, {gradient.x() * p.x() / distance, gradient.x() * p.y() / distance, gradient.y()}};
 }
 
-/// A formula in its own frame says all of it.
+/// A solid defined by a formula in its own frame.
 class FormulaSolid final : public PlacedSolid {
 public:
     using Formula = std::function<Sample(const Vector3d& p)>;
@@ -69,7 +69,7 @@ public:
             const Vector3d centre = path_.at(t).value;
             const double radius = radius_.at(t).value[0];
             samples_.push_back({t, centre, radius});
-            // The ball at a sample does not cover what bulges between two samples: allow a little.
+            // Margin for the bulge of the tube between two samples.
             const Vector3d reach = Vector3d::Constant(radius * 1.02 + path_.length() * 1e-3);
             box_.extend(centre - reach);
             box_.extend(centre + reach);
@@ -123,12 +123,12 @@ private:
         using One = shapes::Spline<1>::Vec;
         std::vector<One> values;
         for (const auto& bead : beads) values.push_back(One(bead.radius));
-        // Level ends, so that the tube runs smoothly into the balls that close it.
+        // Zero slope at the ends, so that the tube continues smoothly into the end balls.
         return {chord_lengths(beads), values, One(0.0), One(0.0)};
     }
     shapes::Spline<3> path_;
     shapes::Spline<1> radius_;
-    std::vector<Ball> samples_, balls_;  ///< on the path; around each piece's
+    std::vector<Ball> samples_, balls_;  ///< on the path; bounding balls of the pieces
     AlignedBox3d box_;
 };
 
@@ -183,7 +183,7 @@ private:
     }
     shapes::Spline<2> curve_;
     std::vector<std::pair<double, Vector2d>> samples_;
-    std::vector<std::pair<Vector2d, double>> discs_;  ///< around each piece's samples
+    std::vector<std::pair<Vector2d, double>> discs_;  ///< bounding discs of the samples of each piece
     Vector2d extents_ = Vector2d::Zero();
 };
 

@@ -1,4 +1,4 @@
-// Interpolating cubic splines over chord length, and the place on them that minimises a distance.
+// Interpolating cubic splines over chord length, and the point on them that minimises a distance.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace ostraka::shapes {
 
-/// Cubic spline through `points` at given knots; an end without slope has zero curvature.
+/// Cubic spline through `points` at given knots. An end without prescribed slope has zero curvature.
 template <int D>
 class Spline {
 public:
@@ -81,7 +81,7 @@ private:
 /// `slope_and_bend(t)` gives the function and its derivative.
 template <class Function>
 double bracketed_root(double low, double high, double t, Function&& slope_and_bend) {
-    // Newton's error after a step is of the order of the step squared: this small a step leaves nothing to gain.
+    // The error after a Newton step is of the order of the squared step: smaller steps gain nothing.
     const double enough = 1e-7 * (high - low);
     for (int i = 0; i < 40 && high - low > enough; ++i) {
         const auto [slope, bend] = slope_and_bend(t);
@@ -96,7 +96,7 @@ double bracketed_root(double low, double high, double t, Function&& slope_and_be
     return t;
 }
 
-/// Curve samples grouped by piece, so that the one with the least cost is found without trying all: `lower_bound(group)` must not
+/// Curve samples grouped by piece, to find the sample with minimum cost without evaluating all: `lower_bound(group)` must not
 /// exceed `cost(i)` of any member.
 struct SampleGroups {
     int per_piece;

@@ -1,4 +1,4 @@
-// The parts a generated statuette is built from.
+// Components of a synthetic statuette.
 #pragma once
 
 #include "warp.h"
@@ -13,26 +13,27 @@ namespace ostraka::shapes {
 struct StatuetteFrame {
     explicit StatuetteFrame(const StatuetteParameters& parameters);
     double neck_radius;
-    double joint_height;  ///< of the head's joint: at the back of the neck it is head_height away from the topmost point
+    /// Height of the head joint: at the back of the neck, its distance from the topmost point is head_height.
+    double joint_height;
     double tube_radius;
-    double cavity_depth;                   ///< as seen
-    std::vector<Eigen::Vector2d> outline;  ///< radius and height of the body before it is warped, from the rim to the neck
+    double cavity_depth;                   ///< scanned depth
+    std::vector<Eigen::Vector2d> outline;  ///< radius and height of the body before warping, from the rim to the neck
 };
 
-/// How the body deviates from a turned one.
+/// Deviations of the body from a surface of revolution.
 struct StatuetteBody {
     explicit StatuetteBody(const StatuetteParameters& parameters);
     StatuetteFrame frame;
     std::shared_ptr<const Warp> outside, inside;
-    double direction;  ///< of the ovality at height 0
-    double ragged;     ///< phase of the line where sight into the cavity ends
+    double direction;  ///< direction of the ovality at height 0
+    double ragged;     ///< phase of the line where the scanned part of the cavity ends
 };
 
-/// A rolled arm; its length along the outside, to the tip where that is free, is the parameter's.
+/// A rolled arm. Its length along the outside, up to a free tip, is the length given by the parameters.
 class Arm {
 public:
     Arm(const StatuetteParameters& parameters, const StatuetteBody& body, double side);
-    /// Places along the outside, evenly spread from the joint to the hand, and the hand's tip unless it is in a bowl.
+    /// Points along the outside, evenly spaced from the joint to the hand, and the tip of the hand unless it is in a bowl.
     [[nodiscard]] std::vector<Eigen::Vector3d> outside(int pieces) const;
     [[nodiscard]] double outside_length() const;
     [[nodiscard]] double side() const { return side_; }
@@ -40,9 +41,9 @@ public:
 
 private:
     double side_;
-    bool bare_;  ///< the hand's tip is free
+    bool bare_;  ///< whether the tip of the hand is free
 };
-/// Right (at negative y, for the face looks along x), left.
+/// Right (negative y, because the face looks along x), left.
 std::array<Arm, 2> body_arms(const StatuetteParameters& parameters, const StatuetteBody& body);
 
 void check_parameters(const StatuetteParameters& parameters);

@@ -11,7 +11,7 @@ namespace ostraka {
 
 namespace {
 
-/// Numbers of one object, one after the other.
+/// Sequence of random numbers of one object.
 class Draws {
 public:
     Draws(std::uint64_t seed, std::uint64_t object) : seed_(seed), next_(object << 20) {}
@@ -20,7 +20,7 @@ public:
         const double radius = std::sqrt(-2 * std::log(1 - share()));
         return radius * std::cos(2 * pi * share());
     }
-    /// Log-normal about its median; tails are cut at 2.5 standard deviations.
+    /// Log-normal with the given median; tails are clamped at 2.5 standard deviations.
     double around(double median, double spread) { return median * std::exp(spread * std::clamp(normal(), -2.5, 2.5)); }
     int among(int choices) { return std::min(static_cast<int>(share() * choices), choices - 1); }
 
@@ -64,7 +64,7 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
         one.sway = std::min(draw.around(medians.sway, level.spread), 0.2);
         one.wall_noise = std::min(draw.around(medians.wall_noise, level.spread), 0.25);
         one.off_centre = std::min(draw.around(medians.off_centre, level.spread), 0.4);
-        // What does not distinguish the techniques by itself: all thrown bodies are hollow, half of the others as well.
+        // Features that do not identify the technique by themselves: all thrown bodies are hollow, and half of the others.
         const double hollow = draw.share(), wall = draw.around(5, 0.1), grooves = draw.share();
         one.wall = wheel || hollow < 0.5 ? wall : 0;
         one.grooves = wheel ? 0.25 * grooves : 0;
@@ -115,7 +115,7 @@ std::vector<StatuetteParameters> draw_population(const ProportionedOptions& opti
     constexpr std::array<double, 4> medians{198, 58, 80, 42};
     for (std::size_t i = 0; i < list.size(); ++i) {
         Random random(options.seed, i);
-        // Within three deviations.
+        // Clamped at three standard deviations.
         const auto draw = [&](double deviation) { return deviation * std::clamp(random.normal(), -3.0, 3.0); };
         const double size = draw(options.size_deviation), shared = draw(ratio);
         for (std::size_t k = 0; k < 4; ++k) {

@@ -1,4 +1,4 @@
-// A statuette as a scanner sees it: noise, a cavity seen in part, holes; and the places that are known on it.
+// Scan of a statuette: noise, a partly scanned cavity, holes; and its landmarks.
 #include "ostraka/core/angles.h"
 #include "ostraka/synthetic/statuettes.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint64_t noise_numbers = std::uint64_t{1} << 40, hole_numbers = std::uint64_t{1} << 50;
 
-/// Standard normal number of a vertex (Box and Muller 1958).
+/// Standard normal random number of a vertex (Box and Muller 1958).
 double normal_number(std::uint64_t seed, std::uint64_t vertex) {
     const double a = random_share(seed, noise_numbers + 2 * vertex), b = random_share(seed, noise_numbers + 2 * vertex + 1);
     return std::sqrt(-2 * std::log(1 - a)) * std::cos(2 * pi * b);
@@ -37,7 +37,7 @@ void add_noise(Mesh& mesh, double deviation, std::uint64_t seed) {
     for (std::size_t i = 0; i < moved.size(); ++i) mesh.point(Vertex(static_cast<Index>(i))) = moved[i];
 }
 
-/// Faces of the cavity above a wavy line, or none.
+/// Marks the faces of the cavity above a wavy line as missing.
 void miss_interior(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels, std::int32_t inside,
                    const shapes::StatuetteBody& body) {
     const double edge = mean_edge_length(mesh);
@@ -49,7 +49,7 @@ void miss_interior(std::vector<bool>& missing, const Mesh& mesh, const std::vect
     }
 }
 
-/// Faces of the body's outer side around random places of it.
+/// Marks faces on the outer side of the body around random points as missing.
 void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels,
                   const StatuetteParameters& p, double highest) {
     std::vector<Face> body;
@@ -69,7 +69,7 @@ void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vecto
     }
 }
 
-/// Takes away more until no vertex joins two fans: then what is left is a manifold.
+/// Marks more faces as missing until no vertex joins two fans, so that the rest is a manifold.
 void open_pinches(std::vector<bool>& missing, const Mesh& mesh) {
     for (bool again = true; again;) {
         again = false;
@@ -86,7 +86,7 @@ void open_pinches(std::vector<bool>& missing, const Mesh& mesh) {
     }
 }
 
-/// The largest piece of what is left, as a mesh of its own; labels follow.
+/// Keeps the largest connected piece of the remaining faces, with its labels.
 void take_away(Statuette& statuette, const std::vector<bool>& missing) {
     const Mesh& mesh = statuette.mesh;
     const auto [piece, pieces] = face_pieces(
@@ -122,7 +122,7 @@ std::vector<std::pair<std::string, Vector3d>> known_places(const SyntheticObject
                                                            const shapes::StatuetteBody& body) {
     std::vector<std::pair<std::string, Vector3d>> places;
     const auto add = [&](const std::string& name, const Vector3d& near) { places.emplace_back(name, object.project(near)); };
-    // Ends of the longest diameter of the rim; of a round base, those to the sides.
+    // Ends of the longest diameter of the rim; for a round base, the lateral ones.
     const double rim = body.frame.outline.front().y();
     const Vector2d foot = body.outside->centre(rim);
     const double turn = p.ovality > 0 ? body.direction + p.ovality_drift * pi / 180 * rim / body.frame.joint_height : 0.5 * pi;

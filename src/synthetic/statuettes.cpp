@@ -22,7 +22,7 @@ namespace shapes {
 
 namespace {
 
-/// Random phases, periods and wavelengths, all of one seed.
+/// Random phases, periods and wavelengths from one seed.
 class Draws {
 public:
     explicit Draws(std::uint64_t seed) : seed_(seed) {}
@@ -33,7 +33,7 @@ private:
     std::uint64_t seed_, next_ = 0;
 };
 
-/// Waves of random phase, each of the same size, whose root mean square over the body is `deviation`.
+/// Waves of random phase and equal amplitude, whose root mean square over the body is `deviation`.
 std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int min_around, int max_around, double shortest,
                                double longest) {
     std::vector<Wave> waves;
@@ -46,7 +46,7 @@ std::vector<Wave> random_waves(Draws& draw, int count, double deviation, int min
     return waves;
 }
 
-/// Half waves and shorter ones up the body; the amplitudes fall with the wavelength.
+/// Waves along the body from half a period upwards; amplitudes are proportional to the wavelength.
 std::vector<Wave> sway_waves(Draws& draw, double deviation, double height) {
     std::vector<Wave> waves;
     const double norm = std::sqrt(1 + 1 / 4.0 + 1 / 9.0);
@@ -61,7 +61,7 @@ StatuetteFrame::StatuetteFrame(const StatuetteParameters& p)
       joint_height(p.height - std::sqrt(p.head_height * p.head_height - neck_radius * neck_radius)),
       tube_radius(0.33 * p.base_diameter),
       cavity_depth(0.8 * joint_height * p.cavity_seen) {
-    // Radius and height, in base radii and heights of the joint: rim, flare, tube, shoulders, neck.
+    // Radius and height, relative to the base radius and the joint height: rim, flare, tube, shoulders, neck.
     const double radius = 0.5 * p.base_diameter / (1 + p.ovality);
     const std::vector<Vector2d> shape{{1, 0.022},   {0.975, 0.05}, {0.88, 0.10}, {0.765, 0.17}, {0.69, 0.28},
                                       {0.66, 0.41}, {0.65, 0.55},  {0.67, 0.68}, {0.73, 0.785}, {0.70, 0.875}};
@@ -72,7 +72,7 @@ StatuetteFrame::StatuetteFrame(const StatuetteParameters& p)
     for (const Vector2d& point : shape) add(point.x() * radius, point.y() * joint_height);
     add(0.5 * (radii.back()[0] + neck_radius), 0.945 * joint_height);
     add(1.04 * neck_radius, 0.985 * joint_height);
-    // Many points, so that splines through them and through points beside them hardly differ.
+    // Enough points that splines through them and through displaced points hardly differ.
     const Spline<1> curve(heights, radii);
     for (const double z : curve.samples(3)) outline.emplace_back(curve.at(z).value[0], z);
 }
@@ -90,10 +90,10 @@ StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
     direction = draw.angle();
     std::vector<Wave> relative{{p.ovality, 2, -2 * p.ovality_drift * pi / 180 / high, -2 * direction}};
     for (const Wave& wave : random_waves(draw, 10, p.finger_marks, 3, 7, 30, 80)) relative.push_back(wave);
-    // Hands and wheel rise together: one turn for 7 mm.
+    // Hands rise as the wheel turns: one turn per 7 mm.
     const std::vector<Wave> grooves{{0.5 * p.grooves, 1, 2 * pi / 7, draw.angle()}};
     const std::vector<Wave> x = sway_waves(draw, sway, high), y = sway_waves(draw, sway, high);
-    // Waves begin above the foot's rim and end at the neck.
+    // Waves start above the rim of the foot and end at the neck.
     const Warp warp{.low = heights.front(),
                     .high = high,
                     .offset = Vector2d::Zero(),
@@ -114,7 +114,7 @@ StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
 
 namespace {
 
-/// The outline with the flat foot below it and the stump in the head above.
+/// The outline, with the flat foot below and the stump inside the head above.
 std::vector<Vector2d> body_profile(const StatuetteParameters& p, const StatuetteFrame& frame) {
     const double rim = frame.outline.front().x(), lift = frame.outline.front().y();
     std::vector<Vector2d> profile{{0, 0}, {0.5 * (rim - lift), 0}, {0.85 * (rim - lift), 0}, {rim - lift, 0}};
@@ -162,7 +162,7 @@ Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side)
             list.push_back({shoulder + reach * Vector3d(way.x(), side * way.y(), way.z()), thick * thickness[i++]});
         return list;
     };
-    // The length along the outside grows with the reach: bisection.
+    // The length along the outside increases with the reach: bisection.
     double low = 0.2 * p.arm_length, high = 2 * p.arm_length;
     for (int i = 0; i < 50; ++i) {
         const double middle = 0.5 * (low + high);
@@ -171,7 +171,7 @@ Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side)
     }
 }
 
-/// Places along the outside, from the joint to the tip of the hand.
+/// Points along the outside, from the joint to the tip of the hand.
 std::vector<Vector3d> Arm::outside(int pieces) const {
     std::vector<Vector3d> points;
     std::vector<double> radii;
@@ -207,7 +207,8 @@ void add_head(SyntheticObject& object, const StatuetteParameters& p, const Statu
     const double h = p.head_height, joint = body.frame.joint_height;
     const Vector2d c = body.outside->centre(joint);
     const auto at = [&](double x, double y, double z) { return Vector3d(c.x() + x * h, c.y() + y * h, joint + z * h); };
-    // The joint lies a neck radius below the head's height, so that the top is somewhat less than h above it.
+    // The head height is measured from the back of the neck, a neck radius off the axis, so that the top is less than h above
+    // the joint.
     const double top = (p.height - joint) / h;
     const double skull_top = p.hat == Hat::none ? top : p.hat == Hat::cap ? top - 0.07 : 0.72;
     const double skull = 0.5 * (skull_top - 0.04);
@@ -228,7 +229,7 @@ void add_head(SyntheticObject& object, const StatuetteParameters& p, const Statu
                    0.1 * h);
     if (p.hat == Hat::none) return;
     const int hat = add_part(object, "hat", {90, 110, 150});
-    // The lathe's profile ends on the axis at the topmost point.
+    // The profile ends on the axis at the topmost point.
     const std::vector<Vector2d> cone{
         {0, 0},         {0.30, 0.01}, {0.345, 0.05}, {0.31, 0.12}, {0.20, 0.55 * (top - 0.60)}, {0.10, 0.85 * (top - 0.60)},
         {0, top - 0.60}};

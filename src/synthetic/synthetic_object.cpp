@@ -8,20 +8,20 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Smooth minimum, cubic: equals min(a, b) where they differ by more than `width` (twice differentiable there).
+/// Smooth minimum, cubic: equals min(a, b) where they differ by more than `width` (with a twice differentiable transition).
 Sample smooth_union(const Sample& a, const Sample& b, double width) {
     const bool a_first = a.value < b.value;
     const Sample& low = a_first ? a : b;
     const double overlap = width > 0 ? std::max(1 - std::abs(a.value - b.value) / width, 0.0) : 0;
     if (overlap == 0) return low;
     const Sample& high = a_first ? b : a;
-    const double share = 0.5 * overlap * overlap;  // of the farther one
+    const double share = 0.5 * overlap * overlap;  // weight of the larger one
     return {low.value - overlap * overlap * overlap * width / 6, (1 - share) * low.gradient + share * high.gradient};
 }
 
 Sample negative(const Sample& a) { return {-a.value, -a.gradient}; }
 
-/// Position in a relief's frame: coordinates in its plane and the height above it.
+/// Frame of a relief: coordinates in its plane and height above it.
 struct ReliefFrame {
     Vector3d u, v, w;
     explicit ReliefFrame(const Vector3d& axis) : w(axis.normalized()) {
@@ -31,13 +31,13 @@ struct ReliefFrame {
     }
 };
 
-/// Distance from the relief's axis as a share of the petal curve's radius in that direction: below 1 inside.
+/// Distance from the relief's axis, relative to the petal curve's radius in that direction: below 1 inside.
 double petal_share(const Relief& relief, double x, double y) {
     const double petal = relief.radius * (1 + relief.petal_depth * std::cos(relief.petals * std::atan2(y, x)));
     return std::hypot(x, y) / petal;
 }
 
-/// Raised by 1 at the centre, falling to 0 at the petal curve with zero slope.
+/// Profile of the relief: 1 at the centre, decreasing to 0 at the petal curve with zero slope.
 double raised(const Relief& relief, double x, double y) {
     const double share = petal_share(relief, x, y);
     if (share >= 1) return 0;
@@ -60,7 +60,7 @@ void SyntheticObject::finish() {
         margin_ = std::max(margin_, member.blend);
     }
     box_ = Eigen::AlignedBox3d();
-    // A smooth union swells by at most a sixth of its width where two solids meet, a little more where several do.
+    // A smooth union bulges by at most a sixth of its width where two solids meet, slightly more where several do.
     double swell = slack();
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (!members[i].carves) box_.extend(boxes_[i]);
@@ -71,7 +71,7 @@ void SyntheticObject::finish() {
 }
 
 Sample SyntheticObject::member_sample(std::size_t member, const Vector3d& p) const {
-    // Far from a solid only a lower bound of its value is needed: what is farther than every blend changes nothing.
+    // Far from a solid a lower bound of its value is sufficient: solids beyond every blend width have no effect.
     const auto& solid = *members[member].solid;
     const double distance = boxes_[member].exteriorDistance(p) * solid.flatness();
     if (distance > margin_) {
@@ -120,7 +120,7 @@ int SyntheticObject::part(const Vector3d& p) const {
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (members[i].carves && members[i].stretches.empty()) continue;
         const double value = member_sample(i, p).value;
-        // A wall that a cut leaves lies inside what was there before.
+        // A wall left by a subtraction lies inside the previous solid.
         if (members[i].carves ? -value > minimum : value < minimum) minimum = members[i].carves ? -value : value, nearest = i;
     }
     const Member& member = members[nearest];

@@ -73,7 +73,7 @@ private:
     static constexpr int samples_up = 60, samples_around = 36;
     static constexpr double margin = 1.15;
 
-    /// Where a point of the warped body comes from, and the derivative of that by the point.
+    /// Preimage of a point of the warped body, and its derivative with respect to the point.
     [[nodiscard]] std::pair<Vector3d, Matrix3d> moved_back(const Vector3d& p) const {
         const Warp& warp = *warp_;
         const double z = std::clamp(p.z(), warp.low, warp.high);
@@ -92,10 +92,10 @@ private:
         const double by_angle = size.value[0] * relative.by_angle + absolute.by_angle;
         const double by_height =
             rises * (size.value[0] * relative.by_height + size.first[0] * relative.value + absolute.by_height);
-        // Fades in from the axis: 3 t^2 - 2 t^3.
+        // The displacement fades in from the axis: 3 t^2 - 2 t^3.
         const double t = std::min(distance / warp.core, 1.0);
         const double fade = t * t * (3 - 2 * t), fade_slope = t < 1 ? 6 * t * (1 - t) / warp.core : 0;
-        // Polar frame: radial and tangential derivatives of the radius moved back.
+        // Polar frame: radial and tangential derivatives of the preimage's radius.
         const Vector2d radial = away / distance, tangent(-radial.y(), radial.x());
         const double radius = distance - moved * fade;
         const Eigen::RowVector2d radius_change =
@@ -125,7 +125,7 @@ public:
         box.max().z() = std::min(box.max().z(), height_);
         return box;
     }
-    // Where both are outside, the nearest point is at most the root of the sum of squares away.
+    // If both are outside, the distance to the nearest point is at most the root of the sum of squares.
     [[nodiscard]] double flatness() const override { return solid_->flatness() * std::sqrt(0.5); }
 
 private:

@@ -1,5 +1,4 @@
-// Bodies that are not quite round: a solid whose horizontal sections are moved and whose surface is moved towards or away from
-// their centres.
+// Warped bodies: horizontal sections of a solid are shifted, and the surface is displaced radially from their centres.
 #pragma once
 
 #include "spline.h"
@@ -14,7 +13,7 @@ namespace ostraka::shapes {
 /// amplitude cos(around a + upward z + phase): a wave over the angle a and the height z.
 struct Wave {
     double amplitude = 0;
-    int around = 0;     ///< periods in a turn
+    int around = 0;     ///< periods per turn
     double upward = 0;  ///< radians per unit of height
     double phase = 0;
 };
@@ -25,26 +24,26 @@ struct WaveSum {
 };
 WaveSum sum_of(const std::vector<Wave>& waves, double angle, double height);
 
-/// What moves the points of an upright body: at height z (kept within [low, high]) the centre stands at `offset` + sums of waves
-/// of the height, and the surface at angle a stands farther out by `size` times the relative waves plus the absolute waves.
+/// Warp of an upright body. At height z (clamped to [low, high]) the centre is `offset` + sums of waves over the height, and
+/// the surface at angle a is displaced outwards by `size` times the relative waves plus the absolute waves.
 struct Warp {
     double low = 0, high = 0;
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();
-    std::vector<Wave> centre_x, centre_y;  ///< in units of length; `around` is not used
-    Spline<1> size;                        ///< what relative waves are relative to, over the height
+    std::vector<Wave> centre_x, centre_y;  ///< in units of length; `around` is ignored
+    Spline<1> size;                        ///< reference of the relative waves, over the height
     std::vector<Wave> relative, absolute;
-    double core = 1;  ///< within this distance of the centre the displacement fades out, so that the axis stays one line
+    double core = 1;  ///< within this distance of the centre the displacement fades out, so that the axis remains a single curve
 
     [[nodiscard]] Eigen::Vector2d centre(double height) const;
-    /// Displacement of the surface away from the centre.
+    /// Outward displacement of the surface.
     [[nodiscard]] double displacement(double angle, double height) const;
 };
 
-/// The solid moved by the warp. The value is that of `solid` at the point moved back, scaled so that it changes by at most 1 a
-/// unit of length (the warp's steepest change is taken from samples, with a margin).
+/// The warped solid. The value is that of `solid` at the preimage, scaled so that its slope is at most 1 (the maximum slope of
+/// the warp is sampled, with a margin).
 SolidPointer make_warped(SolidPointer solid, std::shared_ptr<const Warp> warp);
 
-/// What of a solid lies below a height.
+/// The part of a solid below a height.
 SolidPointer make_below(SolidPointer solid, double height);
 
 }  // namespace ostraka::shapes

@@ -1,4 +1,4 @@
-// Configurations of landmarks of the objects of a collection.
+// Landmark configurations of the objects of a collection.
 #pragma once
 
 #include "ostraka/collection/objects.h"
@@ -6,37 +6,38 @@
 
 namespace ostraka {
 
-/// Reads the landmarks of every object, its markups (.mrk.json); two of one name are an error of the object.
+/// Reads the landmarks of every object from its markups (.mrk.json). Two landmarks of the same name are an error of the object.
 std::vector<ObjectResult> read_object_landmarks(const Collection& collection, const ResultStore& store = ResultStore());
 
-/// An object that is not as the others, and why, in words with the remedy.
+/// An object that differs from the others. `why` is a message with the remedy.
 struct OddSpecimen {
     std::string name, why;
     bool left_out = false;
 };
 
-/// Objects with the landmarks that all of them have.
+/// Objects with the landmarks that all of them share.
 struct LandmarkShapes {
-    std::vector<std::string> objects, labels;  ///< those whose landmarks could be read, their known answers
-    std::vector<std::string> names;            ///< of the landmarks, in the order of the first object that has them
-    std::string unit;                          ///< of all of them; empty where they differ or do not say
-    std::vector<Landmarks> configurations;     ///< one an object
-    std::vector<std::string> notes;            ///< which landmarks are left out, in words
+    std::vector<std::string> objects, labels;  ///< names and known labels of the objects whose landmarks could be read
+    std::vector<std::string> names;            ///< names of the landmarks, in the order of the first object that has them
+    std::string unit;                          ///< unit of all landmarks; empty if the units differ or are not given
+    std::vector<Landmarks> configurations;     ///< one per object
+    std::vector<std::string> notes;            ///< messages on the landmarks that are left out
     std::vector<OddSpecimen> odd;              ///< objects that were left out
 };
 
-/// Of what `read_object_landmarks` read. Left out as odd are objects with fewer than half of the usual landmarks (those that half
-/// of the objects have), and without `scaling` those in another unit than more than half of the objects. Throws Error (input)
-/// where no object could be read, for fewer than three landmarks in common, and without `scaling` for different units of which
-/// none is that of most; `where` is what the collection was read from.
+/// Landmarks common to the objects in `read`, the result of `read_object_landmarks`. Left out as odd are objects with fewer
+/// than half of the usual landmarks (those that at least half of the objects have) and, without `scaling`, objects in a unit
+/// other than the unit of more than half of the objects. Throws Error (input) if no object could be read, if fewer than three
+/// landmarks are common to all objects, and, without `scaling`, if units differ and none of them is the unit of more than half
+/// of the objects. `where` names the source of the collection in error messages.
 LandmarkShapes common_landmarks(const Collection& collection, const std::vector<ObjectResult>& read, bool scaling,
                                 const std::string& where);
 
-/// Objects whose landmarks are mirrored (their mirror image is less than half as far from the mean of the others), and those
-/// whose centroid size is more than three times the median, or less than a third. They stay in.
+/// Objects whose landmarks are mirrored (the mirror image is less than half as far from the mean of the others), and objects
+/// whose centroid size is more than three times the median or less than a third of it. These objects are not removed.
 std::vector<OddSpecimen> odd_specimens(const LandmarkShapes& shapes);
 
-/// The shapes without those of these names.
+/// The shapes without the objects listed in `odd`.
 LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<OddSpecimen>& odd);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Measures of the objects of a collection: a row an object, a column a measure.
+// Measures of the objects of a collection: one row per object, one column per measure.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -13,32 +13,33 @@ namespace ostraka {
 
 struct MeasureColumn {
     std::string name;
-    int power = 1;     ///< of the unit of length: 1 for a length, 2 for an area, 3 for a volume; 0 for what is none
-    std::string unit;  ///< of the values; for powers of a length set by `unify_units`
+    int power = 1;     ///< power of the unit of length: 1 length, 2 area, 3 volume; 0 for other quantities
+    std::string unit;  ///< unit of the values; for powers of a length set by `unify_units`
 };
 
 struct MeasureTable {
     std::vector<std::string> objects;
     std::vector<MeasureColumn> measures;
     Eigen::MatrixXd values;          ///< objects x measures; NaN where a measure is missing
-    std::vector<std::string> units;  ///< an object: the unit of its lengths, empty where it is not known
+    std::vector<std::string> units;  ///< one per object: unit of its lengths; empty if unknown
 };
 
-/// Lengths of the table in one unit.
+/// A table with all lengths in one unit.
 struct UnifiedMeasures {
-    MeasureTable table;              ///< values of powers of a length in the one unit, where the object's unit is known
-    std::vector<bool> comparable;    ///< an object: its lengths may stand beside those of the others
-    std::vector<std::string> notes;  ///< what was converted, what cannot be compared, in words
+    MeasureTable table;              ///< lengths, areas and volumes are in the common unit where the object's unit is known
+    std::vector<bool> comparable;    ///< one per object: whether its lengths can be compared with those of the others
+    std::vector<std::string> notes;  ///< messages on what was converted and what cannot be compared
 };
 
-/// Converts all lengths to the unit that most objects have (of equally many: mm, cm, m, in, then by name). Units of length are
-/// mm, cm, m, um, km, in, ft and their English names; another one can be compared with itself only. Where some objects have a
-/// unit, those without, or with one that cannot be converted, are not comparable: their ratios stay good. Where none has a unit
-/// all are. Throws Error (usage) where the table's sizes do not fit.
+/// Converts all lengths to the unit that most objects have (ties: mm, cm, m, in, then by name). Units of length are mm, cm, m,
+/// um, km, in, ft and their English names; any other unit is comparable only with itself. If some objects have a unit, objects
+/// without one or with one that cannot be converted are not comparable, but their ratios remain valid. If no object has a unit,
+/// all are comparable. Throws Error (usage) if the sizes of the table do not match.
 UnifiedMeasures unify_units(const MeasureTable& table);
 
-/// A population of measures with known proportions, for trying the study out. The logarithm of measure j of object i is
-/// centre_j + size_i + own_ij, all normal; measures of one group have the same `own` but for what the planted ratio varies.
+/// Options of a synthetic population of measures with known proportions, for testing the study. The logarithm of measure j of
+/// object i is centre_j + size_i + own_ij, all normally distributed; measures of one group share the same `own` except for the
+/// variation of the planted ratio.
 struct SyntheticMeasuresOptions {
     int objects = 40;
     int measures = 8;
@@ -56,9 +57,10 @@ struct SyntheticMeasuresOptions {
 
 struct SyntheticMeasures {
     MeasureTable table;
-    std::vector<int> groups;  ///< a measure: the group it belongs to, or -1
+    std::vector<int> groups;  ///< one per measure: its group, or -1
 };
-/// Throws Error (usage) for options out of range or groups that need more measures than there are.
+/// Generates the measures. Throws Error (usage) if an option is out of range or if the groups need more measures than there
+/// are.
 SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Heads compared, grouped, and what is to be said of each group and head.
+// Comparison and grouping of heads, with a summary of each group and head.
 #pragma once
 
 #include "ostraka/collection/moulds.h"
@@ -11,31 +11,31 @@ struct MouldStudy {
     MouldMatrices matrices;
     Eigen::MatrixXd distances;
     MouldGroups groups;
-    std::vector<ClusterStability> stability;  ///< one a group
-    std::vector<double> sizes;                ///< of the heads, against the mean of their group
+    std::vector<ClusterStability> stability;  ///< one per group
+    std::vector<double> sizes;                ///< size of each head relative to the mean of its group
 
     [[nodiscard]] int group_count() const;
-    /// Mean distance of a head to the members of a group, itself left out; NaN for none.
+    /// Mean distance of a head to the members of a group, excluding the head itself; NaN if there is no other member.
     [[nodiscard]] double mean_distance(std::size_t head, int group) const;
-    /// The nearest group that is not its own and the mean distance to it; -1 for none.
+    /// The nearest group other than the head's own and the mean distance to it; -1 if there is no other group.
     [[nodiscard]] std::pair<int, double> second_group(std::size_t head) const;
 };
 
-/// Distances by a similarity, groups by them, how stable these are, and the sizes of the heads. Throws as the functions of
-/// moulds.h do.
+/// Computes distances from a similarity, the groups, their stability, and the relative sizes of the heads. Throws the errors of
+/// the functions in moulds.h.
 MouldStudy study_moulds(MouldMatrices matrices, const std::string& similarity, const GroupOptions& group = {},
                         const StabilityOptions& stability = {});
 
 struct MouldGroupSummary {
     std::vector<std::string> members;
-    std::optional<double> within;      ///< mean distance of its members to each other; none for one head
-    std::optional<int> nearest;        ///< the group that is nearest by the mean of all distances; none where there is no other
-    std::optional<double> to_nearest;  ///< that mean
-    double silhouette = 0;             ///< mean of its members
+    std::optional<double> within;      ///< mean distance between members; none for a single head
+    std::optional<int> nearest;        ///< group with the smallest mean distance; none if there is no other group
+    std::optional<double> to_nearest;  ///< mean distance to the nearest group
+    double silhouette = 0;             ///< mean silhouette of the members
 };
 std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study);
 
-/// Adjusted Rand index of groups and known answers, over the heads whose answer is known (not empty).
+/// Adjusted Rand index between groups and known labels, over the heads whose label is known (not empty).
 double agreement_with_answers(const std::vector<int>& groups, const std::vector<std::string>& answers);
 
 }  // namespace ostraka

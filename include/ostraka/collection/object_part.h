@@ -1,4 +1,4 @@
-// Parts of the objects of a collection: annotated ones, or such as the toolkit proposes.
+// Parts of the objects of a collection: annotated parts, or parts proposed by the toolkit.
 #pragma once
 
 #include "ostraka/collection/objects.h"
@@ -17,30 +17,30 @@ struct PartOptions {
     void describe(OptionList& visit);
 };
 
-/// What a study looks at of each object.
+/// The part of an object that a study examines.
 struct ObjectPart {
     Mesh mesh;
-    std::vector<std::int32_t> face_labels;    ///< of its faces, where the file has labels
-    std::optional<std::array<double, 3>> up;  ///< as the annotations have it
-    std::exception_ptr annotations_error;     ///< why annotations that no part is asked of cannot be read; null if they can
+    std::vector<std::int32_t> face_labels;    ///< one per face, if the file has labels
+    std::optional<std::array<double, 3>> up;  ///< up direction from the annotations
+    std::exception_ptr annotations_error;     ///< why the annotations cannot be read, if not needed; null if read
 };
 
 class ObjectParts {
 public:
-    /// The checksum is that of the vocabulary that `words` compares by. Throws Error (usage) where a proposal and annotations are
-    /// both asked for.
+    /// `words_checksum` is the checksum of the vocabulary in `words`. Throws Error (usage) if both a proposal and annotations
+    /// are requested.
     explicit ObjectParts(PartOptions options = {}, TagWords words = TagWords(), std::string words_checksum = {});
 
-    /// The whole objects are meant.
+    /// Whether whole objects are selected.
     [[nodiscard]] bool whole() const;
-    /// What kept results depend on.
+    /// The options that stored results depend on.
     [[nodiscard]] std::vector<std::string> key() const;
-    /// Reads an object and cuts the part out, along its outlines. Regions of any of `annotations` (all, where there are none) but
-    /// those of `without`, which an object need not have. A proposal is cut off across `up` (else as the annotations have it,
-    /// else z): "tube" is the tubular part (slicing/slice_axes.h) of 100 slices; "top" is what is above the neck: the slice in
-    /// the upper half with the smallest radius against the largest below and the largest above it, at most 0.8 of both;
-    /// "segment" is the largest of the segments by thickness (select/scalars.h), of a closed object. Throws
-    /// Error (input), naming the file, where the object has no such part.
+    /// Reads an object and cuts out the selected part along its outlines: the regions of any of `annotations` (all of the mesh
+    /// if the list is empty) minus those of `without`, which the object need not have. A proposed part is cut off across `up`
+    /// (otherwise across the up direction of the annotations, otherwise z). "tube" is the tubular part (slicing/slice_axes.h)
+    /// found with 100 slices. "top" is the part above the neck: the slice in the upper half with the smallest radius relative
+    /// to the largest radii below and above it, at most 0.8 of both. "segment" is the largest segment by thickness
+    /// (select/scalars.h) of a closed object. Throws Error (input), naming the file, if the object has no such part.
     [[nodiscard]] ObjectPart read(const CollectionObject& object, const std::optional<std::array<double, 3>>& up = {}) const;
 
 private:

@@ -1,5 +1,5 @@
-// What is known of a generated statuette, as annotations: its parts, its landmarks and the four measures of the thesis's
-// Table 3.1.
+// The known properties of a generated statuette as annotations: its parts, its landmarks and the four measures of Table 3.1 of
+// the thesis.
 #pragma once
 
 #include "ostraka/annotation/annotation.h"
@@ -7,10 +7,10 @@
 
 namespace ostraka {
 
-/// The object itself (a region of all) carries the measures "total height" (bounding along z), "base diameter" (ruler), "arm
-/// length right" and "arm length left" (tape along the outside, exact) and "head height" (ruler), each with pins where its
-/// landmarks are, inside faces if need be, and valued on the mesh; measures whose landmarks are missing are left out. Then a
-/// region for each part and a point for each landmark. Unit mm, up z, class "votive statuette".
+/// The whole object (a region of all faces) carries the measures "total height" (bounding along z), "base diameter" (ruler),
+/// "arm length right" and "arm length left" (tape along the outside, exact) and "head height" (ruler). Their pins lie at the
+/// landmarks, inside faces if necessary, and their values are computed on the mesh; measures with missing landmarks are left
+/// out. A region follows for each part and a point for each landmark. Unit mm, up z, class "votive statuette".
 AnnotationSet annotate_statuette(const Statuette& statuette);
 
 }  // namespace ostraka

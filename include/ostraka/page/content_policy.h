@@ -1,4 +1,4 @@
-// What a content policy says of the scripts and styles that stand in a page itself.
+// Content security policy entries for the scripts and styles embedded in a page.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace ostraka {
 
-/// "'sha256-...'" for each `element` ("script" or "style") whose text stands in the page, separated by blanks: a policy that
-/// lists these runs what the page was built with, and nothing that came into it later. Scripts that are data and those in files
-/// of their own are left out.
+/// "'sha256-...'" for the text of each embedded `element` ("script" or "style") of the page, separated by blanks. A policy with
+/// these entries allows the code the page was built with and nothing added later. Data scripts and scripts in external files
+/// are left out.
 std::string inline_hashes(std::string_view page, std::string_view element);
 
 }  // namespace ostraka

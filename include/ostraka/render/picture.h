@@ -26,19 +26,19 @@ struct Picture {
     }
 };
 
-/// 16 bits a channel, the colour not multiplied by alpha: red, green, blue, alpha of each pixel, rows from the top.
+/// 16 bits per channel, not premultiplied: red, green, blue, alpha of each pixel, rows from the top.
 struct DeepPicture {
     int width = 0, height = 0;
     std::vector<std::array<std::uint16_t, 4>> rgba;
 };
 
-/// What a picture is made of: pixels, or a document whose lines and letters stay sharp at any size.
+/// Output format: pixels, or a vector document whose lines and letters stay sharp at any size.
 enum class PictureKind { pixels, svg, pdf };
 
-/// By the extension: .png, .svg, .pdf. Throws Error (usage) for another.
+/// Determined by the extension: .png, .svg, .pdf. Throws Error (usage) for any other extension.
 PictureKind picture_kind(const std::string& file);
 
-/// What cairo wrote, with the numbers in its names counted from 1: cairo counts what a process has drawn so far.
+/// The SVG written by cairo with the numbers in its identifiers renumbered from 1: cairo counts over the whole process.
 std::string stable_svg(const std::string& svg);
 
 /// "#rrggbb", "white", "black" or "grey". Throws Error (usage) for anything else.
@@ -46,7 +46,7 @@ Rgb parse_colour(const std::string& text);
 
 /// Writes a PNG file atomically. Throws Error (failure) if memory runs out.
 void write_png(const Path& file, const Picture& picture);
-/// With 16 bits a channel.
+/// The same with 16 bits per channel.
 void write_png(const Path& file, const DeepPicture& picture);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Where a picture is taken from.
+// View directions of pictures.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -9,10 +9,10 @@
 
 namespace ostraka {
 
-/// The viewer's place in degrees. Azimuth 0 is the front, 90 the object's right as it appears in the front view; elevation 90 is
+/// View direction in degrees. Azimuth 0 is the front, 90 the object's right as it appears in the front view; elevation 90 is
 /// above. The front is the side towards -y (towards +z if y is up or down).
 struct View {
-    std::string name;  ///< for labels
+    std::string name;  ///< name for labels
     double azimuth = 30, elevation = 20;
 };
 
@@ -20,10 +20,10 @@ struct View {
 /// Throws Error (usage) for anything else.
 View parse_view(const std::string& text);
 
-/// What `parse_view` takes, as the rule of an option.
+/// The values that `parse_view` accepts, as the rule of an option.
 Words view_words();
 
-/// What `--views` asks for: "six" gives front, right, back, left, top, bottom.
+/// The views of `--views six`: front, right, back, left, top, bottom.
 std::vector<View> standard_views();
 
 /// "x", "y", "z", "-x", "-y", "-z" or three numbers "0,0.6,0.8"; "auto" is z. Unit length. Throws Error (usage).

@@ -1,4 +1,4 @@
-// A tree with brackets beside it: annotations and their relationships.
+// A tree of annotations with brackets for their relationships.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -18,16 +18,16 @@ struct BracketGraph {
     };
     struct Bracket {
         std::string type;
-        std::vector<std::size_t> rows;  ///< what it joins
-        int lane = 0;                   ///< from inside
-        bool strong = false;            ///< a constraint
-        bool directed = false;          ///< from the first of its rows
+        std::vector<std::size_t> rows;  ///< indices of the joined rows
+        int lane = 0;                   ///< counted outwards, 0 is the innermost
+        bool strong = false;            ///< whether it is a constraint
+        bool directed = false;          ///< whether it is directed, from its first row
     };
-    std::vector<Row> rows;  ///< each below what contains it
+    std::vector<Row> rows;  ///< in preorder: each row comes after the row that contains it
     std::vector<Bracket> brackets;
 };
 
-/// Writes it as .svg, .pdf or .png, atomically, folders and all. Throws Error (usage) for another ending.
+/// Writes the graph as .svg, .pdf or .png, atomically, creating folders. Throws Error (usage) for any other extension.
 void write_plot(const Path& file, const BracketGraph& graph);
 
 }  // namespace ostraka

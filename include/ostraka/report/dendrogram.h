@@ -1,4 +1,4 @@
-// Trees of clusters.
+// Dendrograms: plots of trees of clusters.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -13,18 +13,19 @@ namespace ostraka {
 struct Dendrogram {
     std::string title;
     Linkage tree;
-    std::vector<std::string> names;         ///< of the samples
-    std::string label = "distance";         ///< of the axis
-    std::optional<double> cut = {};         ///< a dashed line at this height
-    std::string cut_label = {};             ///< words at that line
-    std::vector<int> groups = {};           ///< of the samples, from 0; empty: those of the cut, or one a sample; numbered from 1
-    std::vector<std::string> classes = {};  ///< known answers, a coloured mark beside each name; empty, or one a sample
+    std::vector<std::string> names;  ///< one per sample
+    std::string label = "distance";  ///< label of the axis
+    std::optional<double> cut = {};  ///< draws a dashed line at this height
+    std::string cut_label = {};      ///< text at that line
+    /// One per sample, from 0; empty: the groups of the cut, or one group per sample; displayed from 1.
+    std::vector<int> groups = {};
+    std::vector<std::string> classes = {};  ///< known labels, shown as a coloured mark beside each name; empty, or one per sample
 };
 
-/// Writes it as an SVG, or as a PNG of twice the size where the file's name ends in .png, atomically, folders and all: a row a
-/// sample, merges to the right. Branches within a group are strong, and its number stands at each; they have colours of their own
-/// where no classes are shown, whose colours would be mistaken for theirs. Throws Error (input) for a tree without samples or
-/// whose merges are none, Error (usage) where names, classes or groups are not one a sample.
+/// Writes the dendrogram as an SVG, or as a PNG of twice the size if the file name ends in .png, atomically, creating folders:
+/// one row per sample, merges to the right. Branches within a group are bold, with the group number at each group. Groups have
+/// their own colours unless class colours, which could be confused with them, are shown. Throws Error (input) for a tree
+/// without samples or with invalid merges, Error (usage) unless names, classes and groups have one entry per sample.
 void write_plot(const Path& file, const Dendrogram& dendrogram);
 
 }  // namespace ostraka

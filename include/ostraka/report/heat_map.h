@@ -1,4 +1,4 @@
-// Matrices as coloured squares.
+// Heat maps of matrices.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -15,15 +15,15 @@ struct HeatMap {
     std::string title;
     Eigen::MatrixXd values;  ///< NaN: no value, drawn grey
     std::vector<std::string> rows, columns;
-    std::string label;                                 ///< what the numbers are, with their unit
-    std::optional<double> minimum = {}, maximum = {};  ///< of the colours; else those of the finite values
-    bool numbers = false;                              ///< written into the squares, where these are large enough
-    std::vector<int> groups = {};  ///< of rows and columns, or none: lines are drawn between different neighbours
+    std::string label;                                 ///< name of the quantity, with its unit
+    std::optional<double> minimum = {}, maximum = {};  ///< colour range; by default that of the finite values
+    bool numbers = false;          ///< whether the numbers are written into the squares, if these are large enough
+    std::vector<int> groups = {};  ///< groups of rows and columns, or empty: lines separate neighbours of different groups
 };
 
-/// Writes it as an SVG, or as a PNG of twice the size where the file's name ends in .png, atomically, folders and all: square
-/// fields, as small as it takes to keep the map at about 800 points. Throws Error (input) for a matrix without a finite value,
-/// Error (usage) where names or groups are not one a row and column.
+/// Writes the heat map as an SVG, or as a PNG of twice the size if the file name ends in .png, atomically, creating folders.
+/// The cells are square, and as small as needed to keep the map at about 800 points. Throws Error (input) for a matrix without
+/// a finite value, Error (usage) unless names and groups have one entry per row and column.
 void write_plot(const Path& file, const HeatMap& map);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Texts from outside within Markdown: whatever they hold, they stay text, also where the Markdown becomes HTML.
+// Escaping of untrusted text in Markdown: it stays text, also where the Markdown becomes HTML.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 
 namespace ostraka {
 
-/// One line: what breaks lines or steers becomes a blank, and marks of Markdown and HTML are escaped.
+/// A single line: line breaks and control characters become blanks, and Markdown and HTML markup is escaped.
 std::string markdown_text(std::string_view text);
 
-/// As `markdown_text` for each line; an empty line begins a paragraph, and no line begins a list, a rule or a heading.
+/// Like `markdown_text` for each line; an empty line starts a paragraph, and no line starts a list, a rule or a heading.
 std::string markdown_paragraphs(std::string_view text);
 
-/// The name of a file below the page, as the address of a link or a picture.
+/// The name of a file below the page, escaped for use as the address of a link or a picture.
 std::string markdown_file(std::string_view name);
 
 }  // namespace ostraka

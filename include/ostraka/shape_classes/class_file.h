@@ -1,4 +1,4 @@
-// A learnt class as files: NAME.class.json (doc/schema/class.schema.json), its mean and modes as NumPy arrays beside it.
+// Files of a learnt class: NAME.class.json (doc/schema/class.schema.json), with its mean and modes as NumPy arrays beside it.
 #pragma once
 
 #include "ostraka/shape_classes/classify.h"
@@ -6,15 +6,15 @@
 
 namespace ostraka {
 
-/// Throws Error (usage) for a name that no file can have. To be called before any work.
+/// Throws Error (usage) if the name is not a valid file name. Call it before any other work.
 void check_class_name(const std::string& name);
 
-/// Writes FOLDER/NAME.class.json, NAME.mean.npy (a row a vertex) and, where there are modes, NAME.modes.npy (a row a mode), each
-/// atomically; `NAME` is the class's. Throws Error (usage) for a name that is no file's name.
+/// Writes FOLDER/NAME.class.json, NAME.mean.npy (one row per vertex) and, if there are modes, NAME.modes.npy (one row per
+/// mode), each atomically; NAME is the name of the class. Throws Error (usage) if the name is not a valid file name.
 void write_class(const Path& folder, const ShapeClass& learnt, const Provenance& provenance);
 
-/// Reads a class; its arrays stand beside it. Throws Error (input) naming file and place: a schema that is not met, an array that
-/// is missing or has other sizes, a mean, modes or coefficients that do not go together, an archetype that is no member.
+/// Reads a class and the arrays beside it. Throws Error (input), naming file and place, if the schema is violated, an array is
+/// missing or has the wrong size, the mean, modes and coefficients are inconsistent, or the archetype is not a member.
 ShapeClass read_class(const Path& file);
 
 /// The report of a classification (doc/schema/classification.schema.json).

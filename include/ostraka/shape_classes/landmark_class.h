@@ -1,4 +1,4 @@
-// Classes of landmarks: members are files of landmarks of the same names, without a surface.
+// Landmark classes: members are landmark files with the same landmark names, without a surface.
 #pragma once
 
 #include "ostraka/core/file.h"
@@ -6,10 +6,10 @@
 
 namespace ostraka {
 
-/// By its ending: .mrk.json, .fcsv, .tps, .pp.
+/// Tests the extension: .mrk.json, .fcsv, .tps, .pp.
 bool is_landmark_file(const Path& file);
 
-/// Landmarks as a template: a vertex for each, no faces.
+/// A template made of landmarks: one vertex per landmark, no faces.
 struct LandmarkTemplate {
     std::vector<std::string> names;
     Mesh mesh;
@@ -18,14 +18,14 @@ struct LandmarkTemplate {
     RelationGraph graph;  ///< empty
     [[nodiscard]] ClassTemplate known() const { return {mesh, set, graph}; }
 };
-/// Throws Error (input) naming the file: fewer than four landmarks, two of one name.
+/// Throws Error (input), naming the file, for fewer than four landmarks or two landmarks of the same name.
 LandmarkTemplate read_landmark_template(const Path& file);
 
-/// The template's landmarks, found by their names; others are noted. Throws Error (input) that names file and landmark where one
-/// is missing, or the unit is another.
+/// Reads a member and matches its landmarks to the template's by name; additional landmarks are noted. Throws Error (input),
+/// naming file and landmark, if a landmark is missing or the unit differs.
 LearntMember read_landmark_member(const Path& file, const LandmarkTemplate& known);
 
-/// The mean as a landmark file (.mrk.json).
+/// Writes the mean as a landmark file (.mrk.json).
 void write_landmark_mean(const Path& file, const LandmarkTemplate& known, const Landmarks& mean, const Provenance& provenance);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Members of a class, and classes with their templates, as files.
+// Files of members of a class, and of classes with their templates.
 #pragma once
 
 #include "ostraka/shape_classes/class_file.h"
@@ -6,25 +6,25 @@
 
 namespace ostraka {
 
-/// The name of an object: its file's without folder and ending (".mrk.json" is one ending).
+/// The name of an object: its file name without folder and extension (".mrk.json" is one extension).
 std::string object_name(const Path& file);
-/// Throws Error (usage) where two files have one name without folder and ending.
+/// Throws Error (usage) if two files have the same name without folder and extension.
 void check_object_names(const std::vector<std::string>& files);
 
-/// A mesh file and the annotations beside it (NAME.ant.json), if there are.
+/// Reads a mesh file and the annotations beside it (NAME.ant.json), if they exist.
 WholeObject read_member(const Path& file);
 
-/// A template with a mesh as that of a class. It outlives what is returned.
+/// The template of a class, from a template with a mesh. `package` must outlive the result.
 ClassTemplate class_template(const Template& package);
 
-/// A class with its template, or with its landmarks.
+/// A class with its template or its landmarks.
 struct ClassWithTemplate {
     ShapeClass learnt;
     Template package;
     std::optional<LandmarkTemplate> landmarks;
     [[nodiscard]] ClassTemplate known() const { return landmarks ? landmarks->known() : class_template(package); }
 };
-/// Throws Error (input) as read_class, check_usable and check_topology do.
+/// Throws the Errors (input) of read_class, check_usable and check_topology.
 ClassWithTemplate read_class_with_template(const Path& file);
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// What is measured of a member of a class: its constraints, proportions, relations and attributes, and its geometry.
+// Quantities measured on a member of a class: its constraints, proportions, relations and attributes, and its geometry.
 #pragma once
 
 #include "ostraka/relation/graph.h"
@@ -8,55 +8,55 @@
 
 namespace ostraka {
 
-/// In the order in which reasons are reported.
+/// Ordered as reasons are reported.
 enum class QuantityKind { proportion, constraint, relation, part, attribute, geometry };
 std::string to_string(QuantityKind kind);
-/// Throws Error (usage) for another word.
+/// Throws Error (usage) for an unknown word.
 QuantityKind quantity_kind(const std::string& word);
 
-/// One number of a member.
+/// One measured value of a member.
 struct ClassQuantity {
     QuantityKind kind = QuantityKind::geometry;
-    int id = -1;             ///< of the relationship, or of the annotation an attribute belongs to
+    int id = -1;             ///< id of the relationship, or of the annotation of an attribute
     std::string name;        ///< "little finger / ring finger", "height", "distance" ...
     std::string of;          ///< type of the relationship, tag of the annotation
-    std::string unit = {};   ///< "" for shares and ratios
-    bool one_sided = false;  ///< a residual: less is never worse
+    std::string unit = {};   ///< empty for shares and ratios
+    bool one_sided = false;  ///< a residual: smaller is never worse
     std::optional<double> value = {};
 
-    /// Who it is the same quantity as, on another member.
+    /// Identifies the same quantity on another member.
     [[nodiscard]] std::string key() const;
-    /// For people.
+    /// Display name.
     [[nodiscard]] std::string text() const;
 };
 
-/// The template of a class. What is named outlives it.
+/// The template of a class. The referenced objects must outlive it.
 struct ClassTemplate {
     const Mesh& mesh;
     const AnnotationSet& set;
     const RelationGraph& graph;
 };
 
-/// The points (a row a vertex) carried to where the template is: turned and shifted onto it, and without `sizes` brought to its
-/// centroid size, so that relations, stated ranges and the upward direction mean what they mean on the template.
+/// Moves the points (one row per vertex) to the frame of the template by rotation and translation and, without `sizes`, scales
+/// them to its centroid size, so that relations, stated ranges and the up direction have the same meaning as on the template.
 std::vector<Point> in_template_frame(const Mesh& mesh, const std::vector<Point>& points, bool sizes);
 Landmarks landmarks_of(const std::vector<Point>& points);
 std::vector<Point> points_of(const Landmarks& landmarks);
 
-/// All that is measured on the annotations of the template at the given points: of each proportion the ratio of its measures and
-/// what it is out of range (per cent), of the other constraints and of the geometric relations their deviations (these in the
-/// frame of the template), of attributes the values of measures and descriptors of one number, in the points' own unit. The list
-/// and its order are those of the template, whatever the points. What cannot be measured has no value.
+/// Measures everything defined on the annotations of the template at the given points: for each proportion the ratio of its
+/// measures and its deviation from the range (per cent); the deviations of the other constraints and of the geometric relations
+/// (these in the frame of the template); scalar measures and descriptors of the attributes, in the unit of the points. The list
+/// and its order depend only on the template. A quantity that cannot be measured has no value.
 std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes);
 
 /// The residuals of a fit as quantities of kind geometry: "distance", "distance back", "unmatched", "unexplained", "stretch",
 /// "bend"; without values in correspondence.
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals);
-/// The same of an object's own surface: "compactness", "geodesic mean", "geodesic most", "geodesic variation", "second", "fourth"
-/// and "sixth far point", "thickness mean", "thickness median", "thickness most".
+/// Quantities of kind geometry of an object's own surface: "compactness", "geodesic mean", "geodesic most", "geodesic
+/// variation", "second", "fourth" and "sixth far point", "thickness mean", "thickness median", "thickness most".
 std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape);
 
-/// "unmatched" and "unexplained": never above 1.
+/// Whether the quantity is "unmatched" or "unexplained", which never exceed 1.
 bool is_share_of_surface(const ClassQuantity& quantity);
 
 }  // namespace ostraka

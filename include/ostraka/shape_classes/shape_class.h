@@ -1,4 +1,5 @@
-// A class of objects learnt from members: ranges of what is measured, mean shape, modes of variation, thresholds (thesis 1.2).
+// A class of objects learnt from members: ranges of measured quantities, mean shape, modes of variation, thresholds (thesis
+// 1.2).
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -23,119 +24,120 @@ struct LearnOptions {
     void describe(OptionList& visit);
 };
 
-/// The values that one quantity has on the members, and what is accepted of another object.
+/// The values of one quantity on the members, and the range accepted for other objects.
 struct LearntRange {
     ClassQuantity quantity;                             ///< without value
-    std::vector<std::optional<double>> values;          ///< of each member; geometry against the others: each left out
-    std::vector<std::optional<double>> strangers = {};  ///< of each stranger
+    std::vector<std::optional<double>> values;          ///< one per member; relative to other members: leave-one-out
+    std::vector<std::optional<double>> strangers = {};  ///< one per out-of-class object
     std::size_t count = 0;
     double min = 0, max = 0, mean = 0;
     double percentile_5 = 0, percentile_25 = 0, median = 0, percentile_75 = 0, percentile_95 = 0;
-    std::optional<double> deviation;  ///< standard deviation; none of a single value
-    bool logarithm = false;           ///< its logarithm counts as normal: what is positive on all members, but for constraints
-    double reject = 0;                ///< share of members that it alone refuses; 0: it does not decide
-    std::optional<double> low, high;  ///< accepted; none where nothing can be learnt, no low of a residual
-    /// Of what is unlike the members: above it an object is not recognised, though only what is above `high` is refused.
+    std::optional<double> deviation;  ///< standard deviation; none for a single value
+    bool logarithm = false;           ///< whether its logarithm is taken as normal: positive values, except constraints
+    double reject = 0;                ///< rate at which this quantity alone rejects members; 0: it cannot reject
+    std::optional<double> low, high;  ///< accepted range; none if it cannot be learnt; a residual has no low
+    /// Dissimilarity only: above it an object is not recognised, but only above `high` is it rejected.
     std::optional<double> recognised = {};
 };
 
 struct ClassMember {
     std::string name, placed_by;
-    double scale = 1;  ///< of the template
+    double scale = 1;  ///< scale of the template
     std::vector<std::string> notes;
 };
 
-/// Cross products of deviations within classes, by the keys of the quantities.
+/// Within-class cross products of deviations, indexed by the keys of the quantities.
 struct Dependence {
     std::map<std::string, Eigen::Index> rows;
     Eigen::MatrixXd products;
-    double freedom = 0;  ///< members less classes
+    double freedom = 0;  ///< degrees of freedom: number of members minus number of classes
 };
 
 struct ShapeClass {
     std::string name;
-    std::string template_file;  ///< beside the class's file
+    std::string template_file;  ///< in the folder of the class file
     bool sizes = false;
     std::vector<ClassMember> members;
     std::vector<LearntRange> ranges;
-    std::vector<LearntRange> fragments;  ///< what members say of the thresholds for fragments (fragment_thresholds.h)
-    std::string topology;                ///< of the template's mesh (topology_checksum)
+    std::vector<LearntRange> fragments;  ///< ranges for the fragment thresholds (fragment_thresholds.h)
+    std::string topology;                ///< topology_checksum of the template's mesh
     ShapeModes modes;
-    std::vector<std::string> strangers;   ///< objects that do not belong to it, whose values the ranges have
-    double unsure = 0.15, accept = 0.05;  ///< of LearnOptions
-    /// How off the template may be on an object (FitResiduals::off) as members are: none of members in correspondence.
+    std::vector<std::string> strangers;   ///< names of the out-of-class objects, whose values are in the ranges
+    double unsure = 0.15, accept = 0.05;  ///< from LearnOptions
+    /// Upper bound of FitResiduals::off for members; none if the members are in correspondence.
     std::optional<double> most_off;
-    std::map<std::string, VariancePrior> variances;  ///< by key, of the classes that are asked together; not kept in files
-    std::optional<Dependence> dependence;            ///< of those classes; as above
-    double diversity = 0;                            ///< mean distance between two members, as a share of the mean size
-    double reject = 0.05, resolution = 0.02;         ///< of LearnOptions
-    std::vector<std::string> notes;                  ///< what could not be learnt, in words
+    std::map<std::string, VariancePrior> variances;  ///< by key, from the classes that are queried together; not kept in files
+    std::optional<Dependence> dependence;            ///< from the classes that are queried together; not kept in files
+    double diversity = 0;                            ///< mean distance between two members, relative to the mean size
+    double reject = 0.05, resolution = 0.02;         ///< from LearnOptions
+    std::vector<std::string> notes;                  ///< messages on what could not be learnt
 
     [[nodiscard]] const LearntRange* find(const std::string& key) const;
-    /// Thresholds were learnt: there are three members or more. Of two the deviation is known to nobody (Student's distribution
-    /// with one degree of freedom has no mean).
+    /// Whether thresholds were learnt, which needs at least three members. Two members do not determine a deviation (Student's
+    /// distribution with one degree of freedom has no mean).
     [[nodiscard]] bool has_thresholds() const { return members.size() >= min_members; }
     static constexpr std::size_t min_members = 3;
 };
 
-/// Whether the template is registered to `member` as it is or by a fit.
+/// Registers the template to `member`, by correspondence or by a fit.
 MemberFit fit_by_method(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
                         const MemberFitOptions& options);
 
 struct LearntMember {
     std::string name;
     MemberFit fit;
-    std::vector<ClassQuantity> quantities;  ///< all but what refers to the other members
-    std::vector<ClassQuantity> fragments;   ///< of pieces of it (fragment_quantities)
+    std::vector<ClassQuantity> quantities;  ///< all quantities except those relative to other members
+    std::vector<ClassQuantity> fragments;   ///< quantities of its pieces (fragment_quantities)
 };
-/// The fit of one member and all that is measured of it alone. `whole` spares measuring the surface anew where many templates are
-/// registered to one object.
+/// Fits one member and measures everything that does not depend on other members. `whole`, if given, saves measuring the
+/// surface again when several templates are registered to one object.
 LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options = {},
                           const WholeShape* whole = nullptr);
 
-/// What is measured of a member that the template was registered to already: with its own annotations, where it has regions, and
-/// those of the template.
+/// Measures a member to which the template is already registered: its own annotations where it has regions, and those of the
+/// template.
 LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit,
                             const LearnOptions& options = {}, const WholeShape* whole = nullptr);
 
-/// Puts the members together. Those with a problem are left out and said. `strangers` are objects that do not belong to the
-/// class: what is measured of them says up to where an object is recognised. Throws Error (input) if no member is left.
+/// Learns a class from its members. Members with a problem are left out, and a note reports it. `strangers` are out-of-class
+/// objects: their values determine up to which dissimilarity an object is recognised. Throws Error (input) if no member is
+/// left.
 ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options = {},
                        const std::vector<LearntMember>& strangers = {});
 
-/// Sets of each range whether it decides, its share of `reject`, and what is accepted: the prediction interval (`predict`) of
-/// its values or their logarithms, one-sided for residuals. The rate is shared by the kinds of quantities that there are, and by
-/// the quantities of each kind (Bonferroni), so that it holds however they depend on each other. Of single parts nothing decides,
-/// nor of what counts for unlikeness (unlikeness.h), only of all together. Attributes get bounds as if they were a kind, which
-/// comes on top where they are specified to decide.
+/// Sets, for each range, whether it can reject, its share of `reject`, and the accepted range: the prediction interval
+/// (`predict`) of its values or their logarithms, one-sided for residuals. The rate is divided among the kinds of quantities
+/// present and among the quantities of each kind (Bonferroni), so that it holds for any dependence between them. Quantities of
+/// single parts, and those that enter the dissimilarity (unlikeness.h), only reject in combination. Attributes get bounds as if
+/// they were a kind of their own; their rate is additional if they are set to decide.
 void learn_thresholds(ShapeClass& learnt);
 
-/// The same for classes that are asked together: what a quantity of geometry or of parts together varies by is moderated by how
-/// much it varies in the other classes (`variance_prior`), where three classes or more have it. Unlikeness is measured anew with
-/// that, and with how quantities depend on each other in all of them; what members and strangers show of it counts for all of
-/// them, and they share the rate at which strangers are accepted.
+/// The same for classes that are queried together. The variance of a geometry quantity, or of the combined parts, is moderated
+/// by its variance in the other classes (`variance_prior`) if at least three classes have it. The dissimilarity is computed
+/// again with these variances and with the dependence of quantities pooled over the classes. Its values on members and
+/// out-of-class objects are pooled too, and the classes share the rate at which out-of-class objects are accepted.
 void moderate_thresholds(std::vector<ShapeClass>& classes);
 
-/// What is measured of single parts put together, as residuals of kind `part`: "sizes of the parts", "places of the parts";
-/// `worst` is the range that is farthest off.
+/// The quantities of single parts, combined into residuals of kind `part`: "sizes of the parts", "places of the parts"; `worst`
+/// is the index of the range that is farthest off.
 struct PartsTogether {
     ClassQuantity quantity;
     std::size_t worst = 0;
-    double expected = 0;  ///< of that range
+    double expected = 0;  ///< expected value of that range
 };
-/// `values` and `expected` are one a range.
+/// `values` and `expected` have one entry per range.
 std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges,
                                           const std::vector<std::optional<double>>& values,
                                           const std::vector<std::optional<double>>& expected);
-/// The geometric mean of the members' values of each range of a part; nothing of others. `without`: one of them is left out.
+/// The geometric mean of the members' values for each range of a part; none for other ranges. `without` leaves out one member.
 std::vector<std::optional<double>> expected_parts(const std::vector<LearntRange>& ranges,
                                                   std::optional<std::size_t> without = {});
 
-/// Mean distance between all pairs of shapes in correspondence, each registered to the mean of the class, as a share of its mean
+/// Mean distance over all pairs of shapes in correspondence, each registered to the mean of the class, relative to its mean
 /// size.
 double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes);
 
-/// What `fit` takes for the shape of what fragments do not show.
+/// The prior that `fit` uses for the shape not covered by fragments.
 ShapePrior prior_of(const ShapeModes& modes);
 
 }  // namespace ostraka

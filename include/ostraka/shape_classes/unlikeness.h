@@ -1,52 +1,53 @@
-// How unlike the members of a class an object is: all quantities of geometry in one number.
+// Dissimilarity of an object to the members of a class: all geometry quantities combined into one number.
 #pragma once
 
 #include "ostraka/shape_classes/shape_class.h"
 
 namespace ostraka {
 
-/// Mean of the absolute deviations of the logarithms (of shares: of the logits) of what is measured from the members' means, each
-/// in standard deviations of one more member: s sqrt(1 + 1/n), s^2 with `resolution` squared added and moderated by `priors`.
-/// Residuals count above the mean only. Where `learnt.dependence` is known the deviations are decorrelated first, so that what
-/// several quantities say together counts once: z becomes R^-1/2 z (zero-phase component analysis: Kessy, Lewin and Strimmer
-/// 2018), R the correlation within classes with the weight of its degrees of freedom, and none at all with that of as many as
-/// there are quantities; what an object lacks counts as the mean. 0 for an object like the mean; near 1 for members.
+/// Mean absolute deviation of the logarithms (logits for shares) of the quantities from the members' means, each in standard
+/// deviations of one more member: s sqrt(1 + 1/n), where s^2 includes `resolution` squared and is moderated by `priors`.
+/// Residuals count only above the mean. If `learnt.dependence` is known, the deviations are decorrelated first, so that
+/// dependent quantities are not counted several times: z becomes R^-1/2 z (zero-phase component analysis: Kessy, Lewin and
+/// Strimmer 2018). R is the within-class correlation weighted by its degrees of freedom, shrunk towards the identity with the
+/// number of quantities as weight. A missing quantity counts as the mean. The value is 0 for an object equal to the mean and
+/// near 1 for members.
 struct Unlikeness {
     double value = 0;
-    std::size_t count = 0;  ///< quantities
-    std::size_t worst = 0;  ///< which of the ranges is farthest off, before deviations are decorrelated
-    double off = 0;         ///< that one's deviation, in standard deviations, with its sign
+    std::size_t count = 0;  ///< number of quantities
+    std::size_t worst = 0;  ///< index of the range that is farthest off, before decorrelation
+    double off = 0;         ///< signed deviation of that range, in standard deviations
 };
 
-/// `values`: one a range. `without`: one of the members is left out of means and deviations. Nothing where fewer than three
-/// quantities have a value and two members' values or more.
+/// `values` has one entry per range. `without` leaves one member out of means and deviations. None unless at least three
+/// quantities have a value here and on at least two members.
 std::optional<Unlikeness> unlikeness(const ShapeClass& learnt, const std::vector<std::optional<double>>& values,
                                      std::optional<std::size_t> without = {});
 
-/// Whether a quantity counts for it: residuals of the fit and numbers of the whole surface.
+/// Whether a quantity enters the dissimilarity: residuals of the fit and measures of the whole surface.
 bool counts_for_unlikeness(const ClassQuantity& quantity);
-/// Mean and variance of what counts as normal of the members' values.
+/// Mean and variance of the members' values on the scale that is taken as normal.
 SampleMoments unlikeness_moments(const LearntRange& range, std::optional<std::size_t> without = {});
 
-/// How what counts for unlikeness depends on each other within classes that are asked together: cross products of the members'
-/// deviations from their class's means.
+/// Dependence of the quantities that enter the dissimilarity, within classes that are queried together: cross products of the
+/// members' deviations from the means of their classes.
 Dependence dependence_of(const std::vector<ShapeClass>& classes);
 
-/// The name of the range of the members' own values, each by the others.
+/// Name of the range of the members' own dissimilarities, computed leave-one-out.
 inline constexpr const char* unlike_the_members = "unlike the members";
 
-/// Sets the members' and the strangers' values of that range, which is made if it is missing; nothing for fewer than three
-/// members.
+/// Sets the values of the members and out-of-class objects in that range, which is added if missing; does nothing for fewer
+/// than three members.
 void measure_unlikeness(ShapeClass& learnt);
 
-/// Logarithms of the strangers' values.
+/// Logarithms of the values of the out-of-class objects.
 std::vector<double> stranger_logs(const LearntRange& range);
 
-/// Up to which unlikeness an object is recognised as a member, where more refuses nothing yet: what at most the share `accept` of
-/// strangers falls below (three strangers or more; several classes that are asked together share it), else what at most the
-/// share `unsure` of members exceeds, and half a deviation at least. `members` and `strangers` are the moments of the logarithms
-/// of their values. Never above `range.high`, which strangers lower: what is as unlike as they are on average (geometric mean) is
-/// refused.
+/// Sets the dissimilarity up to which an object is recognised as a member; larger values alone do not reject it. With at least
+/// three out-of-class objects the bound is the value below which at most the share `accept` of them falls (classes that are
+/// queried together share this rate); otherwise it is the value that at most the share `unsure` of members exceeds, and at
+/// least half a deviation. `members` and `strangers` are the moments of the logarithms of their values. The bound never exceeds
+/// `range.high`, which out-of-class objects lower: objects as dissimilar as they are on average (geometric mean) are rejected.
 void set_recognised(LearntRange& range, const SampleMoments& members, const SampleMoments& strangers, double accept,
                     double unsure);
 

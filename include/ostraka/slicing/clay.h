@@ -1,4 +1,4 @@
-// How much clay an object holds when its inside was seen in part, or not at all.
+// Clay volume of an object whose inside was scanned in part, or not at all.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -16,32 +16,33 @@ struct ClayOptions {
     void describe(OptionList& visit);
 };
 
-/// Volumes in the mesh's unit cubed. NaN: not known.
+/// Volumes in the mesh's unit cubed. NaN: unknown.
 struct ClayVolume {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    double maximum = 0;        ///< what is not seen is clay; unknown if no slice has an outline
-    double minimum = unknown;  ///< what is not seen is hollow but for a wall; unknown if no wall is seen or given
-    double envelope = 0;       ///< within the outer surface, cavities filled; unknown where contours cross
-    double wall = unknown;     ///< that `minimum` goes by, in the mesh's unit
-    /// The wall where both its sides are seen: mean of the slices' means; of their least and of their largest distances of its
-    /// sides the 5 and the 95 % quantile, since a plane that grazes a floor or a rim tells nothing of a wall.
+    double maximum = 0;        ///< unseen regions count as clay; unknown if no slice has an outline
+    double minimum = unknown;  ///< unseen regions count as hollow except for a wall; unknown if no wall is seen or given
+    double envelope = 0;       ///< volume within the outer surface, cavities filled; unknown where contours cross
+    double wall = unknown;     ///< wall thickness used for `minimum`, in the mesh's unit
+    /// Wall thickness where both sides of the wall are seen: mean of the slices' means, 5 % quantile of the slices' minima, 95
+    /// % quantile of their maxima. Quantiles are used because a plane that grazes a floor or a rim does not show the wall
+    /// thickness.
     double wall_mean = unknown, wall_min = unknown, wall_max = unknown;
-    int slices = 0;           ///< that meet the object
-    int with_cavity = 0;      ///< of them, those with a hole all of whose outline is seen
-    int without_outline = 0;  ///< of them, those whose outer contours are all open: taken as between their neighbours for
-                              ///< `maximum` and `envelope`, as nothing for `minimum`
-    int crossing = 0;  ///< of them, those whose contours cross so that they have no area: `maximum` takes all of them one by one,
-                       ///< or their convex hull if that is less; nothing for `minimum`
-    int turned = 0;    ///< of them, those with contours that were read against their orientation
-    bool reversed = false;  ///< the mesh is closed and inside out, and was read the other way round
+    int slices = 0;           ///< number of slices that meet the object
+    int with_cavity = 0;      ///< number of these slices with a hole whose whole outline is seen
+    int without_outline = 0;  ///< number of these slices whose outer contours are all open: interpolated from their neighbours
+                              ///< for `maximum` and `envelope`, zero for `minimum`
+    int crossing = 0;  ///< number of these slices whose contours cross, so that areas are undefined: `maximum` takes the sum of
+                       ///< all contours or their convex hull, whichever is smaller; zero for `minimum`
+    int turned = 0;    ///< number of these slices with contours whose orientation was reversed
+    bool reversed = false;  ///< whether the mesh is closed and inside out, and was reversed
 };
 
-/// Sums over slices (middles of layers of equal height). In a slice whose cavity is seen the material's area counts. Elsewhere
-/// each outer contour of area A may hide a cavity: between its A and A - pi (r - t)^2 of clay, r the radius of the circle of area
-/// A and t the wall: by the inequality of Brunn and Minkowski no contour with a wall of t or more all around holds less, and a
-/// disc holds just that. What lies within t of the lowest and of the highest place is wall. t is `wall_min` if none is given.
-/// Contours within others and open ones count for nothing. Error of the sum: second order in the height of a layer, away from
-/// flat tops. Throws as `slice_mesh`, and Error (usage) for options.
+/// Sums over slices, the mid-planes of layers of equal height. In a slice whose cavity is seen, the area of the material
+/// counts. Elsewhere each outer contour of area A may hide a cavity: it holds between A and A - pi (r - t)^2 of clay, where r
+/// is the radius of the circle of area A and t the wall thickness. By the Brunn-Minkowski inequality no contour with a wall of
+/// at least t all around holds less, and a disc attains the bound. Everything within t of the lowest and of the highest point
+/// is wall. t is `wall_min` if none is given. Nested and open contours are ignored. Error of the sum: second order in the layer
+/// height, except at flat tops. Throws the errors of `slice_mesh`, and Error (usage) for invalid options.
 ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Random numbers that are the same with every compiler and library.
+// Random numbers that are identical for every compiler and library.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace ostraka {
 
-/// Draws from std::mt19937_64, whose numbers the standard fixes, as it does not for its distributions. Streams of one seed are
-/// independent of each other: give each restart, resample or object its own, and their order does not matter.
+/// Draws from std::mt19937_64; its output is fixed by the standard, unlike that of the standard distributions. Streams of one
+/// seed are independent: give each restart, resample or object its own stream, so that their order does not matter.
 class Random {
 public:
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0);
 
     /// 64 random bits.
     std::uint64_t bits() { return engine_(); }
-    /// Evenly from [0, 1), a multiple of 2^-53.
+    /// Uniform on [0, 1), a multiple of 2^-53.
     double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
-    /// Evenly from 0 to count - 1; count > 0.
+    /// Uniform on 0 to count - 1; count > 0.
     std::size_t below(std::size_t count);
-    /// From the normal distribution with mean 0 and deviation 1 (Box and Muller 1958).
+    /// Normal with mean 0 and standard deviation 1 (Box and Muller 1958).
     double normal();
     double normal(double mean, double deviation) { return mean + deviation * normal(); }
 
@@ -40,8 +40,8 @@ private:
     bool has_spare_ = false;
 };
 
-/// The counter's number in the seed's sequence (SplitMix64; Steele, Lea and Flood 2014), in [0, 1): for what must not depend on
-/// how much was drawn before.
+/// Element `counter` of the seed's sequence (SplitMix64; Steele, Lea and Flood 2014), in [0, 1): independent of the number of
+/// previous draws.
 double random_share(std::uint64_t seed, std::uint64_t counter);
 
 }  // namespace ostraka

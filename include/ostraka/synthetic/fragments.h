@@ -1,4 +1,4 @@
-// Fragments of a mesh whose pose and place on the whole are known exactly.
+// Synthetic fragments of a mesh, with known pose and position on the whole.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -10,26 +10,27 @@
 namespace ostraka {
 
 struct BreakOptions {
-    double share = 0.25;     ///< of the surface
-    double roughness = 0.1;  ///< of the break: waves of its line, as a share of the fragment's size
-    double noise = 0;        ///< standard deviation of each vertex along its normal, as a share of the whole's diagonal
-    double erosion = 0;      ///< width of the rim that is worn away, as a share of the whole's diagonal
-    bool moved = true;       ///< turned and shifted at random
+    double share = 0.25;     ///< fraction of the surface area
+    double roughness = 0.1;  ///< amplitude of the waves of the fracture line, relative to the fragment's size
+    double noise = 0;        ///< standard deviation of the vertex displacement along the normal, relative to the whole's diagonal
+    double erosion = 0;      ///< width of the eroded strip along the fracture, relative to the whole's diagonal
+    bool moved = true;       ///< apply a random rigid motion
     std::uint64_t seed = 1;
 
     void describe(OptionList& visit);
 };
 
 struct BrokenPiece {
-    Mesh mesh;                    ///< one piece, open where it broke
-    std::vector<Index> vertices;  ///< of the whole, for each vertex
-    std::vector<Index> faces;     ///< of the whole, for each face
-    Motion pose;                  ///< from the piece back onto the whole
+    Mesh mesh;                    ///< a single piece, open at the fracture
+    std::vector<Index> vertices;  ///< one per vertex: index of the vertex of the whole
+    std::vector<Index> faces;     ///< one per face: index of the face of the whole
+    Motion pose;                  ///< motion from the piece back to the whole
 };
 
-/// The faces nearest to `centre`, in distances that waves of chance stretch, until they have the share of the area (the piece
-/// that holds the nearest face); then what lies near the break is taken away; then noise and motion. Throws Error (input) for a
-/// mesh without area, (usage) for options out of range, (failure) where nothing is left.
+/// Selects the faces nearest to `centre`, by a distance distorted by random waves, until they cover the requested share of the
+/// area, and keeps the connected piece that contains the nearest face. Then removes the eroded strip along the fracture and
+/// applies noise and motion. Throws Error (input) for a mesh without area, (usage) for options out of range, (failure) if
+/// nothing is left.
 BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions& options = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Casts of heads as they come to us: each pressed, shrunk, worn, scanned and cut on its own.
+// Casts of heads as they are found: each individually pressed, shrunk, worn, scanned and cut.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -9,18 +9,18 @@
 
 namespace ostraka {
 
-/// Height of a head without hat and neck, mm: what shares of the head's height refer to.
+/// Height of a head without hat and neck, mm. Values relative to the head's height refer to it.
 inline constexpr double head_height = 44;
 
 struct CastOptions {
-    double wear = 0;       ///< standard deviation of the smoothing, as a share of the head's height
-    double pressure = 0;   ///< stretch and bend of the soft clay
-    double shrinkage = 0;  ///< linear, of the cast against its archetype
-    double noise = 0;      ///< of the scan, as a share of the head's height
-    double beard = 0;      ///< share of the casts that bear one
-    double chunk = 0;      ///< share of the casts that miss a piece
-    int dents = 0;         ///< on the front, up to
-    bool body = false;     ///< the head stands on a body of its own, and nothing is broken off
+    double wear = 0;       ///< standard deviation of the smoothing, relative to the head's height
+    double pressure = 0;   ///< stretching and bending of the soft clay
+    double shrinkage = 0;  ///< linear shrinkage of the cast relative to its archetype
+    double noise = 0;      ///< scan noise, relative to the head's height
+    double beard = 0;      ///< fraction of the casts with a beard
+    double chunk = 0;      ///< fraction of the casts with a missing piece
+    int dents = 0;         ///< maximum number of dents on the front
+    bool body = false;     ///< the head has a body of its own, and nothing is broken off
     bool keep_pose = false;
     std::uint64_t vertices = 10000;
     std::uint64_t seed = 1;
@@ -28,21 +28,21 @@ struct CastOptions {
     void describe(OptionList& visit);
 };
 
-/// A cast, and what was drawn for it.
+/// A cast with its random parameters.
 struct HeadCast {
-    Mesh mesh;  ///< closed but for the neck, where it was broken off from its body, and a missing piece
-    std::vector<std::int32_t> face_labels;  ///< as head_part_names()
+    Mesh mesh;  ///< closed except at the neck, where it was broken off from its body, and at a missing piece
+    std::vector<std::int32_t> face_labels;  ///< indices into head_part_names()
     double wear = 0, shrinkage = 0;         ///< as drawn
     bool beard = false, chunk = false;
-    std::array<double, 3> up{0, 0, 1};  ///< in its pose
+    std::array<double, 3> up{0, 0, 1};  ///< up direction in its pose
 };
 
-/// One cast. Its front is the archetype's; its back, its beard and its dents are made anew for every cast. Order of what befalls
-/// it: dents and beard in the solid, meshed on its own, worn, bent and stretched, shrunk, scanned with noise, broken, turned and
-/// moved. Throws Error (usage) for options out of range or too few vertices.
+/// Generates one cast. Its front is the archetype's; its back, beard and dents are new for every cast. Order of operations:
+/// dents and beard in the solid, meshing, wear, bending and stretching, shrinkage, scan noise, breakage, rigid motion. Throws
+/// Error (usage) for options out of range or too few vertices.
 HeadCast cast_head(const HeadShape& shape, const CastOptions& options = {});
 
-/// One whole population.
+/// Options of a population.
 struct MouldPopulationOptions {
     int objects = 40;
     int moulds = 4;
@@ -53,14 +53,14 @@ struct MouldPopulationOptions {
     void describe(OptionList& visit);
 };
 
-/// What one head of a population is made of.
+/// Specification of one head of a population.
 struct PlannedHead {
     std::string name;   ///< head-001 ...
-    std::string mould;  ///< mould-1 ...; "hand" and the hat for those formed by hand
+    std::string mould;  ///< mould-1 ...; "hand" and the hat for hand-formed heads
     HeadShape shape;
     CastOptions cast;
 };
-/// The plan: heads dealt to the moulds in turn and named in an order drawn by the seed, so that names tell nothing.
+/// Plans a population: heads are assigned to the moulds in turn and named in random order, so that names carry no information.
 std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, const CastOptions& cast);
 
 }  // namespace ostraka

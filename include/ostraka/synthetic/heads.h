@@ -1,4 +1,4 @@
-// Heads of terracotta figurines whose moulds are known: archetypes, and casts of them as they come to us.
+// Heads of terracotta figurines with known moulds: archetypes and their casts.
 #pragma once
 
 #include "ostraka/core/options.h"
@@ -11,11 +11,11 @@
 
 namespace ostraka {
 
-/// The labels of a head's parts.
+/// Labels of the parts of a head.
 enum class HeadPart { face, nose, eyes, mouth, chin, hair, ears, hat, beard, back, neck, stump, body };
 std::vector<std::string> head_part_names();
 
-/// Proportions of a head 44 mm high, x forward, y to its left, z up, in mm.
+/// Proportions of a head 44 mm high, in mm; x forward, y to its left, z up.
 struct HeadShape {
     enum class Hat { none, pointed, truncated, turban } hat = Hat::none;
     bool long_hair = false;
@@ -29,10 +29,10 @@ struct HeadShape {
     double mouth_height = 11.2, mouth_width = 4.2, lip = 0.95, smile = 0.7;
     double hair_line = 36, hair_thickness = 2.2, curl = 0.3;
     int curls = 11;
-    int lock_ridges = 12;  ///< of long hair
+    int lock_ridges = 12;  ///< on long hair
     double lock_width = 3.3, lock_forward = 0;
     double ear_height = 21.5, ear_size = 3.6;
-    /// What the archetype has by accident: shifts of the features to one side (mm) and low bumps.
+    /// Accidental features of the archetype: lateral shifts of features (mm) and low bumps.
     double nose_skew = 0, mouth_skew = 0, eye_skew = 0;
     struct Bump {
         double y, z, radius, height;
@@ -42,35 +42,35 @@ struct HeadShape {
 
 struct ArchetypeOptions {
     bool long_hair = false;
-    bool hand_made = false;  ///< freely formed, with a hat: proportions vary by 1.6 times as much
-    double difference = 1;   ///< how far archetypes lie apart: 1 = proportions vary by about 8 % (standard deviation)
+    bool hand_made = false;  ///< freely formed, with a hat: proportions vary 1.6 times as much
+    double difference = 1;   ///< variation between archetypes: 1 = standard deviation of proportions of about 8 %
     std::uint64_t seed = 1;
 
     void describe(OptionList& visit);
 };
-/// Draws an archetype.
+/// Generates a random archetype.
 HeadShape head_archetype(const ArchetypeOptions& options);
 
-/// What is formed by hand on one cast: the back of the head, a beard, dents.
+/// Hand-formed features of one cast: the back of the head, a beard, dents.
 struct HandWork {
-    double back_depth = 0, back_width = 0;  ///< mm added to the skull behind the mould's reach
+    double back_depth = 0, back_width = 0;  ///< mm added to the skull behind the area of the mould
     bool beard = false;
     double beard_width = 6, beard_length = 7, beard_forward = 2, beard_skew = 0;
     struct Dent {
         double y, z, radius, depth;
     };
-    std::vector<Dent> dents;            ///< on the front
-    double cut_back = 0;                ///< x of the plane, mm, behind which all is `back`; negative is behind the ears
+    std::vector<Dent> dents;  ///< on the front
+    double cut_back = 0;      ///< x of the plane behind which everything is `back`, mm; negative values are behind the ears
     double cut_tilt = 0, cut_turn = 0;  ///< slopes of that plane
-    /// The body that the head stands on, a flared tube; height 0: none.
+    /// The body of the head, a flared tube; height 0: none.
     struct Body {
         double height = 0, base = 18, radius = 13, shoulder = 15;
-        /// Of its surface, roughly.
+        /// Approximate area of its surface.
         [[nodiscard]] double area() const;
     } body;
 };
 
-/// The solid: parts as head_part_names(). The front is the archetype's, the rest as the hand work says.
+/// The solid, with parts as in head_part_names(). The front comes from the archetype, the rest from the hand work.
 std::unique_ptr<const SyntheticObject> head_object(const HeadShape& shape, const HandWork& work = {});
 
 }  // namespace ostraka

@@ -1,4 +1,4 @@
-// Objects made of blended implicit solids, whose semantic parts are known at every point of the surface.
+// Objects composed of blended implicit solids, with known semantic parts at every point of the surface.
 #pragma once
 
 #include "ostraka/core/mesh.h"
@@ -12,20 +12,20 @@
 
 namespace ostraka {
 
-/// A solid of an object, blended into those before it.
+/// A solid of an object, blended with the previous solids.
 struct Member {
     SolidPointer solid;
-    double blend = 0;     ///< width of the smooth union (or of the smooth cut), mm; 0 gives a crease
-    bool carves = false;  ///< cut away instead of added; the walls it leaves belong to the nearest other member
+    double blend = 0;     ///< width of the smooth union (or of the smooth difference), mm; 0 gives a crease
+    bool carves = false;  ///< subtracted instead of added; the resulting walls belong to the nearest other member
     struct Stretch {
-        double until;  ///< parameter of the solid up to which the part reaches
+        double until;  ///< parameter of the solid at which the part ends
         int part;
     };
-    std::vector<Stretch> stretches;  ///< in increasing order; the last reaches to the end
+    std::vector<Stretch> stretches;  ///< in increasing order; the last extends to the end
 };
 
-/// A flower in low relief: where the distance from `axis` through `centre` is below the petal curve
-/// radius (1 + petal_depth cos(petals angle)), the surface is raised by up to `height`.
+/// A flower in low relief: where the distance from `axis` through `centre` is below the petal curve radius (1 + petal_depth
+/// cos(petals angle)), the surface is raised by up to `height`.
 struct Relief {
     Eigen::Vector3d centre, axis;
     double radius, height, petal_depth;
@@ -45,10 +45,10 @@ public:
     std::vector<std::string> parts;  ///< the index is the label; each part is one connected patch
     std::vector<std::array<std::uint8_t, 3>> part_colours;
     int genus = 0;
-    std::size_t minimum_vertices = 300;  ///< fewer cannot hold the shape
+    std::size_t minimum_vertices = 300;  ///< minimum number of vertices that represents the shape
     double thinnest =
         std::numeric_limits<double>::infinity();     ///< thinnest wall or gap, mm: a coarser lattice would tear or bridge it
-    std::optional<double> exact_area, exact_volume;  ///< where a formula is known
+    std::optional<double> exact_area, exact_volume;  ///< if a formula is known
     std::vector<Member> members;
     std::vector<Relief> reliefs;
     std::vector<Cut> cuts;
@@ -59,22 +59,22 @@ public:
     [[nodiscard]] double value(const Point& p) const { return sample({p.x(), p.y(), p.z()}).value; }
     [[nodiscard]] Vector gradient(const Point& p) const;
 
-    /// Largest amount by which reliefs move the surface.
+    /// Maximum displacement of the surface by reliefs.
     [[nodiscard]] double slack() const;
 
-    /// Label of the part at a point of the surface (or close to it): the member with the smallest value there, its
-    /// stretch, then reliefs and cuts. The boundaries are piecewise smooth curves.
+    /// Label of the part at a point on or near the surface: of the member with the smallest value there and its stretch, then
+    /// of reliefs and cuts. The boundaries are piecewise smooth curves.
     [[nodiscard]] int part(const Eigen::Vector3d& p) const;
     [[nodiscard]] int part(const Point& p) const { return part(Eigen::Vector3d(p.x(), p.y(), p.z())); }
 
-    /// The surface point reached by following the gradient from `p`, which must be near the surface.
+    /// Projects `p`, which must be near the surface, onto the surface along the gradient.
     [[nodiscard]] Eigen::Vector3d project(const Eigen::Vector3d& p) const;
     [[nodiscard]] Point project(const Point& p) const;
 
-    /// Box that holds the surface.
+    /// Bounding box of the surface.
     [[nodiscard]] const Eigen::AlignedBox3d& box() const { return box_; }
 
-    /// To be called once when all members stand: keeps their boxes.
+    /// Stores the bounding boxes. Call it once, after adding all members.
     void finish();
 
 private:
@@ -84,9 +84,9 @@ private:
     double margin_ = 0;
 };
 
-/// Names in alphabetical order.
+/// All names, in alphabetical order.
 std::vector<std::string> synthetic_object_names();
-/// Throws Error (usage) for an unknown name, with the nearest known one.
+/// The object with this name. Throws Error (usage) for an unknown name, suggesting the nearest known name.
 const SyntheticObject& synthetic_object(const std::string& name);
 
 }  // namespace ostraka
