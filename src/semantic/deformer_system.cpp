@@ -151,7 +151,9 @@ void Deformer::solve_mesh(Outcome& outcome) {
     DeformOptions near = options_;
     if (!neighbours_give_) near.spread /= 3;
     add_closeness(beside, closeness(near, space_.mesh, edge), edited_, 0, rest_, list);
-    add_closeness(yielding, std::min(options_.handles, 81 * closeness(near, space_.mesh, edge)), edited_, 0, rest_, list);
+    // Moved parts are as firm in relation to the surroundings of other parts, whether these are held nearer or not.
+    const double firmness = closeness(beside.empty() ? options_ : near, space_.mesh, edge);
+    add_closeness(yielding, std::min(options_.handles, 81 * firmness), edited_, 0, rest_, list);
     add_closeness(held, options_.handles, edited_, 0, rest_, list);
     add_displacements(space_.mesh, options_.laplacian, options_.details == DeformOptions::Details::rest ? rest_ : edited_,
                       rotating_, sizes_->empty() ? nullptr : &*sizes_, list);
