@@ -9,7 +9,7 @@ namespace ostraka {
 
 namespace {
 
-Path folder_of(const std::string& file) { return std::filesystem::absolute(Path(file)).parent_path(); }
+Path folder_of(const std::string& file) { return resolved(std::filesystem::absolute(Path(file)).parent_path()); }
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void FileAttribute::write(AnnotationSet set, int holder, const Slot& file, const
     const Source& written = file.sources.front();
     place->descriptor.file = written.file.empty() || output_.sources.front().file.empty()
                                  ? Path(file.file()).filename().string()
-                                 : std::filesystem::absolute(written.file).lexically_relative(folder_of(output_.file())).string();
+                                 : resolved(written.file).lexically_relative(folder_of(output_.file())).string();
     report("annotation", annotation.id)("attribute", called);
     report.line(name_of(annotation) + " has the attribute '" + printable(called, 60) + "' in '" +
                 printable(place->descriptor.file, 60) + "'");

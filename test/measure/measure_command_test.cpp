@@ -214,10 +214,12 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
 }
 
 TEST_F(MeasureCommand, AMapThatIsNoAttributeIsRefused) {
+    make_folder(scratch / "in");
     const std::string map = "map " + cube.string() + " ";
     const std::string here = (scratch / "a.npy").string(), out = " --annotations-out " + (scratch / "a.ant.json").string();
     refused(map + (scratch / "a.txt").string() + " --of thickness" + out, 2, "end its name in .npy");
-    refused(map + "/tmp/a.npy --of thickness" + out, 2, "outside of the folder");
+    refused(map + here + " --of thickness --annotations-out " + (scratch / "in" / "a.ant.json").string(), 2,
+            "outside of the folder");
     refused(map + here + " --of thickness --name bumps", 2, "--annotations-out");
     refused(map + here + " --of thickness --annotations " + annotated.string(), 2, "none are written");
     refused(map + here + " --of thickness --annotation side" + out, 2, "add --annotations");
