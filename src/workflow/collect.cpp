@@ -8,6 +8,8 @@
 #include "ostraka/report/markdown.h"
 #include "ostraka/report/plot.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -17,7 +19,7 @@ namespace ostraka {
 namespace {
 
 const JsonValue* at_path(const JsonValue& value, const std::string& path) {
-    if (const JsonValue* whole = find_member(value, path)) return whole;
+    if (const JsonValue* member = find_member(value, path)) return member;
     const std::size_t dot = path.find('.');
     if (dot == std::string::npos) return nullptr;
     const JsonValue* inner = find_member(value, path.substr(0, dot));
@@ -38,7 +40,7 @@ std::string cell_text(const JsonValue& value, int digits_shown, bool percent) {
     if (value.IsString() || value.IsBool()) return scalar_text(value);
     if (!value.IsArray()) return to_compact_text(value);
     std::vector<std::string> texts;
-    for (const auto& one : value.GetArray()) texts.push_back(cell_text(one, digits_shown, percent));
+    for (const auto& element : value.GetArray()) texts.push_back(cell_text(element, digits_shown, percent));
     return joined(texts, ", ");
 }
 
@@ -116,9 +118,9 @@ private:
         }
         if (rows.empty()) return add_row(i, report, Json());
         const JsonValue* result = find_member(report, "result");
-        const JsonValue* list = result == nullptr ? nullptr : at_path(*result, rows);
-        if (list == nullptr || !list->IsArray()) return;
-        for (const auto& row : list->GetArray()) add_row(i, report, row);
+        const JsonValue* rows_value = result == nullptr ? nullptr : at_path(*result, rows);
+        if (rows_value == nullptr || !rows_value->IsArray()) return;
+        for (const auto& row : rows_value->GetArray()) add_row(i, report, row);
     }
 
     void add_row(std::size_t i, const JsonValue& report, const JsonValue& row) {
@@ -139,9 +141,9 @@ private:
         table_.cells.push_back(std::move(cells));
     }
 
-    void add_column(const std::string& title, int shown) {
+    void add_column(const std::string& title, int digits_shown) {
         table_.columns.push_back(title);
-        table_.digits.push_back(shown);
+        table_.digits.push_back(digits_shown);
         table_.percent.push_back(false);
     }
 
@@ -153,19 +155,21 @@ private:
 
     Json parameter_cell(const StudyInstance& instance, const std::string& text) const {
         const StudyText parts = study_text(text, "");
-        if (const StudyReference* one = parts.single()) return copy_of(plan_.value(instance, *one));
-        std::string all;
+        if (const StudyReference* reference = parts.single()) return copy_of(plan_.value(instance, *reference));
+        std::string text_value;
         for (const auto& part : parts.parts)
-            if (const auto* literal = std::get_if<std::string>(&part)) all += *literal;
-            else if (const JsonValue* value = plan_.value(instance, std::get<StudyReference>(part))) all += scalar_text(*value);
-        return text_cell(all);
+            if (const auto* literal = std::get_if<std::string>(&part)) text_value += *literal;
+            else if (const JsonValue* value = plan_.value(instance, std::get<StudyReference>(part)))
+                text_value += scalar_text(*value);
+        return text_cell(text_value);
     }
 
     /// Merges rows that agree in all columns without a statistic.
     void summarise() {
         std::vector<std::string> statistics;
         for (const auto& column : list_in(description_, "columns")) statistics.push_back(text_in(column, "statistic"));
-        if (std::all_of(statistics.begin(), statistics.end(), [](const std::string& one) { return one.empty(); })) return;
+        if (std::all_of(statistics.begin(), statistics.end(), [](const std::string& statistic) { return statistic.empty(); }))
+            return;
         std::vector<std::vector<Json>> groups;
         std::vector<std::vector<std::vector<double>>> values;
         std::map<std::string, std::size_t> places;
@@ -194,7 +198,7 @@ private:
     void add_beside() {
         const JsonValue* beside = find_member(description_, "beside");
         if (beside == nullptr) return;
-        const std::size_t own = table_.columns.size();
+        const std::size_t measured_columns = table_.columns.size();
         for (const auto& row : beside->GetArray())
             for (const auto& member : row.GetObject())
                 if (const std::string title = text_of(member.name); table_.column(title) == table_.columns.size()) {
@@ -205,12 +209,13 @@ private:
             for (const auto& row : beside->GetArray()) {
                 bool agrees = true;
                 for (const auto& member : row.GetObject())
-                    if (const std::size_t c = table_.column(text_of(member.name)); c < own)
+                    if (const std::size_t c = table_.column(text_of(member.name)); c < measured_columns)
                         agrees =
                             agrees && !cells[c].IsNull() && cell_text(cells[c], 17, false) == cell_text(member.value, 17, false);
                 if (!agrees) continue;
                 for (const auto& member : row.GetObject())
-                    if (const std::size_t c = table_.column(text_of(member.name)); c >= own) cells[c] = copy_of(&member.value);
+                    if (const std::size_t c = table_.column(text_of(member.name)); c >= measured_columns)
+                        cells[c] = copy_of(&member.value);
             }
         }
     }
@@ -231,11 +236,11 @@ Plot plot_of(const JsonValue& description, const StudyTable& table) {
     std::vector<std::string> ys;
     if (const JsonValue& y = *find_member(description, "y"); y.IsString()) ys.push_back(text_of(y));
     else
-        for (const auto& one : y.GetArray()) ys.push_back(text_of(one));
+        for (const auto& y_column : y.GetArray()) ys.push_back(text_of(y_column));
     plot.y.label = joined(ys);
     if (const JsonValue* axes = find_member(description, "logarithmic"))
         for (const auto& axis : axes->GetArray()) (text_of(axis) == "x" ? plot.x : plot.y).logarithmic = true;
-    const std::string by = text_in(description, "series");
+    const std::string series_column = text_in(description, "series");
     const bool named = std::any_of(table.cells.begin(), table.cells.end(), [&](const auto& row) { return !row[x].IsNumber(); });
     std::map<std::string, std::size_t> places;
     for (std::size_t r = 0; r < table.cells.size(); ++r) {
@@ -243,15 +248,15 @@ Plot plot_of(const JsonValue& description, const StudyTable& table) {
         double at = 0;
         if (named) {
             const std::string name = cell_text(row[x], 6, false);
-            const auto known = std::find(plot.x.names.begin(), plot.x.names.end(), name);
-            at = static_cast<double>(known - plot.x.names.begin());
-            if (known == plot.x.names.end()) plot.x.names.push_back(name);
+            const auto category = std::find(plot.x.names.begin(), plot.x.names.end(), name);
+            at = static_cast<double>(category - plot.x.names.begin());
+            if (category == plot.x.names.end()) plot.x.names.push_back(name);
         } else {
             at = row[x].GetDouble();
         }
         for (const std::string& y : ys) {
             const std::size_t c = table.column(y);
-            std::string series = by.empty() ? "" : cell_text(row[table.column(by)], 6, false);
+            std::string series = series_column.empty() ? "" : cell_text(row[table.column(series_column)], 6, false);
             if (ys.size() > 1) series += (series.empty() ? "" : ", ") + y;
             const auto [place, is_new] = places.emplace(series, plot.series.size());
             if (is_new) plot.series.push_back({.name = series, .joined = !named});
@@ -287,23 +292,23 @@ TextTable StudyTable::text() const {
     return table;
 }
 
-std::size_t StudyTable::column(const std::string& wanted) const {
-    return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), wanted) - columns.begin());
+std::size_t StudyTable::column(const std::string& wanted_title) const {
+    return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), wanted_title) - columns.begin());
 }
 
 std::vector<StudyTable> collect_tables(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder) {
-    std::vector<StudyTable> made;
+    std::vector<StudyTable> tables_of_study;
     if (const JsonValue* tables = find_member(*plan.study.document, "tables"))
         for (const auto& member : tables->GetObject())
-            made.push_back(TableMaker(plan, results, folder, text_of(member.name), member.value).make());
-    return made;
+            tables_of_study.push_back(TableMaker(plan, results, folder, text_of(member.name), member.value).make());
+    return tables_of_study;
 }
 
 std::vector<std::string> write_collected(const StudyPlan& plan, const std::vector<InstanceResult>& results, const Path& folder,
                                          const std::function<Path(const std::string&)>& write) {
     const Study& study = plan.study;
     std::vector<std::string> names;
-    const auto put = [&](const std::string& name, const std::string& text) {
+    const auto write_text = [&](const std::string& name, const std::string& text) {
         write_file(write(name), text);
         names.push_back(name);
     };
@@ -312,10 +317,10 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
     std::map<std::string, StudyTable> tables;
     for (StudyTable& table : collect_tables(plan, results, folder)) {
         const TextTable text = table.text();
-        put(table.name + ".csv", text.csv());
-        put(table.name + ".md", text.markdown());
-        put(table.name + ".tex", text.latex(table.title));
-        parts[table.name] = (table.title.empty() ? "" : "**" + markdown_text(table.title) + "**\n\n") +
+        write_text(table.name + ".csv", text.csv());
+        write_text(table.name + ".md", text.markdown());
+        write_text(table.name + ".tex", text.latex(table.title));
+        parts[table.name] = (table.title.empty() ? "" : fmt::format("**{}**\n\n", markdown_text(table.title))) +
                             (table.note.empty() ? "" : markdown_paragraphs(table.note) + "\n\n") +
                             (text.size() == 0 ? "Nothing to show yet.\n" : text.markdown());
         order.push_back(table.name);
@@ -329,11 +334,13 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
             if (!has_points(plot)) continue;
             write_plot(write(name + ".svg"), plot);
             names.push_back(name + ".svg");
-            parts[name] = "![" + markdown_text(plot.title.empty() ? name : plot.title) + "](" + markdown_file(name) + ".svg)\n";
+            parts[name] =
+                fmt::format("![{}]({}.svg)\n", markdown_text(plot.title.empty() ? name : plot.title), markdown_file(name));
         }
     // Titles and texts of a study are plain text: their markup is escaped.
-    std::string page = "# " + markdown_text(study.title.empty() ? study.file.filename().string() : study.title) + "\n";
-    if (const std::string note = text_in(*study.document, "note"); !note.empty()) page += "\n" + markdown_paragraphs(note) + "\n";
+    std::string page = fmt::format("# {}\n", markdown_text(study.title.empty() ? study.file.filename().string() : study.title));
+    if (const std::string note = text_in(*study.document, "note"); !note.empty())
+        page += fmt::format("\n{}\n", markdown_paragraphs(note));
     const auto show = [&](const std::string& name) {
         if (const auto known = parts.find(name); known != parts.end()) {
             page += "\n" + known->second;
@@ -348,24 +355,27 @@ std::vector<std::string> write_collected(const StudyPlan& plan, const std::vecto
             if (output == outputs.end() || !output->second.kept) continue;
             const std::string file = (plan.instances[i].folder / output->second.file).generic_string();
             const bool is_picture = file.ends_with(".png") || file.ends_with(".svg");
-            page += "\n" + std::string(is_picture ? "!" : "") + "[" + markdown_text(plan.instances[i].title(study)) + "](<" +
-                    markdown_file(file) + ">)\n";
+            page += fmt::format("\n{}[{}](<{}>)\n", is_picture ? "!" : "", markdown_text(plan.instances[i].title(study)),
+                                markdown_file(file));
         }
     };
     const auto sections = list_in(*study.document, "page");
     for (const auto& section : sections) {
-        if (const std::string title = text_in(section, "title"); !title.empty()) page += "\n## " + markdown_text(title) + "\n";
-        if (const std::string text = text_in(section, "text"); !text.empty()) page += "\n" + markdown_paragraphs(text) + "\n";
-        for (const auto& one : list_in(section, "show")) show(text_of(one));
+        if (const std::string title = text_in(section, "title"); !title.empty())
+            page += fmt::format("\n## {}\n", markdown_text(title));
+        if (const std::string text = text_in(section, "text"); !text.empty())
+            page += fmt::format("\n{}\n", markdown_paragraphs(text));
+        for (const auto& shown_name : list_in(section, "show")) show(text_of(shown_name));
     }
     if (sections.Empty())
         for (const std::string& name : order) show(name);
     std::string problems;
     for (std::size_t i = 0; i < results.size(); ++i)
         if (results[i].state == InstanceState::failed)
-            problems += "- " + markdown_text(plan.instances[i].title(study) + ": " + results[i].problem) + "\n";
+            problems +=
+                fmt::format("- {}\n", markdown_text(fmt::format("{}: {}", plan.instances[i].title(study), results[i].problem)));
     if (!problems.empty()) page += "\n## What failed\n\n" + problems;
-    put("page.md", page);
+    write_text("page.md", page);
     return names;
 }
 

@@ -3,6 +3,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -63,8 +65,9 @@ public:
     Json make(const std::vector<std::string>& collected) {
         crate_.SetObject();
         JsonValue context(rapidjson::kArrayType);
-        for (const char* one : {"https://w3id.org/ro/crate/1.1/context", "https://w3id.org/ro/terms/workflow-run/context"})
-            context.PushBack(json_string(one, allocator_), allocator_);
+        for (const char* context_url :
+             {"https://w3id.org/ro/crate/1.1/context", "https://w3id.org/ro/terms/workflow-run/context"})
+            context.PushBack(json_string(context_url, allocator_), allocator_);
         JsonValue terms = json_object(allocator_, "sha256", "https://w3id.org/ro/terms/workflow-run#sha256");
         context.PushBack(terms, allocator_);
         add_members(crate_, allocator_, "@context", std::move(context));
@@ -77,10 +80,10 @@ public:
                           allocator_);
         const std::string title = plan_.study.title.empty() ? plan_.study.file.filename().string() : plan_.study.title;
         std::string note = text_in(*plan_.study.document, "note");
-        if (note.empty()) note = "What 'ostraka run' made of the study " + plan_.study.file.filename().string();
+        if (note.empty()) note = "Results of 'ostraka run' for the study " + plan_.study.file.filename().string();
         entities.PushBack(json_object(allocator_, "@id", "./", "@type", "Dataset", "name", title, "description", note,
                                       "datePublished", latest_.empty() ? "1970-01-01T00:00:00Z" : latest_, "license",
-                                      "Of the results: as of the data that they were made from", "conformsTo",
+                                      "The licence of the input data applies to the results", "conformsTo",
                                       json_list_of(id_of(profile, allocator_), allocator_), "hasPart", std::move(parts_),
                                       "mentions", std::move(mentions_)),
                           allocator_);
@@ -96,37 +99,39 @@ public:
     }
 
 private:
-    void add_file(const Path& name, const std::string& sum, const std::string& what) {
+    void add_file(const Path& name, const std::string& checksum, const std::string& description) {
         const std::string id = uri_of(name);
-        if (!known_.insert(id).second) return;
+        if (!entity_ids_.insert(id).second) return;
         parts_.PushBack(id_of(id, allocator_), allocator_);
         JsonValue file = json_object(allocator_, "@id", id, "@type", "File", "name", name.filename().string(), "encodingFormat",
                                      media_type(name.string()));
-        if (!what.empty()) add_members(file, allocator_, "description", what);
-        if (!sum.empty())
-            add_members(file, allocator_, "sha256", sum, "contentSize", std::to_string(size_of_file(folder_ / name)));
+        if (!description.empty()) add_members(file, allocator_, "description", description);
+        if (!checksum.empty())
+            add_members(file, allocator_, "sha256", checksum, "contentSize", std::to_string(size_of_file(folder_ / name)));
         graph_.PushBack(file, allocator_);
     }
 
-    std::string add_content(const std::string& sum, const std::string& name) {
-        std::string id = content_id(sum);
-        if (known_.insert(id).second)
-            graph_.PushBack(json_object(allocator_, "@id", id, "@type", "CreativeWork", "name", name, "sha256", sum), allocator_);
+    std::string add_content(const std::string& checksum, const std::string& name) {
+        std::string id = content_id(checksum);
+        if (entity_ids_.insert(id).second)
+            graph_.PushBack(json_object(allocator_, "@id", id, "@type", "CreativeWork", "name", name, "sha256", checksum),
+                            allocator_);
         return id;
     }
 
-    std::string output_id(std::size_t i, const OutputRecord& output, const std::string& what) {
+    std::string output_id(std::size_t i, const OutputRecord& output, const std::string& description) {
         const Path file = plan_.instances[i].folder / output.file;
         if (!output.kept) return add_content(output.sha256, output.file);
         if (!output.is_folder) {
-            add_file(file, output.sha256, what);
+            add_file(file, output.sha256, description);
             return uri_of(file);
         }
         std::string id = uri_of(file) + "/";
-        if (known_.insert(id).second) {
+        if (entity_ids_.insert(id).second) {
             parts_.PushBack(id_of(id, allocator_), allocator_);
-            graph_.PushBack(json_object(allocator_, "@id", id, "@type", "Dataset", "name", output.file, "description", what),
-                            allocator_);
+            graph_.PushBack(
+                json_object(allocator_, "@id", id, "@type", "Dataset", "name", output.file, "description", description),
+                allocator_);
         }
         return id;
     }
@@ -137,8 +142,8 @@ private:
         const bool is_made = result.state == InstanceState::done || result.state == InstanceState::unchanged;
         if (!is_made && result.state != InstanceState::failed) return;
         const StudyStep& step = plan_.study.steps[instance.step];
-        const std::string what = step.operation != nullptr ? step.operation->name : instance.program.front();
-        JsonValue objects(rapidjson::kArrayType), made(rapidjson::kArrayType);
+        const std::string program_name = step.operation != nullptr ? step.operation->name : instance.program.front();
+        JsonValue objects(rapidjson::kArrayType), products(rapidjson::kArrayType);
         for (const auto& [name, value] : result.record.depends) {
             if (name.starts_with("option ")) {
                 const std::string id = "#" + uri_of(instance.folder / name.substr(7));
@@ -156,26 +161,28 @@ private:
                 if (const auto output = outputs.find(input.output); output != outputs.end() && output->second.kept)
                     objects.PushBack(id_of(output_id(input.instance, output->second, ""), allocator_), allocator_);
             }
-        for (const auto& [name, sum] : result.record.read)
-            objects.PushBack(id_of(add_content(sum, Path(name).filename().string()), allocator_), allocator_);
+        for (const auto& [name, checksum] : result.record.read)
+            objects.PushBack(id_of(add_content(checksum, Path(name).filename().string()), allocator_), allocator_);
         for (const auto& [name, output] : result.record.outputs)
             if (!output.sha256.empty())
-                made.PushBack(id_of(output_id(i, output, "'" + name + "' of " + instance.title(plan_.study)), allocator_),
-                              allocator_);
+                products.PushBack(
+                    id_of(output_id(i, output, fmt::format("'{}' of {}", name, instance.title(plan_.study))), allocator_),
+                    allocator_);
         const Path report = instance.folder / "report.json";
         if (is_made) {
-            add_file(instance.folder / "record.json", {}, "what " + instance.title(plan_.study) + " depended on and made");
-            add_file(report, {}, "what " + instance.title(plan_.study) + " reports");
-            made.PushBack(id_of(uri_of(report), allocator_), allocator_);
+            add_file(instance.folder / "record.json", {},
+                     fmt::format("dependencies and outputs of {}", instance.title(plan_.study)));
+            add_file(report, {}, fmt::format("report of {}", instance.title(plan_.study)));
+            products.PushBack(id_of(uri_of(report), allocator_), allocator_);
         }
         const std::string id = "#" + uri_of(instance.folder);
         JsonValue action = json_object(
             allocator_, "@id", id, "@type", "CreateAction", "name", instance.title(plan_.study), "description",
-            (step.operation != nullptr ? "ostraka " : "") + what, "instrument",
-            id_of(step.operation != nullptr ? "#ostraka" : program(what), allocator_), "actionStatus",
+            (step.operation != nullptr ? "ostraka " : "") + program_name, "instrument",
+            id_of(step.operation != nullptr ? "#ostraka" : program(program_name), allocator_), "actionStatus",
             id_of(is_made ? "http://schema.org/CompletedActionStatus" : "http://schema.org/FailedActionStatus", allocator_));
-        add_given(action, allocator_, "object", std::move(objects), "result", std::move(made), "startTime", result.record.began,
-                  "endTime", result.record.ended, "error", result.problem);
+        add_given(action, allocator_, "object", std::move(objects), "result", std::move(products), "startTime",
+                  result.record.began, "endTime", result.record.ended, "error", result.problem);
         latest_ = std::max(latest_, result.record.ended);
         graph_.PushBack(action, allocator_);
         mentions_.PushBack(id_of(id, allocator_), allocator_);
@@ -183,7 +190,7 @@ private:
 
     std::string program(const std::string& name) {
         std::string id = "#program-" + percent_encoded(name);
-        if (known_.insert(id).second)
+        if (entity_ids_.insert(id).second)
             graph_.PushBack(
                 json_object(allocator_, "@id", id, "@type", "SoftwareApplication", "name", name, "softwareVersion", version()),
                 allocator_);
@@ -196,7 +203,7 @@ private:
     Json crate_;
     JsonAllocator& allocator_;
     JsonValue graph_, parts_, mentions_;
-    std::set<std::string> known_;
+    std::set<std::string> entity_ids_;
     std::string latest_;
 };
 
@@ -218,15 +225,15 @@ Json run_request_to_json(const RunRequest& request) {
 RunRequest read_run_request(const Path& folder) {
     const Path file = folder / "run.json";
     if (!is_folder(folder) || !file_exists(file))
-        fail_input(folder.string(), "is no folder of a run: it has no run.json", "name the folder that 'ostraka run' wrote");
+        fail_input(folder.string(), "is not the folder of a run: it has no run.json", "name the folder that 'ostraka run' wrote");
     const Json document = read_json(file);
     check_format(document, "ostraka-run", file.string(), "name the folder that 'ostraka run' wrote");
     validate(document, "run", file.string());
     RunRequest request;
     request.study_folder = text_in(document, "folder");
     request.quick = flag_in(document, "quick");
-    for (const auto& one : list_in(document, "set")) request.set.push_back(text_of(one));
-    for (const auto& one : list_in(document, "only")) request.only.push_back(text_of(one));
+    for (const auto& setting : list_in(document, "set")) request.set.push_back(text_of(setting));
+    for (const auto& step_name : list_in(document, "only")) request.only.push_back(text_of(step_name));
     return request;
 }
 

@@ -36,15 +36,15 @@ std::vector<std::string> fitting_names(const Path& folder, const std::string& pa
 }  // namespace
 
 std::vector<Path> matching_files(const Path& pattern, const std::function<bool(const Path&)>& may_enter) {
-    std::vector<Path> found{pattern.root_path()};
+    std::vector<Path> matches{pattern.root_path()};
     const auto is_pattern = [](const std::string& part) { return part.find_first_of("*?") != std::string::npos; };
     const Path relative = pattern.relative_path();
-    std::size_t left = static_cast<std::size_t>(std::distance(relative.begin(), relative.end()));
+    std::size_t remaining_parts = static_cast<std::size_t>(std::distance(relative.begin(), relative.end()));
     for (const Path& part : relative) {
-        --left;
+        --remaining_parts;
         std::vector<Path> next;
-        std::set<Path> known;  // folders with links resolved, so that each is searched once
-        for (const Path& folder : found) {
+        std::set<Path> searched_folders;  // folders with links resolved, so that each is searched once
+        for (const Path& folder : matches) {
             check_cancelled();
             if (!is_pattern(part.string())) {
                 next.push_back(folder / part);
@@ -53,17 +53,17 @@ std::vector<Path> matching_files(const Path& pattern, const std::function<bool(c
             for (const std::string& name : fitting_names(folder, part.string())) {
                 const Path path = folder / name;
                 std::error_code code;
-                if (left == 0 ? std::filesystem::is_regular_file(path, code)
-                              : std::filesystem::is_directory(path, code) && (!may_enter || may_enter(path)) &&
-                                    known.insert(std::filesystem::weakly_canonical(path, code)).second)
+                if (remaining_parts == 0 ? std::filesystem::is_regular_file(path, code)
+                                         : std::filesystem::is_directory(path, code) && (!may_enter || may_enter(path)) &&
+                                               searched_folders.insert(std::filesystem::weakly_canonical(path, code)).second)
                     next.push_back(path);
             }
         }
-        found = std::move(next);
+        matches = std::move(next);
     }
-    std::erase_if(found, [](const Path& file) { return !file_exists(file); });
-    std::sort(found.begin(), found.end());
-    return found;
+    std::erase_if(matches, [](const Path& file) { return !file_exists(file); });
+    std::sort(matches.begin(), matches.end());
+    return matches;
 }
 
 }  // namespace ostraka

@@ -5,6 +5,8 @@
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,15 +19,17 @@ namespace {
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
 JsonValue pairs_to_json(const Pairs& pairs, JsonAllocator& allocator) {
-    return json_list(pairs, allocator, [&](const auto& one) {
+    return json_list(pairs, allocator, [&](const auto& name_and_value) {
         JsonValue pair(rapidjson::kArrayType);
-        pair.PushBack(json_string(one.first, allocator), allocator).PushBack(json_string(one.second, allocator), allocator);
+        pair.PushBack(json_string(name_and_value.first, allocator), allocator)
+            .PushBack(json_string(name_and_value.second, allocator), allocator);
         return pair;
     });
 }
-Pairs pairs_of(const JsonValue& list) {
+Pairs pairs_of(const JsonValue& pair_list) {
     Pairs pairs;
-    for (const auto& one : list.GetArray()) pairs.emplace_back(text_of(one[0]), text_of(one[1]));
+    for (const auto& name_and_value : pair_list.GetArray())
+        pairs.emplace_back(text_of(name_and_value[0]), text_of(name_and_value[1]));
     return pairs;
 }
 
@@ -36,9 +40,10 @@ void add_files(const Path& root, const Path& folder, Pairs& files, FileChecksums
     std::vector<Path> folders;
     std::error_code code;
     for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
-        if (std::error_code own; entry->is_directory(own) && !entry->is_symlink(own)) folders.push_back(entry->path());
+        if (std::error_code type_error; entry->is_directory(type_error) && !entry->is_symlink(type_error))
+            folders.push_back(entry->path());
     std::sort(folders.begin(), folders.end());
-    for (const Path& one : folders) add_files(root, one, files, checksums);
+    for (const Path& subfolder : folders) add_files(root, subfolder, files, checksums);
 }
 
 std::optional<StudyRecord> parsed_record(const Path& file) {
@@ -73,21 +78,21 @@ std::optional<FileStamp> stamp_of(const Path& file) {
 std::string FileChecksums::file(const Path& file) {
     {
         const std::lock_guard lock(mutex_);
-        if (const auto known = known_.find(file); known != known_.end()) return known->second.sha256;
+        if (const auto entry = entries_.find(file); entry != entries_.end()) return entry->second.sha256;
     }
     check_readable(file);
     const auto stamp = stamp_of(file);  // taken before reading, so that concurrent writes are detected
-    std::string sum = sha256_of_file(file);
+    std::string checksum = sha256_of_file(file);
     const std::lock_guard lock(mutex_);
-    if (!is_memory(file)) known_[file] = {sum, stamp};
-    return sum;
+    if (!is_memory(file)) entries_[file] = {checksum, stamp};
+    return checksum;
 }
 
 std::string FileChecksums::folder(const Path& folder) {
     Pairs files;
     add_files(folder, folder, files, *this);
     std::string text;
-    for (const auto& [name, sum] : files) text += sum + "  " + name + "\n";
+    for (const auto& [name, checksum] : files) text += checksum + "  " + name + "\n";
     return sha256(text);
 }
 
@@ -103,31 +108,31 @@ std::string FileChecksums::collection(const Path& folder_or_file) {
 
 void FileChecksums::forget(const Path& file) {
     const std::lock_guard lock(mutex_);
-    known_.erase(file);
+    entries_.erase(file);
 }
 
-void FileChecksums::know(const Path& file, const std::string& sha256) {
+void FileChecksums::store(const Path& file, const std::string& sha256) {
     const auto stamp = stamp_of(file);
     const std::lock_guard lock(mutex_);
-    const auto [known, is_new] = known_.try_emplace(file, Known{sha256, stamp});
-    if (!is_new && known->second.sha256 != sha256) known->second.differs = true;
+    const auto [entry, is_new] = entries_.try_emplace(file, Entry{sha256, stamp});
+    if (!is_new && entry->second.sha256 != sha256) entry->second.differs = true;
 }
 
 std::vector<Path> FileChecksums::changed() {
     const std::lock_guard lock(mutex_);
     std::vector<Path> files;
-    for (const auto& [file, known] : known_) {
+    for (const auto& [file, entry] : entries_) {
         if (is_memory(file)) continue;
         // A file that was touched or rewritten with the same content has not changed.
-        const bool is_same = stamp_of(file) == known.stamp || (file_exists(file) && sha256_of_file(file) == known.sha256);
-        if (known.differs || !is_same) files.push_back(file);
+        const bool is_same = stamp_of(file) == entry.stamp || (file_exists(file) && sha256_of_file(file) == entry.sha256);
+        if (entry.differs || !is_same) files.push_back(file);
     }
     return files;
 }
 
 bool FileChecksums::is_known(const Path& file) {
     const std::lock_guard lock(mutex_);
-    return known_.contains(file);
+    return entries_.contains(file);
 }
 
 std::optional<StudyRecord> read_record(const Path& folder) {
@@ -136,8 +141,9 @@ std::optional<StudyRecord> read_record(const Path& folder) {
     std::optional<StudyRecord> record = parsed_record(file);
     if (record)
         for (const auto& [name, output] : record->outputs)
-            static_cast<void>(file_inside(output.file, folder, file.string(), "/outputs/" + printable(name, 60) + "/file",
-                                          "the folder of the step", "remove " + folder.string()));
+            static_cast<void>(file_inside(output.file, folder, file.string(),
+                                          fmt::format("/outputs/{}/file", printable(name, 60)), "the folder of the step",
+                                          "remove " + folder.string()));
     return record;
 }
 
@@ -154,9 +160,9 @@ void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance
                 "read", pairs_to_json(record.read, allocator));
     JsonValue outputs(rapidjson::kObjectType);
     for (const auto& [name, output] : record.outputs) {
-        JsonValue one = json_object(allocator, "file", output.file, "sha256", output.sha256);
-        add_given(one, allocator, "kept", output.kept, "folder", output.is_folder);
-        add_members(outputs, allocator, name, std::move(one));
+        JsonValue output_object = json_object(allocator, "file", output.file, "sha256", output.sha256);
+        add_given(output_object, allocator, "kept", output.kept, "folder", output.is_folder);
+        add_members(outputs, allocator, name, std::move(output_object));
     }
     add_members(document, allocator, "outputs", std::move(outputs), "holds", record.holds, "run",
                 json_object(allocator, "seconds", record.seconds, "began", record.began, "ended", record.ended));
@@ -166,8 +172,9 @@ void write_record(const Path& folder, const StudyPlan& plan, const StudyInstance
 Path find_program(const std::string& name, const Path& program_folder, const std::string& where) {
     const Path program = program_folder / name;
     if (name.find('/') != std::string::npos || !file_exists(program) || ::access(program.c_str(), X_OK) != 0)
-        fail_input(where, "there is no program '" + printable(name, 60) + "' in " + program_folder.string(),
-                   "programs stand beside the command itself; build or install it there, or name their folder (--programs)");
+        fail_input(
+            where, fmt::format("there is no program '{}' in {}", printable(name, 60), program_folder.string()),
+            "programs are expected in the folder of the command; build or install it there, or name their folder (--programs)");
     return program;
 }
 
@@ -178,8 +185,7 @@ Pairs dependencies(const StudyPlan& plan, const StudyInstance& instance,
     Pairs depends{{"toolkit", version()}};
     std::map<std::string, Kind> kinds;
     if (step.operation != nullptr) {
-        depends.emplace_back("operation",
-                             std::string(step.operation->name) + ", version " + std::to_string(step.operation->version));
+        depends.emplace_back("operation", fmt::format("{}, version {}", step.operation->name, step.operation->version));
         Call call(*step.operation);
         call.set(*instance.options);
         for (const auto& [name, value] : call.parameters().options.values())
@@ -195,67 +201,71 @@ Pairs dependencies(const StudyPlan& plan, const StudyInstance& instance,
     }
     std::map<std::string, std::size_t> counts;
     for (const StudyInput& input : instance.inputs) {
-        const std::string name = "input " + input.slot + " " + std::to_string(++counts[input.slot]);
+        const std::string name = fmt::format("input {} {}", input.slot, ++counts[input.slot]);
         std::string called = input.label.empty() ? "" : input.label + "=";
         if (input.instance != no_instance) {
             const StudyRecord& record = record_of(input.instance);
             const auto output = record.outputs.find(input.output);
             if (output == record.outputs.end())
-                fail_work(plan.instances[input.instance].title(plan.study), "has not made '" + input.output + "'",
-                          "look at what it wrote, and name that");
-            depends.emplace_back(name, output->second.sha256 + " " + called + output->second.file);
+                fail_work(plan.instances[input.instance].title(plan.study), fmt::format("did not produce '{}'", input.output),
+                          "name one of the files that it wrote");
+            depends.emplace_back(name, fmt::format("{} {}{}", output->second.sha256, called, output->second.file));
         } else if (input.file.empty()) {
             depends.emplace_back(name, "none");
         } else {
             const auto kind = kinds.find(input.slot);
             const bool collection = (kind != kinds.end() && kind->second == Kind::collection) || is_folder(input.file);
-            depends.emplace_back(name, (collection ? checksums.collection(input.file) : checksums.file(input.file)) + " " +
-                                           called + input.file.filename().string());
+            depends.emplace_back(
+                name, fmt::format("{} {}{}", collection ? checksums.collection(input.file) : checksums.file(input.file), called,
+                                  input.file.filename().string()));
         }
     }
     return depends;
 }
 
-std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& known, const Pairs& depends,
+std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& record, const Pairs& depends,
                       const StudyInstance& instance, const Path& run_folder, FileChecksums& checksums) {
     const Path folder = run_folder / instance.folder;
-    if (!known) return "it has not run yet";
+    if (!record) return "it has not run yet";
     std::vector<std::string> reasons;
-    const std::map<std::string, std::string> before(known->depends.begin(), known->depends.end()),
+    const std::map<std::string, std::string> recorded(record->depends.begin(), record->depends.end()),
         now(depends.begin(), depends.end());
-    const auto shown = [](const std::string& name, const std::string& value) {
+    const auto abbreviated = [](const std::string& name, const std::string& value) {
         return name.starts_with("input") || name == "program file"
                    ? value.substr(0, 12) + value.substr(std::min<std::size_t>(value.size(), 64))
                    : value;
     };
     for (const auto& [name, value] : depends)
-        if (const auto was = before.find(name); was == before.end()) reasons.push_back(name + " is new: " + shown(name, value));
+        if (const auto was = recorded.find(name); was == recorded.end())
+            reasons.push_back(fmt::format("{} is new: {}", name, abbreviated(name, value)));
         else if (was->second != value)
-            reasons.push_back(name + " was " + shown(name, was->second) + ", is " + shown(name, value));
-    for (const auto& [name, value] : known->depends)
-        if (!now.contains(name)) reasons.push_back(name + " is gone, was " + shown(name, value));
-    for (const auto& [file, sum] : known->read) {
+            reasons.push_back(fmt::format("{} was {}, is {}", name, abbreviated(name, was->second), abbreviated(name, value)));
+    for (const auto& [name, value] : record->depends)
+        if (!now.contains(name)) reasons.push_back(fmt::format("{} is no longer used, was {}", name, abbreviated(name, value)));
+    for (const auto& [file, checksum] : record->read) {
         const bool is_own = file.starts_with(in_run);
         const Path path = is_own ? run_folder / file.substr(in_run.size()) : plan.study.folder / file;
         if (is_own ? !is_inside(path, run_folder) : !is_inside_any(path, plan.study.readable))
-            reasons.push_back("'" + file + "', which an input names, lies where it may not be read");
-        else if (!file_exists(path)) reasons.push_back("'" + file + "', which an input names, is gone");
-        else if (checksums.file(path) != sum) reasons.push_back("'" + file + "', which an input names, has changed");
+            reasons.push_back(fmt::format("'{}', which an input refers to, lies outside the readable folders", file));
+        else if (!file_exists(path)) reasons.push_back(fmt::format("'{}', which an input refers to, no longer exists", file));
+        else if (checksums.file(path) != checksum)
+            reasons.push_back(fmt::format("'{}', which an input refers to, has changed", file));
     }
     for (const auto& [output, file] : instance.outputs) {
-        const auto was = known->outputs.find(output);
-        if (was == known->outputs.end()) reasons.push_back("output " + output + " was not made");
-        else if (instance.kept.contains(output) && !was->second.kept) reasons.push_back("output " + output + " was not kept");
+        const auto was = record->outputs.find(output);
+        if (was == record->outputs.end()) reasons.push_back(fmt::format("output {} was not produced", output));
+        else if (instance.kept.contains(output) && !was->second.kept)
+            reasons.push_back(fmt::format("output {} was not kept", output));
     }
-    for (const auto& [output, was] : known->outputs) {
+    for (const auto& [output, was] : record->outputs) {
         if (!was.kept) continue;
         const Path file = folder / was.file;
-        const bool there = was.is_folder ? is_folder(file) : file_exists(file);
-        if (!there) reasons.push_back("'" + file.string() + "' is gone");
+        const bool exists = was.is_folder ? is_folder(file) : file_exists(file);
+        if (!exists) reasons.push_back(fmt::format("'{}' no longer exists", file.string()));
         else if ((was.is_folder ? checksums.folder(file) : checksums.file(file)) != was.sha256)
-            reasons.push_back("'" + file.string() + "' was changed");
+            reasons.push_back(fmt::format("'{}' was changed", file.string()));
     }
-    if (!file_exists(folder / "report.json")) reasons.push_back("its report is gone");
+    if (!file_exists(folder / "report.json")) reasons.push_back("its report no longer exists");
     return joined(reasons, "; ");
 }
 

@@ -12,6 +12,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/operation/object_files.h"
 
+#include <fmt/core.h>
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -39,10 +41,10 @@ std::string now_text() {
 struct Work {
     enum class Stage { waiting, queued, running, final } stage = Stage::waiting;
     bool selected = false;
-    bool again = false;               ///< runs although it is done: its outputs are needed in memory
-    std::size_t open_needs = 0;       ///< number of unfinished instances that it needs
-    std::size_t open_takers = 0;      ///< number of unfinished instances that need it
-    std::vector<std::size_t> takers;  ///< instances that need it
+    bool must_rerun = false;              ///< runs although it is done: its outputs are needed in memory
+    std::size_t open_needs = 0;           ///< number of unfinished instances that it needs
+    std::size_t open_dependents = 0;      ///< number of unfinished instances that need it
+    std::vector<std::size_t> dependents;  ///< instances that need it
     std::map<std::string, Object> objects;
     std::unique_ptr<Context> context;  ///< context in which the objects are made
     double expected = -1;              ///< duration of an earlier run in seconds; negative: unknown
@@ -61,8 +63,8 @@ public:
         for (std::size_t i = 0; i < works_.size(); ++i)
             for (const std::size_t need : plan_.instances[i].needs) {
                 if (!works_[i].selected) continue;
-                works_[need].takers.push_back(i);
-                ++works_[need].open_takers;
+                works_[need].dependents.push_back(i);
+                ++works_[need].open_dependents;
                 ++works_[i].open_needs;
             }
         for (std::size_t i = 0; i < works_.size(); ++i) {
@@ -100,11 +102,11 @@ public:
             if (cancelled)
                 for (const auto& [i, thread] : workers_)
                     if (works_[i].context) works_[i].context->watch.cancel();
-            tell(*watch);
+            report_progress(*watch);
         }
         join_ended(lock);
         if (cancelled)
-            throw Error(ErrorKind::cancelled, "", "cancelled", "what is done is kept: the same command goes on from there");
+            throw Error(ErrorKind::cancelled, "", "cancelled", "completed steps are kept: the same command resumes the run");
         if (!options_.dry_run) fail_changed();
         return std::move(results_);
     }
@@ -115,23 +117,23 @@ private:
 
     /// Selects the requested instances and their dependencies.
     void select() {
-        std::vector<std::size_t> wanted;
-        std::vector<bool> is_taken(works_.size(), false);
-        for (const StudyInstance& one : plan_.instances)
-            for (const std::size_t need : one.needs) is_taken[need] = true;
+        std::vector<std::size_t> pending;
+        std::vector<bool> has_dependents(works_.size(), false);
+        for (const StudyInstance& step_instance : plan_.instances)
+            for (const std::size_t need : step_instance.needs) has_dependents[need] = true;
         for (std::size_t i = 0, leaf = 0; i < works_.size(); ++i) {
             const std::string& name = plan_.study.steps[instance(i).step].name;
             if (!options_.only.empty() && std::find(options_.only.begin(), options_.only.end(), name) == options_.only.end())
                 continue;
-            if (!options_.share.is_whole() && (is_taken[i] || !options_.share.has(leaf++))) continue;
-            wanted.push_back(i);
+            if (!options_.share.is_whole() && (has_dependents[i] || !options_.share.has(leaf++))) continue;
+            pending.push_back(i);
         }
-        while (!wanted.empty()) {
-            const std::size_t i = wanted.back();
-            wanted.pop_back();
+        while (!pending.empty()) {
+            const std::size_t i = pending.back();
+            pending.pop_back();
             if (works_[i].selected) continue;
             works_[i].selected = true;
-            wanted.insert(wanted.end(), instance(i).needs.begin(), instance(i).needs.end());
+            pending.insert(pending.end(), instance(i).needs.begin(), instance(i).needs.end());
         }
     }
 
@@ -139,8 +141,8 @@ private:
         const Work& work = works_[i];
         if (work.objects.contains(output)) return true;
         const auto& outputs = results_[i].record.outputs;
-        const auto known = outputs.find(output);
-        return known != outputs.end() && known->second.kept;
+        const auto recorded = outputs.find(output);
+        return recorded != outputs.end() && recorded->second.kept;
     }
 
     /// Decides about an instance whose dependencies are finished: up to date, skipped, queued, or waiting for one that runs
@@ -156,23 +158,23 @@ private:
                 return finish(i, InstanceState::skipped);
             }
             if (state == InstanceState::would_run) {
-                result.why = "it takes what " + plan_.instances[need].title(plan_.study) + " would make";
+                result.why = fmt::format("it uses outputs of {}, which would run", plan_.instances[need].title(plan_.study));
                 return finish(i, InstanceState::would_run);
             }
         }
-        if (!work.again) {
+        if (!work.must_rerun) {
             try {
                 lock.unlock();  // checksums of large files take time
-                const auto known = read_record(folder_of(i));
+                const auto record = read_record(folder_of(i));
                 // Without a record, files are read by the instances that need them, which also yields their checksums.
                 std::vector<std::pair<std::string, std::string>> depends;
-                if (known) depends = dependencies_of(i);
-                std::string why = why_again(plan_, known, depends, instance(i), folder_, checksums_);
-                if (why.empty() && options_.again) why = "all is to run again";
+                if (record) depends = dependencies_of(i);
+                std::string why = why_again(plan_, record, depends, instance(i), folder_, checksums_);
+                if (why.empty() && options_.again) why = "all steps were requested to run again (--again)";
                 lock.lock();
-                if (known) work.expected = known->seconds;
+                if (record) work.expected = record->seconds;
                 if (why.empty()) {
-                    result.record = *known;
+                    result.record = *record;
                     return finish(i, InstanceState::unchanged);
                 }
                 result.record.depends = std::move(depends);
@@ -191,10 +193,10 @@ private:
             Work& other = works_[input.instance];
             if (other.stage != Work::Stage::final) continue;
             other.stage = Work::Stage::waiting;
-            other.again = true;
+            other.must_rerun = true;
             // Keep its inputs until it has run again.
-            for (const std::size_t need : instance(input.instance).needs) ++works_[need].open_takers;
-            results_[input.instance].why = "what it makes is needed again by " + instance(i).title(plan_.study);
+            for (const std::size_t need : instance(input.instance).needs) ++works_[need].open_dependents;
+            results_[input.instance].why = "its outputs are needed again by " + instance(i).title(plan_.study);
             to_consider_.insert(input.instance);
         }
         if (!complete) return;  // will be considered again
@@ -215,8 +217,8 @@ private:
 
     void finish(std::size_t i, InstanceState state) {
         Work& work = works_[i];
-        const bool first = !work.again;
-        work.again = false;
+        const bool first = !work.must_rerun;
+        work.must_rerun = false;
         work.stage = Work::Stage::final;
         results_[i].state = state;
         if (first) {
@@ -225,13 +227,14 @@ private:
                 if (!input.file.empty() && --file_uses_[input.file] == 0) root_.forget(input.file);
         }
         for (const std::size_t need : instance(i).needs) {
-            if (--works_[need].open_takers == 0) release(need);
+            if (--works_[need].open_dependents == 0) release(need);
         }
-        if (work.open_takers == 0) release(i);
+        if (work.open_dependents == 0) release(i);
         else if (state != InstanceState::done) works_[i].context.reset();
-        for (const std::size_t taker : work.takers) {
-            if (first) --works_[taker].open_needs;
-            if (works_[taker].open_needs == 0 && works_[taker].stage == Work::Stage::waiting) to_consider_.insert(taker);
+        for (const std::size_t dependent : work.dependents) {
+            if (first) --works_[dependent].open_needs;
+            if (works_[dependent].open_needs == 0 && works_[dependent].stage == Work::Stage::waiting)
+                to_consider_.insert(dependent);
         }
     }
 
@@ -251,7 +254,7 @@ private:
             return false;
         queue_.erase(queue_.begin());
         const std::size_t side_by_side = std::min<std::size_t>(static_cast<std::size_t>(threads()), running_ + queue_.size() + 1);
-        const int share = std::max(1, threads() / static_cast<int>(side_by_side));
+        const int thread_count = std::max(1, threads() / static_cast<int>(side_by_side));
         ++running_;
         Work& work = works_[i];
         work.stage = Work::Stage::running;
@@ -259,18 +262,18 @@ private:
         work.context->share_objects(root_);
         work.context->watch.memory_limit = limit;
         // The earlier thread of an instance that runs again may have ended without being joined.
-        if (const auto before = workers_.find(i); before != workers_.end()) {
+        if (const auto earlier_thread = workers_.find(i); earlier_thread != workers_.end()) {
             std::erase(ended_, i);
-            before->second.join();
-            workers_.erase(before);
+            earlier_thread->second.join();
+            workers_.erase(earlier_thread);
             --running_;
         }
-        workers_.emplace(i, std::thread([this, i, share] { do_work(i, share); }));
+        workers_.emplace(i, std::thread([this, i, thread_count] { do_work(i, thread_count); }));
         return true;
     }
 
-    void do_work(std::size_t i, int share) {
-        set_threads(share);
+    void do_work(std::size_t i, int thread_count) {
+        set_threads(thread_count);
         InstanceState state = InstanceState::done;
         std::string problem;
         StudyRecord record;
@@ -291,7 +294,7 @@ private:
             const Stopwatch clock;
             record.began = now_text();
             if (plan_.study.steps[instance(i).step].operation != nullptr) do_operation(i, *context, record, objects, clock);
-            else do_program(i, context->watch, share, record, clock);
+            else do_program(i, context->watch, thread_count, record, clock);
         } catch (const Error& error) {
             state = InstanceState::failed;
             problem = error.what();
@@ -320,14 +323,14 @@ private:
 
     /// Whether another process completed the instance while this one waited for its folder; fills the record.
     bool was_done_meanwhile(std::size_t i, StudyRecord& record) {
-        const auto known = read_record(folder_of(i));
-        if (!known) return false;
-        for (const auto& [output, made] : known->outputs) {
-            checksums_.forget(folder_of(i) / made.file);
-            if (!made.kept) return false;  // exists only in the memory of the other process
+        const auto recorded = read_record(folder_of(i));
+        if (!recorded) return false;
+        for (const auto& [output, recorded_output] : recorded->outputs) {
+            checksums_.forget(folder_of(i) / recorded_output.file);
+            if (!recorded_output.kept) return false;  // exists only in the memory of the other process
         }
-        if (!why_again(plan_, known, dependencies_of(i), instance(i), folder_, checksums_).empty()) return false;
-        record = *known;
+        if (!why_again(plan_, recorded, dependencies_of(i), instance(i), folder_, checksums_).empty()) return false;
+        record = *recorded;
         return true;
     }
 
@@ -341,84 +344,89 @@ private:
         if (changed.empty()) return;
         const auto is_changed = [&](const Path& file) {
             return std::any_of(changed.begin(), changed.end(),
-                               [&](const Path& one) { return one == file || is_inside(one, file); });
+                               [&](const Path& changed_path) { return changed_path == file || is_inside(changed_path, file); });
         };
         for (std::size_t i = 0; i < works_.size(); ++i) {
             InstanceResult& result = results_[i];
             if (result.state != InstanceState::done && result.state != InstanceState::unchanged) continue;
-            std::string which;
+            std::string changed_input;
             for (const StudyInput& input : instance(i).inputs)
-                if (!input.file.empty() && is_changed(input.file)) which = input.file.string();
-            for (const auto& [file, sum] : result.record.read)
-                if (!file.starts_with(in_run) && is_changed((plan_.study.folder / file).lexically_normal())) which = file;
-            const bool is_behind = std::any_of(instance(i).needs.begin(), instance(i).needs.end(), [&](std::size_t need) {
-                return results_[need].state == InstanceState::failed || results_[need].state == InstanceState::skipped;
-            });
-            if (which.empty() && !is_behind) continue;
-            result.state = which.empty() ? InstanceState::skipped : InstanceState::failed;
-            result.problem = which.empty() ? "what it takes was made of an input that changed while the study ran"
-                                           : "'" + which + "' changed while the study ran (run it again)";
-            if (!which.empty()) remove_file(folder_of(i) / "record.json");
+                if (!input.file.empty() && is_changed(input.file)) changed_input = input.file.string();
+            for (const auto& [file, checksum] : result.record.read)
+                if (!file.starts_with(in_run) && is_changed((plan_.study.folder / file).lexically_normal())) changed_input = file;
+            const bool depends_on_failure =
+                std::any_of(instance(i).needs.begin(), instance(i).needs.end(), [&](std::size_t need) {
+                    return results_[need].state == InstanceState::failed || results_[need].state == InstanceState::skipped;
+                });
+            if (changed_input.empty() && !depends_on_failure) continue;
+            result.state = changed_input.empty() ? InstanceState::skipped : InstanceState::failed;
+            result.problem = changed_input.empty()
+                                 ? "it depends on an input that changed while the study ran"
+                                 : fmt::format("'{}' changed while the study ran (run it again)", changed_input);
+            if (!changed_input.empty()) remove_file(folder_of(i) / "record.json");
         }
     }
 
     void do_operation(std::size_t i, Context& context, StudyRecord& record, std::map<std::string, Object>& objects,
                       const Stopwatch& clock) {
-        const StudyInstance& one = instance(i);
+        const StudyInstance& operation_instance = instance(i);
         const Path folder = folder_of(i);
         // Output folders of a completed run are removed; those of a killed run keep the results of studies.
-        if (const auto before = read_record(folder))
-            for (const auto& [output, was] : before->outputs)
+        if (const auto earlier_record = read_record(folder))
+            for (const auto& [output, was] : earlier_record->outputs)
                 if (std::error_code code; was.kept && was.is_folder) std::filesystem::remove_all(folder / was.file, code);
-        Call call = plan_.call(one, [&](const StudyInput& input) { return source_of(input); });
+        Call call = plan_.call(operation_instance, [&](const StudyInput& input) { return source_of(input); });
         std::set<std::string> written;  // outputs written by the operation itself
-        for (const auto& [output, file] : one.outputs) {
+        for (const auto& [output, file] : operation_instance.outputs) {
             Slot& slot = call.slot(output);
-            const bool taken = std::any_of(works_[i].takers.begin(), works_[i].takers.end(), [&](std::size_t taker) {
-                const auto& inputs = instance(taker).inputs;
-                return std::any_of(inputs.begin(), inputs.end(),
-                                   [&](const StudyInput& input) { return input.instance == i && input.output == output; });
-            });
-            if (!one.kept.contains(output) || (taken && !slot.fills_folder(0))) continue;
+            const bool is_used =
+                std::any_of(works_[i].dependents.begin(), works_[i].dependents.end(), [&](std::size_t dependent) {
+                    const auto& inputs = instance(dependent).inputs;
+                    return std::any_of(inputs.begin(), inputs.end(),
+                                       [&](const StudyInput& input) { return input.instance == i && input.output == output; });
+                });
+            if (!operation_instance.kept.contains(output) || (is_used && !slot.fills_folder(0))) continue;
             slot.sources.front() = {folder / file, {}};
             written.insert(output);
         }
         const Report report = call.run(context);
         record.holds = report.holds();
         for (const auto& read : context.files_read()) {
-            checksums_.know(read.file, read.sha256);
-            if (is_memory(read.file) || is_own_input(one, read.file)) continue;
-            const std::string in_folder = within_run(read.file);
-            record.read.emplace_back(in_folder.empty() ? plan_.study.relative(read.file) : in_run + in_folder, read.sha256);
+            checksums_.store(read.file, read.sha256);
+            if (is_memory(read.file) || is_recorded_input(operation_instance, read.file)) continue;
+            const std::string path_in_run_folder = relative_to_run(read.file);
+            record.read.emplace_back(path_in_run_folder.empty() ? plan_.study.relative(read.file) : in_run + path_in_run_folder,
+                                     read.sha256);
         }
         auto outputs = std::make_unique<OutputTransaction>();
-        for (const auto& [output, file] : one.outputs) {
-            OutputRecord& made = record.outputs[output];
-            made.file = file;
-            made.kept = one.kept.contains(output);
-            made.is_folder = call.slot(output).fills_folder(0);
+        for (const auto& [output, file] : operation_instance.outputs) {
+            OutputRecord& output_record = record.outputs[output];
+            output_record.file = file;
+            output_record.kept = operation_instance.kept.contains(output);
+            output_record.is_folder = call.slot(output).fills_folder(0);
             if (written.contains(output)) continue;
             if (call.slot(output).sources.empty() || !call.slot(output).sources.front().object) {  // it was not made
                 record.outputs.erase(output);
                 continue;
             }
             const Object& object = call.object(output);
-            if (made.kept) write_object(object, folder / file, output);
+            if (output_record.kept) write_object(object, folder / file, output);
             objects.emplace(output, object);
         }
         write_json(folder / "report.json", report.to_json());
         outputs->commit();
         outputs.reset();
-        for (auto& [output, made] : record.outputs) {
-            const Path file = folder / made.file;
-            if (made.kept) {
+        for (auto& [output, output_record] : record.outputs) {
+            const Path file = folder / output_record.file;
+            if (output_record.kept) {
                 checksums_.forget(file);
-                if (made.is_folder ? !is_folder(file) : !file_exists(file))
-                    fail_work(file.string(), "was asked for and not made", "see what '" + output + "' depends on");
-                made.sha256 = made.is_folder ? FileChecksums().folder(file) : sha256_of_file(file);
-            } else if (const auto known = objects.find(output); known != objects.end()) {
-                const auto in_memory = known->second.as<Path>();
-                made.sha256 = in_memory ? FileChecksums().folder(*in_memory) : known->second.checksums().sha256;
+                if (output_record.is_folder ? !is_folder(file) : !file_exists(file))
+                    fail_work(file.string(), "was requested but not produced",
+                              fmt::format("check the inputs and options that '{}' depends on", output));
+                output_record.sha256 = output_record.is_folder ? FileChecksums().folder(file) : sha256_of_file(file);
+            } else if (const auto object = objects.find(output); object != objects.end()) {
+                const auto in_memory = object->second.as<Path>();
+                output_record.sha256 = in_memory ? FileChecksums().folder(*in_memory) : object->second.checksums().sha256;
             }
         }
         keep(i, record, clock);
@@ -426,8 +434,8 @@ private:
 
     /// Whether the file is an input of the instance, or an output of another instance that it uses; the record then covers it
     /// already.
-    bool is_own_input(const StudyInstance& one, const Path& file) {
-        return std::any_of(one.inputs.begin(), one.inputs.end(), [&](const StudyInput& input) {
+    bool is_recorded_input(const StudyInstance& user, const Path& file) {
+        return std::any_of(user.inputs.begin(), user.inputs.end(), [&](const StudyInput& input) {
             if (input.instance == no_instance) return input.file == file;
             const std::lock_guard lock(mutex_);
             const auto& outputs = results_[input.instance].record.outputs;
@@ -435,7 +443,7 @@ private:
         });
     }
     /// The path of a file relative to the run folder; empty for files elsewhere.
-    std::string within_run(const Path& file) const {
+    std::string relative_to_run(const Path& file) const {
         const auto full = [](const Path& path) { return std::filesystem::absolute(path).lexically_normal(); };
         const Path relative = full(file).lexically_relative(full(folder_));
         return relative.empty() || *relative.begin() == ".." ? std::string() : relative.generic_string();
@@ -453,30 +461,31 @@ private:
     }
     Path file_of(const StudyInput& input) const {
         const auto& outputs = results_[input.instance].record.outputs;
-        const auto known = outputs.find(input.output);
-        if (known == outputs.end())
-            fail_work(plan_.instances[input.instance].title(plan_.study), "has not made '" + input.output + "'",
-                      "look at what it wrote, and name that");
-        return std::filesystem::absolute(folder_of(input.instance) / known->second.file);
+        const auto output = outputs.find(input.output);
+        if (output == outputs.end())
+            fail_work(plan_.instances[input.instance].title(plan_.study), fmt::format("did not produce '{}'", input.output),
+                      "name one of the files that it wrote");
+        return std::filesystem::absolute(folder_of(input.instance) / output->second.file);
     }
 
-    void do_program(std::size_t i, const Watch& watch, int share, StudyRecord& record, const Stopwatch& clock) {
-        const StudyInstance& one = instance(i);
+    void do_program(std::size_t i, const Watch& watch, int thread_count, StudyRecord& record, const Stopwatch& clock) {
+        const StudyInstance& program_instance = instance(i);
         const Path folder = std::filesystem::absolute(folder_of(i));
         empty_folder(folder);  // removes the files of an earlier run
         const auto words = plan_.words(
-            one,
+            program_instance,
             [&](const StudyInput& input) {
                 const std::lock_guard lock(mutex_);
                 return input.instance == no_instance ? input.file : file_of(input);
             },
             folder);
         std::vector<std::string> started = words;
-        started.front() =
-            std::filesystem::absolute(find_program(words.front(), options_.program_folder, plan_.study.steps[one.step].name))
-                .string();
+        started.front() = std::filesystem::absolute(
+                              find_program(words.front(), options_.program_folder, plan_.study.steps[program_instance.step].name))
+                              .string();
         ChildProcess program(
-            started, {.folder = folder, .output = folder / "output.txt", .errors = folder / "output.txt", .threads = share});
+            started,
+            {.folder = folder, .output = folder / "output.txt", .errors = folder / "output.txt", .threads = thread_count});
         if (!program.wait([&] { return watch.is_cancelled(); })) {
             program.signal(SIGTERM);
             const Stopwatch since;
@@ -487,7 +496,7 @@ private:
         if (exit_code != 0 && exit_code != 3) {
             std::string text = read_file(folder / "output.txt");
             if (text.size() > 600) text = "..." + text.substr(text.size() - 600);
-            fail_work(words.front(), program.ending() + ": " + printable(std::string(trimmed(text)), 700),
+            fail_work(words.front(), fmt::format("{}: {}", program.ending(), printable(std::string(trimmed(text)), 700)),
                       "see " + (folder / "output.txt").string());
         }
         record.holds = exit_code == 0;
@@ -508,16 +517,18 @@ private:
     /// Writes the record last: without it the instance runs again.
     void keep(std::size_t i, StudyRecord& record, const Stopwatch& clock) {
         const Path folder = folder_of(i);
-        const auto before = read_record(folder);
+        const auto earlier_record = read_record(folder);
         if (record.depends.empty()) record.depends = dependencies_of(i);
         record.seconds = clock.seconds();
         record.ended = now_text();
         write_record(folder, plan_, instance(i), record);
-        if (!before) return;
-        for (const auto& [output, was] : before->outputs) {  // remove outputs of the earlier run that now have other names
-            const bool again = std::any_of(record.outputs.begin(), record.outputs.end(),
-                                           [&](const auto& made) { return made.second.kept && made.second.file == was.file; });
-            if (was.kept && !again && !was.is_folder && file_exists(folder / was.file)) remove_file(folder / was.file);
+        if (!earlier_record) return;
+        for (const auto& [output, was] :
+             earlier_record->outputs) {  // remove outputs of the earlier run that now have other names
+            const bool is_kept_again = std::any_of(record.outputs.begin(), record.outputs.end(), [&](const auto& new_output) {
+                return new_output.second.kept && new_output.second.file == was.file;
+            });
+            if (was.kept && !is_kept_again && !was.is_folder && file_exists(folder / was.file)) remove_file(folder / was.file);
         }
     }
 
@@ -534,29 +545,30 @@ private:
         }
     }
 
-    void tell(const Watch& watch) {
+    void report_progress(const Watch& watch) {
         if (!watch.on_progress || selected_ == 0) return;
-        double known = 0, left = 0;
+        double seconds_done = 0, seconds_left = 0;
         std::size_t count = 0, open = 0;
         for (std::size_t i = 0; i < works_.size(); ++i) {
-            if (results_[i].state == InstanceState::done) known += results_[i].record.seconds, ++count;
+            if (results_[i].state == InstanceState::done) seconds_done += results_[i].record.seconds, ++count;
             if (works_[i].selected && works_[i].stage != Work::Stage::final) ++open;
         }
-        const double mean = count > 0 ? known / static_cast<double>(count) : -1;
+        const double mean = count > 0 ? seconds_done / static_cast<double>(count) : -1;
         bool certain = true;
         for (const Work& work : works_)
             if (work.selected && work.stage != Work::Stage::final) {
                 const double seconds = work.expected >= 0 ? work.expected : mean;
                 certain = certain && seconds >= 0;
-                left += std::max(0.0, seconds);
+                seconds_left += std::max(0.0, seconds);
             }
-        left /= static_cast<double>(std::max<std::size_t>(1, std::min<std::size_t>(static_cast<std::size_t>(threads()), open)));
+        seconds_left /=
+            static_cast<double>(std::max<std::size_t>(1, std::min<std::size_t>(static_cast<std::size_t>(threads()), open)));
         std::string phase;
         for (const auto& [i, thread] : workers_) phase += (phase.empty() ? "" : ", ") + instance(i).title(plan_.study);
-        phase += ": " + std::to_string(finished_) + " of " + std::to_string(selected_);
+        phase += fmt::format(": {} of {}", finished_, selected_);
         if (certain && open > 0)
-            phase += left < 90 ? ", " + std::to_string(static_cast<int>(left) + 1) + " s left"
-                               : ", " + std::to_string(static_cast<int>(left / 60) + 1) + " min left";
+            phase += seconds_left < 90 ? fmt::format(", {} s left", static_cast<int>(seconds_left) + 1)
+                                       : fmt::format(", {} min left", static_cast<int>(seconds_left / 60) + 1);
         watch.on_progress(phase, std::min(0.999, static_cast<double>(finished_) / static_cast<double>(selected_)));
     }
 
@@ -587,7 +599,7 @@ std::string to_string(InstanceState state) {
 std::vector<InstanceResult> run_study(const StudyPlan& plan, const Path& folder, const RunStudyOptions& options) {
     for (const std::string& name : options.only)
         if (plan.study.step(name) == plan.study.steps.size())
-            fail_usage("--only names '" + printable(name, 60) + "', which is no step of " + plan.study.file.string(),
+            fail_usage(fmt::format("--only names '{}', which is not a step of {}", printable(name, 60), plan.study.file.string()),
                        "its steps: " + joined(plan.study.steps, ", ", &StudyStep::name));
     check_run_folder(plan, folder);
     return Runner(plan, folder, options).run();

@@ -46,10 +46,10 @@ void check_entry(const Path& entry, const Path& run_folder) {
 /// Names of the files written for all instances together.
 std::vector<std::string> collected_names(const StudyPlan& plan) {
     std::vector<std::string> names{"page.md", "run.json", "run.study.json", "ro-crate-metadata.json"};
-    const auto add = [&](const char* what, const std::vector<const char*>& endings) {
-        if (const JsonValue* list = find_member(*plan.study.document, what))
-            for (const auto& one : list->GetObject())
-                for (const char* ending : endings) names.push_back(text_of(one.name) + ending);
+    const auto add = [&](const char* member, const std::vector<const char*>& endings) {
+        if (const JsonValue* descriptions = find_member(*plan.study.document, member))
+            for (const auto& description : descriptions->GetObject())
+                for (const char* ending : endings) names.push_back(text_of(description.name) + ending);
     };
     add("tables", {".csv", ".md", ".tex"});
     add("plots", {".svg"});

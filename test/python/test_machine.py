@@ -155,7 +155,7 @@ def study(tmp_path):
 def test_programs_of_strangers_are_refused(study, tmp_path):
     with pytest.raises(ostraka.InputError, match="stranger") as refused:
         ostraka.run(study, output=tmp_path / "out", programs=tmp_path / "programs")
-    assert "none of the toolkit's own programs" in refused.value.problem and "allow" in refused.value.remedy
+    assert "not a program of the toolkit" in refused.value.problem and "allow" in refused.value.remedy
     assert not (tmp_path / "started").exists() and not (tmp_path / "out").exists()
     shown = ostraka.run(study, output=tmp_path / "out", programs=tmp_path / "programs", dry_run=True)
     assert "'stranger'" in shown.report.tables["programs"][0]["words"] and not (tmp_path / "started").exists()
@@ -175,6 +175,6 @@ def test_other_programs_beside_python_are_none_of_ours(tmp_path):
     file = tmp_path / "s.study.json"
     file.write_text(json.dumps({"format": "ostraka-study", "version": 1, "steps": {
         "a": {"program": ["sh", "-c", f"touch {tmp_path / 'started'}"]}}}))
-    with pytest.raises(ostraka.InputError, match="none of the toolkit's own"):
+    with pytest.raises(ostraka.InputError, match="not a program of the toolkit"):
         ostraka.run(file, output=tmp_path / "out")
     assert not (tmp_path / "started").exists()

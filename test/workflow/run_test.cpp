@@ -86,7 +86,7 @@ TEST(StudyPlan, GathersAllInstances) {
     EXPECT_EQ(plan.instances[pictures[0]].inputs.size(), 3U);
 }
 
-TEST(RunStudy, RunsOnceAndAgainOnlyWhatChanged) {
+TEST(RunStudy, RunsOnlyChangedStepsAgain) {
     const Scratch scratch;
     furnish_teapot(scratch);
     const Path file = scratch.file("t.study.json", study_text_of(teapot_study)), out = scratch / "out";
@@ -94,7 +94,7 @@ TEST(RunStudy, RunsOnceAndAgainOnlyWhatChanged) {
     EXPECT_EQ(count(run_all(plan, out), InstanceState::done), 8U);
     EXPECT_EQ(count(run_all(plan, out), InstanceState::unchanged), 8U);
     EXPECT_TRUE(file_exists(out / "steps/transfer/vertices=4000/pot-4000.ant.json"));
-    EXPECT_FALSE(file_exists(out / "steps/pot/pot.ply")) << "what nobody asked for is not written";
+    EXPECT_FALSE(file_exists(out / "steps/pot/pot.ply")) << "outputs that are not requested are not written";
 
     // One option: only what depends on it, and what that needs in memory.
     const auto changed = run_all(plan_of(file, {.set = {"spikes=avoid"}}), out);
@@ -108,10 +108,10 @@ TEST(RunStudy, RunsOnceAndAgainOnlyWhatChanged) {
     // A file that was changed is made again; so is one that is gone.
     write_file(out / "steps/annotated/annotated.ant.json", "{}");
     std::filesystem::remove(out / "steps/transfer/vertices=4000/pot-4000.ant.json");
-    const auto mended = run_all(plan_of(file, {.set = {"spikes=avoid"}}), out);
-    EXPECT_NE(mended[plan.instances_of(plan.study.step("annotated"))[0]].why.find("was changed"), std::string::npos);
-    EXPECT_EQ(mended[plan.instances_of(plan.study.step("transfer"))[0]].state, InstanceState::unchanged);
-    EXPECT_EQ(mended[plan.instances_of(plan.study.step("transfer"))[1]].state, InstanceState::done);
+    const auto repaired = run_all(plan_of(file, {.set = {"spikes=avoid"}}), out);
+    EXPECT_NE(repaired[plan.instances_of(plan.study.step("annotated"))[0]].why.find("was changed"), std::string::npos);
+    EXPECT_EQ(repaired[plan.instances_of(plan.study.step("transfer"))[0]].state, InstanceState::unchanged);
+    EXPECT_EQ(repaired[plan.instances_of(plan.study.step("transfer"))[1]].state, InstanceState::done);
 
     // An input file.
     std::string recipe = read_file(scratch / "teapot.recipe.json");
@@ -121,17 +121,17 @@ TEST(RunStudy, RunsOnceAndAgainOnlyWhatChanged) {
     EXPECT_EQ(count(other, InstanceState::would_run), 1U + 2 + 2);
 }
 
-TEST(RunStudy, GivesTheSameBytesForAnyNumberOfThreadsAndParts) {
+TEST(RunStudy, GivesTheSameBytesForAnyNumberOfThreadsAndShards) {
     const Scratch scratch;
     furnish_teapot(scratch);
     const Path file = scratch.file("t.study.json", study_text_of(teapot_study));
     const StudyPlan plan = plan_of(file);
-    const int before = threads();
+    const int original_threads = threads();
     for (const int n : {1, 4}) {
         set_threads(n);
         run_all(plan, scratch / ("threads-" + std::to_string(n)));
     }
-    set_threads(before);
+    set_threads(original_threads);
     for (const std::size_t shards : {2, 7}) {
         const Path out = scratch / ("shards-" + std::to_string(shards));
         for (std::size_t k = shards; k-- > 0;) run_all(plan, out, {.share = {k, shards}});
@@ -143,7 +143,7 @@ TEST(RunStudy, GivesTheSameBytesForAnyNumberOfThreadsAndParts) {
     for (const char* other : {"threads-4", "shards-2", "shards-7"}) EXPECT_EQ(files_of(scratch / other), expected) << other;
 }
 
-TEST(RunStudy, AFailureEndsItsBranchOnly) {
+TEST(RunStudy, FailureSkipsOnlyDependentSteps) {
     const Scratch scratch;
     furnish_teapot(scratch);
     write_file(scratch / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
@@ -162,7 +162,7 @@ TEST(RunStudy, AFailureEndsItsBranchOnly) {
     EXPECT_NE(read_file(scratch / "out/page.md").find("What failed"), std::string::npos);
 }
 
-TEST(RunStudy, LosesOnlyTheStepUnderWayWhenKilled) {
+TEST(RunStudy, KillLosesOnlyTheRunningStep) {
     const Scratch scratch;
     const Path file = scratch.file("k.study.json", study_text_of(R"("parameters": {"n": {"from": 1, "to": 12}},
         "steps": {"one": {"operation": "mesh make", "with": {"object": "teapot", "vertices": 8000, "seed": "${n}", "noise": 0.001}, "keep": ["output"]}})"));
@@ -173,9 +173,9 @@ TEST(RunStudy, LosesOnlyTheStepUnderWayWhenKilled) {
         std::size_t kept = 0;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(out))
             kept += entry.path().filename() == "record.json" ? 1 : 0;
-        const auto rest = run_command("run " + file.string() + " --json --output " + out.string());
-        ASSERT_EQ(rest.code, 0) << rest.err;
-        const Json report = parse_json(rest.out, "report");
+        const auto resumed = run_command("run " + file.string() + " --json --output " + out.string());
+        ASSERT_EQ(resumed.code, 0) << resumed.err;
+        const Json report = parse_json(resumed.out, "report");
         EXPECT_EQ(report["result"]["unchanged"].GetUint64(), kept) << signal;
         EXPECT_EQ(report["result"]["done"].GetUint64(), 12 - kept) << signal;
     }
@@ -201,7 +201,7 @@ const char* const right_edit =
 
 }  // namespace
 
-TEST(RunStudy, WhatIsNotKeptIsMadeAgainForWhatFailed) {
+TEST(RunStudy, RunsUnkeptStepsAgainForFailedDependents) {
     const Scratch scratch;
     furnish_teapot(scratch);
     const Path file = scratch.file("r.study.json", study_text_of(resumed_study));
@@ -209,7 +209,7 @@ TEST(RunStudy, WhatIsNotKeptIsMadeAgainForWhatFailed) {
     const auto run = [&] {
         return run_command("run " + file.string() + " --json --output " + (scratch / "out").string(), "timeout 120");
     };
-    for (int lap = 0; lap < 3; ++lap) {
+    for (int attempt = 0; attempt < 3; ++attempt) {
         const auto failing = run();
         ASSERT_EQ(failing.code, 3) << failing.err;
         const Json report = parse_json(failing.out, "report");
@@ -218,15 +218,15 @@ TEST(RunStudy, WhatIsNotKeptIsMadeAgainForWhatFailed) {
         EXPECT_FALSE(file_exists(scratch / "out/steps/later/later.ant.json"));
     }
     write_file(scratch / "edit.json", right_edit);
-    const auto mended = run();
-    ASSERT_EQ(mended.code, 0) << mended.err << mended.out;
+    const auto repaired = run();
+    ASSERT_EQ(repaired.code, 0) << repaired.err << repaired.out;
     EXPECT_NE(read_file(scratch / "out/steps/later/later.ant.json").find("\"cover\""), std::string::npos);
-    const Json again = parse_json(run().out, "report");
-    EXPECT_EQ(again["result"]["unchanged"].GetInt(), 7);
-    EXPECT_EQ(again["result"]["done"].GetInt(), 0);
+    const Json report = parse_json(run().out, "report");
+    EXPECT_EQ(report["result"]["unchanged"].GetInt(), 7);
+    EXPECT_EQ(report["result"]["done"].GetInt(), 0);
 }
 
-TEST(RunStudy, IsTheSameHoweverOftenItIsKilled) {
+TEST(RunStudy, GivesTheSameFilesAfterRepeatedKills) {
     const Scratch scratch;
     furnish_teapot(scratch);
     const Path file = scratch.file("r.study.json", study_text_of(resumed_study));
@@ -242,7 +242,7 @@ TEST(RunStudy, IsTheSameHoweverOftenItIsKilled) {
     EXPECT_EQ(files_of(scratch / "killed"), files_of(scratch / "whole"));
 }
 
-TEST(RunStudy, WritesTablesPlotsAPageAndACrateThatReplays) {
+TEST(RunStudy, WritesTablesPlotsPageAndReplayableCrate) {
     const Scratch scratch;
     const Path file =
         scratch.file("t.study.json", study_text_of(R"("title": "Vases", "parameters": {"n": [2000, 3000], "seed": [1, 2]},
@@ -294,7 +294,7 @@ TEST(RunStudy, ReadsAFileOnceForAllSteps) {
     const auto result =
         run_command("run " + file.string() + " --quiet --threads 2 --output " + (scratch / "out").string(),
                     "strace -f -e trace=read -P " + (scratch / "v.ply").string() + " -o " + (scratch / "trace").string());
-    if (result.code == 127) GTEST_SKIP() << "strace is not there: how often the file is read was not counted";
+    if (result.code == 127) GTEST_SKIP() << "strace is not installed: the number of reads was not counted";
     ASSERT_EQ(result.code, 0) << result.err << result.out;
     const std::string trace = read_file(scratch / "trace");
     std::size_t bytes = 0;
@@ -307,7 +307,7 @@ TEST(RunStudy, ReadsAFileOnceForAllSteps) {
     EXPECT_EQ(bytes, std::filesystem::file_size(scratch / "v.ply"));
 }
 
-TEST(RunStudy, ProgramsBesideTheCommandAreSteps) {
+TEST(RunStudy, RunsProgramsAsSteps) {
     const Scratch scratch;
     const std::string name = Path(OSTRAKA_COMMAND).filename().string();
     const Path file = scratch.file("p.study.json", study_text_of(R"("steps": {
@@ -315,11 +315,11 @@ TEST(RunStudy, ProgramsBesideTheCommandAreSteps) {
         "info": {"operation": "mesh info", "with": {"input": "${pot.v.ply}"}},
         "again": {"program": [")" + name + R"(", "mesh", "convert", "${pot.v.ply}", "${folder}/v.obj"]}})"));
     const std::string words = "run " + file.string() + " --json --output " + (scratch / "out").string();
-    EXPECT_EQ(run_command(words).code, 1) << "it is none of the toolkit's own";
+    EXPECT_EQ(run_command(words).code, 1) << "not a program of the toolkit";
     EXPECT_FALSE(is_folder(scratch / "out"));
-    const auto shown = run_command(words + " --dry-run");
-    EXPECT_EQ(shown.code, 3) << shown.out << shown.err;
-    EXPECT_NE(shown.out.find("'mesh' 'make' 'vase'"), std::string::npos) << shown.out;
+    const auto dry_run = run_command(words + " --dry-run");
+    EXPECT_EQ(dry_run.code, 3) << dry_run.out << dry_run.err;
+    EXPECT_NE(dry_run.out.find("'mesh' 'make' 'vase'"), std::string::npos) << dry_run.out;
     const auto first = run_command(words + " --allow-programs");
     ASSERT_EQ(first.code, 0) << first.err << first.out;
     EXPECT_NE(first.err.find("'mesh' 'make' 'vase'"), std::string::npos) << first.err;
@@ -340,7 +340,8 @@ TEST(RunStudy, ReadsFoldersThatTheCallerNames) {
     EXPECT_EQ(refused.code, 1);
     EXPECT_NE(refused.err.find("--reads"), std::string::npos) << refused.err;
     EXPECT_EQ(run_command(words + " --reads " + (scratch / "scans").string()).code, 0);
-    EXPECT_EQ(run_command(words + " --again --set where=" + (scratch / "scans").string()).code, 0) << "the caller's own word";
+    EXPECT_EQ(run_command(words + " --again --set where=" + (scratch / "scans").string()).code, 0)
+        << "a path given by the caller";
     // A run that says itself where its inputs lie is not believed.
     EXPECT_EQ(run_command("replay " + (scratch / "out").string()).code, 1);
     EXPECT_EQ(run_command("replay " + (scratch / "out").string() + " --inputs " + (scratch / "study").string() + " --reads " +
@@ -349,7 +350,7 @@ TEST(RunStudy, ReadsFoldersThatTheCallerNames) {
               0);
     // A link in the study's folder leads out of it.
     std::filesystem::create_directory_symlink(scratch / "scans", scratch / "study/linked");
-    EXPECT_EQ(run_command(words + " --set where=linked").code, 0) << "the caller's own word";
+    EXPECT_EQ(run_command(words + " --set where=linked").code, 0) << "a path given by the caller";
     write_file(scratch / "study/l.study.json",
                study_text_of(R"("steps": {"info": {"operation": "mesh info", "with": {"input": "linked/v.ply"}}})"));
     EXPECT_EQ(run_command("run " + (scratch / "study/l.study.json").string() + " --output " + (scratch / "l").string()).code, 1);
@@ -365,10 +366,10 @@ TEST(RunStudy, NeverLeavesTheRunFolder) {
         EXPECT_EQ(count(run_all(plan, out), InstanceState::done), plan.instances.size());
         write_file(outside / "kept.txt", "kept");
     };
-    const auto refused = [&](const std::string& what) {
-        EXPECT_THROW(run_all(plan, out), Error) << what;
-        EXPECT_EQ(read_file(outside / "kept.txt"), "kept") << what;
-        EXPECT_EQ(files_in(outside.path()).size(), 1U) << what;
+    const auto refused = [&](const std::string& attempt) {
+        EXPECT_THROW(run_all(plan, out), Error) << attempt;
+        EXPECT_EQ(read_file(outside / "kept.txt"), "kept") << attempt;
+        EXPECT_EQ(files_in(outside.path()).size(), 1U) << attempt;
     };
     const auto named = [&](const std::string& name) {
         std::string record = read_file(step / "record.json");
@@ -412,7 +413,7 @@ TEST(RunStudy, NeverLeavesTheRunFolder) {
     EXPECT_EQ(read_file(outside / "kept.txt"), "kept");
 }
 
-TEST(RunStudy, NoticesInputsThatChangeMeanwhile) {
+TEST(RunStudy, FailsStepsWhoseInputsChangeDuringTheRun) {
     const Scratch scratch;
     ASSERT_EQ(run_command("mesh make vase " + (scratch / "v.ply").string() + " --vertices 2000").code, 0);
     ASSERT_EQ(run_command("mesh make vase " + (scratch / "w.ply").string() + " --vertices 2500").code, 0);
@@ -431,17 +432,18 @@ TEST(RunStudy, NoticesInputsThatChangeMeanwhile) {
         const WatchScope scope(&watch);
         results = run_all(plan, scratch / "out");
     }
-    ASSERT_TRUE(has_changed) << "the run was over too soon";
-    EXPECT_EQ(count(results, InstanceState::done), 0U) << "which of them took the new file is not known";
+    ASSERT_TRUE(has_changed) << "the run ended before the input was changed";
+    EXPECT_EQ(count(results, InstanceState::done), 0U) << "it is unknown which of them read the new file";
     EXPECT_EQ(count(results, InstanceState::failed) + count(results, InstanceState::skipped), plan.instances.size());
-    const auto again = run_all(plan, scratch / "out");
-    EXPECT_EQ(count(again, InstanceState::done) + count(again, InstanceState::unchanged), plan.instances.size());
+    const auto second_results = run_all(plan, scratch / "out");
+    EXPECT_EQ(count(second_results, InstanceState::done) + count(second_results, InstanceState::unchanged),
+              plan.instances.size());
     // What was only touched has not changed.
     std::filesystem::last_write_time(scratch / "v.ply", std::filesystem::file_time_type::clock::now());
     EXPECT_EQ(count(run_all(plan, scratch / "out"), InstanceState::unchanged), plan.instances.size());
 }
 
-TEST(RunStudy, AResumedRunIsUnchangedWhereItIsMovedTo) {
+TEST(RunStudy, MovedRunIsUnchanged) {
     const Scratch scratch;
     std::filesystem::create_directory(scratch / "a");
     write_file(scratch / "a/teapot.recipe.json", read_file(Path(OSTRAKA_SOURCE_DIR) / "data" / "teapot.recipe.json"));
@@ -475,7 +477,8 @@ TEST(RunStudy, SeveralProcessesRunIntoOneFolder) {
     for (const CommandResult& result : results) EXPECT_EQ(result.code, 0) << result.err << result.out;
     ASSERT_EQ(run_command("run " + file.string() + " --output " + (scratch / "alone").string()).code, 0);
     auto together = files_of(scratch / "out"), alone = files_of(scratch / "alone");
-    for (auto* files : {&together, &alone}) std::erase_if(*files, [](const auto& one) { return one.first == "run.json"; });
+    for (auto* files : {&together, &alone})
+        std::erase_if(*files, [](const auto& name_and_content) { return name_and_content.first == "run.json"; });
     EXPECT_EQ(together, alone);
 }
 
@@ -486,8 +489,8 @@ TEST(StudyPlan, FilesOfAPatternAreRelativeToTheStudy) {
         ASSERT_EQ(run_command("mesh make sphere " + (scratch / name).string() + " --vertices 400").code, 0);
     write_file(scratch / "f/s.study.json", study_text_of(R"("parameters": {"scan": {"files": "scans/*.ply"}},
         "steps": {"info": {"operation": "mesh info", "with": {"input": "${scan}"}}})"));
-    const auto run = [&](const std::string& before, const std::string& file) {
-        return run_command("run " + file + " --dry-run --json", "cd " + (scratch / before).string() + ";");
+    const auto run = [&](const std::string& working_folder, const std::string& file) {
+        return run_command("run " + file + " --dry-run --json", "cd " + (scratch / working_folder).string() + ";");
     };
     for (const auto& [folder, file] : {std::pair("f", "s.study.json"), std::pair(".", "f/s.study.json")}) {
         const auto result = run(folder, file);

@@ -4,7 +4,7 @@
 using namespace ostraka;
 using namespace ostraka::test;
 
-TEST(StudyPage, TextsOfAStudyStayTexts) {
+TEST(StudyPage, EscapesMarkupInTexts) {
     const Scratch scratch;
     const std::string evil = "<img src=x onerror=alert(1)> [x](javascript:alert(2)) `c` *b*";
     const Path file = scratch.file("a.study.json", study_text_of(R"("title": ")" + evil + R"(", "note": "# )" + evil +
@@ -21,12 +21,12 @@ TEST(StudyPage, TextsOfAStudyStayTexts) {
     const auto result = run_command("run " + file.string() + " --output " + (scratch / "out").string());
     ASSERT_EQ(result.code, 0) << result.err;
     const std::string page = read_file(scratch / "out/page.md");
-    for (const char* mark : {"<img", "[x](", " `c`", " *b*", "\n- item", "\n# <", "\n# #"})
-        EXPECT_EQ(page.find(mark), std::string::npos) << mark << " in " << page;
-    const std::string shown = "&lt;img src=x onerror=alert(1)&gt; \\[x\\](javascript:alert(2)) \\`c\\` \\*b\\*";
+    for (const char* markup : {"<img", "[x](", " `c`", " *b*", "\n- item", "\n# <", "\n# #"})
+        EXPECT_EQ(page.find(markup), std::string::npos) << markup << " in " << page;
+    const std::string escaped = "&lt;img src=x onerror=alert(1)&gt; \\[x\\](javascript:alert(2)) \\`c\\` \\*b\\*";
     for (const std::string& place :
-         {"# " + shown + "\n", "\n\\# " + shown + "\n\\- item\n", "\n## " + shown + "\n\n" + shown + "\n",
-          "**" + shown + "**\n\n" + shown + "\n\n", "| " + shown + " |", "![" + shown + "](curve.svg)"})
+         {"# " + escaped + "\n", "\n\\# " + escaped + "\n\\- item\n", "\n## " + escaped + "\n\n" + escaped + "\n",
+          "**" + escaped + "**\n\n" + escaped + "\n\n", "| " + escaped + " |", "![" + escaped + "](curve.svg)"})
         EXPECT_NE(page.find(place), std::string::npos) << place << " not in " << page;
     EXPECT_NE(page.find("](<steps/vase/"), std::string::npos) << page;
 }

@@ -7,16 +7,16 @@ using namespace ostraka::test;
 namespace {
 
 struct Wrong {
-    const char* what;
-    const char* text;   ///< members of the study; a text that begins with '!' is the whole file
-    const char* place;  ///< that the message names
-    const char* says;   ///< of the problem or the remedy
+    const char* description;
+    const char* text;     ///< members of the study; a text that begins with '!' is the whole file
+    const char* place;    ///< that the message names
+    const char* message;  ///< of the problem or the remedy
 };
 
 /// A step that is right, for studies that are wrong elsewhere.
 #define GOOD R"("a": {"operation": "mesh make", "with": {"object": "vase", "vertices": 2000}})"
 
-const Wrong list[]{
+const Wrong wrong_studies[]{
     {"no JSON", "!{\"format\": \"ostraka-study\",", "wrong.study.json, line 1", ""},
     {"another format", "!{\"format\": \"ostraka-edit\", \"version\": 1, \"steps\": []}", "wrong.study.json", "study file"},
     {"a version to come", "!{\"format\": \"ostraka-study\", \"version\": 2, \"steps\": {}}", "/version", "schema"},
@@ -77,8 +77,7 @@ const Wrong list[]{
      "/steps/a", "vertices"},
     {"a value out of range", R"("steps": {"a": {"operation": "mesh make", "with": {"object": "vase", "noise": -1}}})", "/steps/a",
      "noise"},
-    {"a choice that is none", R"("steps": {"a": {"operation": "mesh make", "with": {"object": "spaceship"}}})", "/steps/a",
-     "vase"},
+    {"an unknown choice", R"("steps": {"a": {"operation": "mesh make", "with": {"object": "spaceship"}}})", "/steps/a", "vase"},
     {"a missing input", R"("steps": {"a": {"operation": "mesh info"}})", "/steps/a", "input is missing"},
     {"a file that is not there", R"("steps": {"a": {"operation": "mesh info", "with": {"input": "no.ply"}}})",
      "/steps/a/with/input", "relative to the study file"},
@@ -101,7 +100,7 @@ const Wrong list[]{
     {"a circle",
      R"("steps": {"a": {"operation": "mesh simplify", "with": {"input": "${b.output}", "vertices": 9}},
                   "b": {"operation": "mesh simplify", "with": {"input": "${a.output}", "vertices": 9}}})",
-     "/steps/a", "break the circle"},
+     "/steps/a", "remove one reference"},
     {"its own output", R"("steps": {"a": {"operation": "mesh simplify", "with": {"input": "${a.output}", "vertices": 9}}})",
      "/steps/a/with/input", "own output"},
     {"an unknown parameter",
@@ -109,7 +108,7 @@ const Wrong list[]{
      "/steps/a/with/vertices", "did you mean 'size'"},
     {"a member that a value has not",
      R"("parameters": {"case": [{"name": "x", "n": 2000}, {"name": "y"}]}, "steps": {"a": {"operation": "mesh make", "with": {"object": "vase", "vertices": "${case.n}"}}})",
-     "/steps/a/with/vertices", "give it to each"},
+     "/steps/a/with/vertices", "to each value"},
     {"a value twice", R"("parameters": {"n": [2000, 2000]}, "steps": {)" GOOD "}", "/parameters/n", "twice"},
     {"a range that ends first", R"("parameters": {"n": {"from": 3, "to": 1}}, "steps": {)" GOOD "}", "/parameters/n",
      "ends before"},
@@ -118,7 +117,7 @@ const Wrong list[]{
     {"quick values of no parameter", R"("parameters": {"n": 1}, "quick": {"m": 2}, "steps": {)" GOOD "}", "/quick/m", "n"},
     {"an output among the inputs", R"("steps": {"a": {"operation": "mesh make", "with": {"object": "vase", "output": "a.ply"}}})",
      "/steps/a/with/output", "keep"},
-    {"an output that is none", R"("steps": {"a": {"operation": "mesh make", "with": {"object": "vase"}, "keep": ["outptu"]}})",
+    {"an unknown output name", R"("steps": {"a": {"operation": "mesh make", "with": {"object": "vase"}, "keep": ["outptu"]}})",
      "/steps/a/keep/0", "did you mean 'output'"},
     {"a file outside the run folder",
      R"("steps": {"a": {"operation": "mesh make", "with": {"object": "vase"}, "keep": {"output": "../a.ply"}}})",
@@ -165,9 +164,9 @@ const Wrong list[]{
 }  // namespace
 
 TEST(WrongStudies, AreRefusedWithPlaceAndRemedyBeforeAnythingRuns) {
-    EXPECT_GE(std::size(list), 40U);
-    for (const Wrong& wrong : list) {
-        SCOPED_TRACE(wrong.what);
+    EXPECT_GE(std::size(wrong_studies), 40U);
+    for (const Wrong& wrong : wrong_studies) {
+        SCOPED_TRACE(wrong.description);
         const Scratch scratch;
         const Path file =
             scratch.file("wrong.study.json", wrong.text[0] == '!' ? std::string(wrong.text + 1) : study_text_of(wrong.text));
@@ -179,8 +178,8 @@ TEST(WrongStudies, AreRefusedWithPlaceAndRemedyBeforeAnythingRuns) {
             const std::string text = error.what();
             EXPECT_NE(text.find(file.string()), std::string::npos) << text;
             EXPECT_NE(text.find(wrong.place), std::string::npos) << text;
-            EXPECT_NE(text.find(wrong.says), std::string::npos) << text;
-            EXPECT_FALSE(error.remedy().empty() && std::string(wrong.what) != "no JSON") << text;
+            EXPECT_NE(text.find(wrong.message), std::string::npos) << text;
+            EXPECT_FALSE(error.remedy().empty() && std::string(wrong.description) != "no JSON") << text;
         }
         EXPECT_EQ(count_files(scratch.path()), 1U);
     }
@@ -188,10 +187,10 @@ TEST(WrongStudies, AreRefusedWithPlaceAndRemedyBeforeAnythingRuns) {
 
 TEST(WrongStudies, AreRefusedByTheCommand) {
     const Scratch scratch;
-    const auto refuse = [&](const std::string& words, int code, const std::string& says) {
+    const auto refuse = [&](const std::string& words, int code, const std::string& message) {
         const auto result = run_command("run " + words + " --output " + (scratch / "out").string());
         EXPECT_EQ(result.code, code) << result.err;
-        EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
         EXPECT_FALSE(std::filesystem::exists(scratch / "out")) << words;
     };
     const std::string good =
@@ -199,16 +198,16 @@ TEST(WrongStudies, AreRefusedByTheCommand) {
     refuse((scratch / "none.study.json").string(), 1, "none.study.json");
     refuse(scratch.file("bad.study.json", study_text_of(R"("steps": {"a": {"operation": "mesh mkae"}})")).string(), 1,
            "did you mean 'mesh make'");
-    refuse(good + " --only b", 2, "is no step");
-    refuse(good + " --set m=1", 2, "is no parameter");
+    refuse(good + " --only b", 2, "is not a step");
+    refuse(good + " --set m=1", 2, "is not a parameter");
     refuse(good + " --set n", 2, "NAME=VALUE");
     refuse(good + " --shard 3/2", 2, "K from 1 to N");
-    refuse(good + " --explain b", 2, "is no step");
+    refuse(good + " --explain b", 2, "is not a step");
     refuse(scratch.file("program.study.json", study_text_of(R"("steps": {"a": {"program": ["rm", "-rf", "x"]}})")).string(), 1,
-           "starts 'rm', which is none of the toolkit's own programs");
+           "starts 'rm', which is not a program of the toolkit");
     refuse((scratch / "program.study.json").string() + " --allow-programs --programs " + scratch.path().string(), 1,
            "there is no program 'rm'");
     const auto replay = run_command("replay " + scratch.path().string());
     EXPECT_EQ(replay.code, 1);
-    EXPECT_NE(replay.err.find("no folder of a run"), std::string::npos) << replay.err;
+    EXPECT_NE(replay.err.find("not the folder of a run"), std::string::npos) << replay.err;
 }

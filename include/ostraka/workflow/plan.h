@@ -70,8 +70,8 @@ private:
                     const std::string& place, const std::string& label);
     void check_word(const StudySetting& word, const StudyText& text, const std::string& filled) const;
     void check_counts(const StudyInstance& instance);
-    void want(std::size_t instance, const std::string& output, bool keep);
-    [[nodiscard]] std::size_t instance_of(std::size_t step, const StudyInstance& of) const;
+    void request_output(std::size_t instance, const std::string& output, bool keep);
+    [[nodiscard]] std::size_t instance_of(std::size_t step, const StudyInstance& user) const;
     void make_outputs(StudyInstance& instance);
     void check(const StudyInstance& instance) const;
     void check_outputs() const;
@@ -81,6 +81,6 @@ private:
 };
 
 /// Whether an object of kind `given` is accepted where `asked` is required.
-bool fits(Kind given, Kind asked);
+bool is_compatible(Kind available, Kind required);
 
 }  // namespace ostraka

@@ -47,19 +47,19 @@ public:
     std::string collection(const Path& folder_or_file);
     void forget(const Path& file);
     /// Sets the checksum of a file, as computed by another reader.
-    void know(const Path& file, const std::string& sha256);
+    void store(const Path& file, const std::string& sha256);
     /// Files with known checksums that have changed, or that had different checksums for different readers.
     std::vector<Path> changed();
     bool is_known(const Path& file);
 
 private:
-    struct Known {
+    struct Entry {
         std::string sha256;
         std::optional<FileStamp> stamp;
         bool differs = false;  ///< another reader found different content
     };
     std::mutex mutex_;
-    std::map<Path, Known> known_;
+    std::map<Path, Entry> entries_;
 };
 
 /// Reads FOLDER/record.json; empty if it is missing, damaged or of another version. Throws Error (input) if an output that it
@@ -73,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> dependencies(const StudyPlan& p
                                                               FileChecksums& checksums, const Path& program_folder);
 
 /// The reason why an instance has to run again; empty if nothing has changed. `run_folder`: folder of all instances.
-std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& known,
+std::string why_again(const StudyPlan& plan, const std::optional<StudyRecord>& record,
                       const std::vector<std::pair<std::string, std::string>>& depends, const StudyInstance& instance,
                       const Path& run_folder, FileChecksums& checksums);
 
