@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/limits.h"
 
+#include <fmt/core.h>
+
 #include <set>
 
 namespace ostraka {
@@ -18,7 +20,7 @@ MeasureDirection direction_from(const JsonValue& value, const std::string& where
     for (rapidjson::SizeType i = 0; i < 3; ++i) direction.coordinates[i] = value[i].GetDouble();
     const auto& [x, y, z] = direction.coordinates;
     if (unit_vector({x, y, z}) == CGAL::NULL_VECTOR)
-        fail_input(where, "the direction has no length", "give three numbers that are not all 0");
+        fail_input(where, "the direction has length zero", "give three numbers of which at least one is not 0");
     return direction;
 }
 
@@ -35,10 +37,10 @@ MeasureDefinitions measure_definitions_from_text(const std::string& text, const 
     MeasureDefinitions result;
     result.text = text;
     std::set<std::string> names;
-    const auto& list = document["measures"].GetArray();
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
-        const JsonValue& entry = list[i];
-        const std::string at = where + ", /measures/" + std::to_string(i);
+    const auto& entries = document["measures"].GetArray();
+    for (rapidjson::SizeType i = 0; i < entries.Size(); ++i) {
+        const JsonValue& entry = entries[i];
+        const std::string at = fmt::format("{}, /measures/{}", where, i);
         const auto word = [&](const char* name) {
             const JsonValue* member = find_member(entry, name);
             return member == nullptr ? std::string() : std::string(member->GetString());
@@ -46,7 +48,7 @@ MeasureDefinitions measure_definitions_from_text(const std::string& text, const 
         MeasureDefinition definition;
         definition.name = word("name");
         if (!names.insert(definition.name).second)
-            fail_input(at, "the name '" + definition.name + "' stands there twice", "give each measure a name of its own");
+            fail_input(at, fmt::format("two measures have the name '{}'", definition.name), "give each measure its own name");
         definition.tool = word("tool");
         definition.annotation = word("annotation");
         definition.attribute = word("attribute");

@@ -4,6 +4,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -96,8 +98,8 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
             if (std::pair(rows[i]->powers[j], rows[i]->units[j]) == kind)
                 table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *rows[i]->values[j];
             else
-                notes.push_back("'" + definitions.list[j].name + "' of '" + table.objects[i] +
-                                "' has another unit than most: left out");
+                notes.push_back(fmt::format("'{}' of '{}' has a different unit from most objects and is left out",
+                                            definitions.list[j].name, table.objects[i]));
         }
     }
     return table;
@@ -105,84 +107,85 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
 
 std::vector<ObjectResult> take_measures(const Collection& collection, const MeasureDefinitions& definitions,
                                         const ResultStore& store, const TagWords* words, const std::string& words_checksum) {
-    std::vector<std::string> what{"measures", definitions.text};
-    if (words != nullptr) what.push_back("words " + words_checksum);
-    return for_each_object(collection, store, what, [&](const CollectionObject& object) {
+    std::vector<std::string> key_parts{"measures", definitions.text};
+    if (words != nullptr) key_parts.push_back("words " + words_checksum);
+    return for_each_object(collection, store, key_parts, [&](const CollectionObject& object) {
         return object_measures_to_json(take_measures(object, definitions, words));
     });
 }
 
-MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& taken,
+MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& results,
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes, const std::string& where) {
     std::vector<std::string> names, order;
     std::vector<std::optional<ObjectMeasures>> objects;
     std::map<std::string, std::vector<std::string>> reported;  // note -> objects
-    for (std::size_t i = 0; i < taken.size(); ++i) {
+    for (std::size_t i = 0; i < results.size(); ++i) {
         names.push_back(collection.objects[i].name);
         objects.emplace_back();
-        if (!taken[i].problem.empty()) continue;
-        objects.back() = object_measures_from_json(taken[i].result);
+        if (!results[i].problem.empty()) continue;
+        objects.back() = object_measures_from_json(results[i].result);
         for (const auto& note : objects.back()->notes) {
             if (reported[note].empty()) order.push_back(note);
             reported[note].push_back(names.back());
         }
     }
     for (const auto& note : order) {
-        const auto& of = reported[note];
-        notes.push_back(of.front() + (of.size() == 1 ? "" : " and " + std::to_string(of.size() - 1) + " more") + ": " + note);
+        const auto& object_names = reported[note];
+        notes.push_back(fmt::format("{}{}: {}", object_names.front(),
+                                    object_names.size() == 1 ? "" : fmt::format(" and {} more", object_names.size() - 1), note));
     }
-    if (std::none_of(taken.begin(), taken.end(), [](const ObjectResult& each) { return each.problem.empty(); }))
-        fail_input(where, "not one object could be measured", "the first: " + taken.front().problem);
+    if (std::none_of(results.begin(), results.end(), [](const ObjectResult& result) { return result.problem.empty(); }))
+        fail_input(where, "no object could be measured", "the first error: " + results.front().problem);
     return measure_table(names, objects, definitions, notes);
 }
 
 MeasureTable read_measure_table(const Path& file) {
     const std::string text = read_file(file);
     const auto rows = csv_rows(text, csv_separator(text), file.string());
-    if (rows.size() < 2) fail_input(file.string(), "the table has no rows", "give a line of headings and a line an object");
+    if (rows.size() < 2) fail_input(file.string(), "the table has no rows", "give one line of headings and one line per object");
     MeasureTable table;
     std::vector<std::size_t> columns;
     std::optional<std::size_t> unit_column;
     std::string unit;
-    const auto& head = rows.front().cells;
-    std::set<std::string> known;
-    for (std::size_t c = 1; c < head.size(); ++c) {
-        const std::string name(trimmed(unguarded(head[c])));
-        const std::string at = file.string() + ", line " + std::to_string(rows.front().line);
+    const auto& headings = rows.front().cells;
+    std::set<std::string> measure_names;
+    for (std::size_t c = 1; c < headings.size(); ++c) {
+        const std::string name(trimmed(unguarded(headings[c])));
+        const std::string at = fmt::format("{}, line {}", file.string(), rows.front().line);
         if (name == "unit") {
             unit_column = c;
             continue;
         }
-        if (name.empty()) fail_input(at, "column " + std::to_string(c + 1) + " has no heading", "name its measure");
+        if (name.empty()) fail_input(at, fmt::format("column {} has no heading", c + 1), "give the name of its measure");
         if (number_of(name))
-            fail_input(at, "the first line holds the number " + name + " where the name of a measure should stand",
+            fail_input(at, fmt::format("the first line contains the number {} instead of the name of a measure", name),
                        "write a line of headings first: 'name', then the name of each measure");
         const Heading heading = heading_of(name);
-        if (!known.insert(heading.column.name).second)
-            fail_input(at, "the measure '" + heading.column.name + "' has two columns", "give each a name of its own");
+        if (!measure_names.insert(heading.column.name).second)
+            fail_input(at, fmt::format("the measure '{}' has two columns", heading.column.name),
+                       "give each measure its own name");
         if (heading.column.power != 0 && !heading.length_unit.empty()) {
             if (!unit.empty() && unit != heading.length_unit)
-                fail_input(at, "the headings name lengths in " + unit + " and in " + heading.length_unit,
-                           "use one unit, or a column 'unit'");
+                fail_input(at, fmt::format("the headings give lengths in both {} and {}", unit, heading.length_unit),
+                           "use one unit, or add a column 'unit'");
             unit = heading.length_unit;
         }
         table.measures.push_back(heading.column);
         columns.push_back(c);
     }
     if (columns.empty())
-        fail_input(file.string(), "the table has no column of a measure", "the first column holds names, the others measures");
+        fail_input(file.string(), "the table has no column with a measure",
+                   "put names in the first column and measures in the others");
     table.values.resize(static_cast<Eigen::Index>(rows.size() - 1), static_cast<Eigen::Index>(columns.size()));
     std::set<std::string> names;
     for (std::size_t r = 1; r < rows.size(); ++r) {
-        const std::string at = file.string() + ", line " + std::to_string(rows[r].line);
-        if (rows[r].cells.size() != head.size())
-            fail_input(
-                at,
-                "there are " + std::to_string(rows[r].cells.size()) + " cells for " + std::to_string(head.size()) + " headings",
-                "is a separator missing?");
+        const std::string at = fmt::format("{}, line {}", file.string(), rows[r].line);
+        if (rows[r].cells.size() != headings.size())
+            fail_input(at, fmt::format("there are {} cells for {} headings", rows[r].cells.size(), headings.size()),
+                       "check the line for a missing separator");
         const std::string name = unguarded(rows[r].cells[0]);
         if (!names.insert(name).second)
-            fail_input(at, "the object '" + name + "' comes twice", "give each object a line of its own");
+            fail_input(at, fmt::format("the object '{}' occurs twice", name), "give one line per object");
         table.objects.push_back(name);
         table.units.push_back(unit_column ? std::string(trimmed(rows[r].cells[*unit_column])) : unit);
         for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -191,11 +194,12 @@ MeasureTable read_measure_table(const Path& file) {
             if (cell.empty() || cell == "-") value = no_measure;
             else value = number_of(cell);
             if (!value) {
-                std::string pointed = cell;
-                std::replace(pointed.begin(), pointed.end(), ',', '.');
-                fail_input(at, "'" + cell + "' under '" + head[columns[c]] + "' is no number",
-                           pointed != cell && number_of(pointed) ? "a decimal comma? Write " + pointed
-                                                                 : "leave the cell empty where the measure is missing");
+                std::string with_decimal_point = cell;
+                std::replace(with_decimal_point.begin(), with_decimal_point.end(), ',', '.');
+                fail_input(at, fmt::format("'{}' under '{}' is not a number", cell, headings[columns[c]]),
+                           with_decimal_point != cell && number_of(with_decimal_point)
+                               ? "use a decimal point: " + with_decimal_point
+                               : "leave the cell empty if the measure is missing");
             }
             table.values(static_cast<Eigen::Index>(r - 1), static_cast<Eigen::Index>(c)) = *value;
         }
@@ -204,13 +208,13 @@ MeasureTable read_measure_table(const Path& file) {
 }
 
 std::string measure_table_to_csv(const MeasureTable& table) {
-    std::vector<std::string> head{"name", "unit"};
+    std::vector<std::string> headings{"name", "unit"};
     for (const MeasureColumn& column : table.measures) {
         const std::string power = column.power == 1 ? "" : "^" + std::to_string(column.power);
-        head.push_back(column.name +
-                       (column.power == 0 ? " [" + (column.unit.empty() ? "-" : column.unit) + "]" : " [unit" + power + "]"));
+        headings.push_back(column.name + (column.power == 0 ? fmt::format(" [{}]", column.unit.empty() ? "-" : column.unit)
+                                                            : fmt::format(" [unit{}]", power)));
     }
-    std::string text = csv_row(head);
+    std::string text = csv_row(headings);
     for (std::size_t i = 0; i < table.objects.size(); ++i) {
         std::vector<std::string> cells{table.objects[i], table.units[i]};
         for (std::size_t j = 0; j < table.measures.size(); ++j) {

@@ -4,6 +4,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,9 +23,9 @@ struct LengthUnit {
 };
 
 const std::vector<LengthUnit>& length_units() {
-    static const std::vector<LengthUnit> list{{"mm", 1e-3},   {"cm", 1e-2}, {"m", 1},   {"in", 0.0254},
-                                              {"ft", 0.3048}, {"um", 1e-6}, {"km", 1e3}};
-    return list;
+    static const std::vector<LengthUnit> units{{"mm", 1e-3},   {"cm", 1e-2}, {"m", 1},   {"in", 0.0254},
+                                               {"ft", 0.3048}, {"um", 1e-6}, {"km", 1e3}};
+    return units;
 }
 
 std::string usual_name(std::string unit) {
@@ -35,19 +37,19 @@ std::string usual_name(std::string unit) {
         {"meter", "m"},        {"meters", "m"},       {"inch", "in"},        {"inches", "in"},      {"\"", "in"},
         {"foot", "ft"},        {"feet", "ft"},        {"micrometre", "um"},  {"micrometer", "um"},  {"\u00b5m", "um"},
         {"\u03bcm", "um"},     {"kilometre", "km"},   {"kilometer", "km"}};
-    const auto found = names.find(unit);
-    return found == names.end() ? unit : found->second;
+    const auto usual = names.find(unit);
+    return usual == names.end() ? unit : usual->second;
 }
 
 std::optional<double> metres(const std::string& unit) {
-    for (const LengthUnit& known : length_units())
-        if (known.name == unit) return known.metres;
+    for (const LengthUnit& known_unit : length_units())
+        if (known_unit.name == unit) return known_unit.metres;
     return std::nullopt;
 }
 
 std::string power_of(const std::string& unit, int power) {
     if (unit.empty() || power == 0) return {};
-    return power == 1 ? unit : unit + "^" + std::to_string(power);
+    return power == 1 ? unit : fmt::format("{}^{}", unit, power);
 }
 
 }  // namespace
@@ -56,10 +58,9 @@ UnifiedMeasures unify_units(const MeasureTable& table) {
     const std::size_t n = table.objects.size();
     if (table.units.size() != n || static_cast<std::size_t>(table.values.rows()) != n ||
         static_cast<std::size_t>(table.values.cols()) != table.measures.size())
-        fail_usage("the table of measures has " + std::to_string(table.values.rows()) + " rows for " + std::to_string(n) +
-                       " objects and " + std::to_string(table.values.cols()) + " columns for " +
-                       std::to_string(table.measures.size()) + " measures",
-                   "give a row an object, a column a measure, a unit an object");
+        fail_usage(fmt::format("the table of measures has {} rows for {} objects and {} columns for {} measures",
+                               table.values.rows(), n, table.values.cols(), table.measures.size()),
+                   "give one row and one unit per object, and one column per measure");
     UnifiedMeasures result{table, std::vector<bool>(n, true), {}};
     const bool lengths = std::any_of(table.measures.begin(), table.measures.end(), [](const auto& m) { return m.power != 0; });
     std::map<std::string, std::size_t> counts;
@@ -71,9 +72,9 @@ UnifiedMeasures unify_units(const MeasureTable& table) {
 
     std::string common;
     std::size_t maximum = 0;
-    for (const LengthUnit& known : length_units())
-        if (const auto found = counts.find(known.name); found != counts.end() && found->second > maximum)
-            common = known.name, maximum = found->second;
+    for (const LengthUnit& known_unit : length_units())
+        if (const auto unit_count = counts.find(known_unit.name); unit_count != counts.end() && unit_count->second > maximum)
+            common = known_unit.name, maximum = unit_count->second;
     for (const auto& [unit, count] : counts)
         if (count > maximum) common = unit, maximum = count;
 
@@ -82,8 +83,8 @@ UnifiedMeasures unify_units(const MeasureTable& table) {
     for (std::size_t i = 0; i < n; ++i) {
         std::string& unit = result.table.units[i];
         if (unit == common) continue;
-        const std::optional<double> from = metres(unit), to = metres(common);
-        if (unit.empty() || !from || !to) {
+        const std::optional<double> unit_length = metres(unit), common_length = metres(common);
+        if (unit.empty() || !unit_length || !common_length) {
             result.comparable[i] = false;
             if (unit.empty()) ++unknown;
             else ++foreign[unit];
@@ -91,62 +92,63 @@ UnifiedMeasures unify_units(const MeasureTable& table) {
         }
         for (std::size_t j = 0; j < table.measures.size(); ++j)
             result.table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *=
-                std::pow(*from / *to, table.measures[j].power);
+                std::pow(*unit_length / *common_length, table.measures[j].power);
         ++converted[unit];
         unit = common;
     }
     for (MeasureColumn& column : result.table.measures)
         if (column.power != 0) column.unit = power_of(common, column.power);
     for (const auto& [unit, count] : converted)
-        result.notes.push_back("lengths of " + counted(count, "object") + " were converted from " + unit + " to " + common);
+        result.notes.push_back(fmt::format("lengths of {} were converted from {} to {}", counted(count, "object"), unit, common));
     if (unknown > 0)
         result.notes.push_back(counted(unknown, "object") +
-                               " without a unit: left out of the rows of lengths, kept in those of ratios");
+                               " without a unit: left out of the rows of lengths, but used for ratios");
     for (const auto& [unit, count] : foreign)
-        result.notes.push_back(counted(count, "object") + " in '" + unit + "', which cannot be converted to " + common +
-                               ": left out of the rows of lengths, kept in those of ratios");
+        result.notes.push_back(
+            fmt::format("{} in '{}', which cannot be converted to {}: left out of the rows of lengths, but used for ratios",
+                        counted(count, "object"), unit, common));
     return result;
 }
 
 SyntheticMeasures make_measures(const SyntheticMeasuresOptions& options) {
-    check_options(options, "made measures");
+    check_options(options, "synthetic measures");
     if (options.groups * options.group_size > options.measures)
-        fail_usage(std::to_string(options.groups) + " groups of " + std::to_string(options.group_size) +
-                       " measures need more than " + std::to_string(options.measures),
-                   "raise --measures or lower the groups");
+        fail_usage(
+            fmt::format("{} groups of {} measures need more than {}", options.groups, options.group_size, options.measures),
+            "increase --measures, or reduce --groups or --group-size");
     Random random(options.seed);
     const auto n = static_cast<Eigen::Index>(options.objects), m = static_cast<Eigen::Index>(options.measures);
-    SyntheticMeasures made;
-    made.table.values.resize(n, m);
-    made.table.units.assign(static_cast<std::size_t>(n), "mm");
+    SyntheticMeasures synthetic;
+    synthetic.table.values.resize(n, m);
+    synthetic.table.units.assign(static_cast<std::size_t>(n), "mm");
     // Measures are assigned to groups at random, so that their order carries no information.
-    made.groups.assign(static_cast<std::size_t>(m), -1);
+    synthetic.groups.assign(static_cast<std::size_t>(m), -1);
     const std::vector<std::size_t> order = random.permutation(static_cast<std::size_t>(m));
     for (int g = 0, next = 0; g < options.groups; ++g)
-        for (int k = 0; k < options.group_size; ++k) made.groups[order[static_cast<std::size_t>(next++)]] = g;
+        for (int k = 0; k < options.group_size; ++k) synthetic.groups[order[static_cast<std::size_t>(next++)]] = g;
     std::vector<double> centre, own;
     for (Eigen::Index j = 0; j < m; ++j) {
-        made.table.measures.push_back({"measure " + std::to_string(j + 1), 1, "mm"});
+        synthetic.table.measures.push_back({"measure " + std::to_string(j + 1), 1, "mm"});
         centre.push_back(std::log(random.uniform(20, 200)));
         own.push_back(options.ratio_deviation / std::sqrt(2.0) * random.uniform(1 - options.spread, 1 + options.spread));
     }
     for (Eigen::Index i = 0; i < n; ++i) {
-        made.table.objects.push_back("object " + std::to_string(i + 1));
+        synthetic.table.objects.push_back("object " + std::to_string(i + 1));
         const double size = random.normal(0, options.size_deviation);
         std::vector<double> shared(static_cast<std::size_t>(options.groups));
         for (double& value : shared) value = random.normal();
         for (Eigen::Index j = 0; j < m; ++j) {
             const auto at = static_cast<std::size_t>(j);
             const double alone = random.normal(), drawn = random.uniform();
-            const double deviation = made.groups[at] < 0 ? own[at] * alone
-                                                         : options.ratio_deviation / std::sqrt(2.0) *
-                                                                   shared[static_cast<std::size_t>(made.groups[at])] +
-                                                               options.planted_deviation / std::sqrt(2.0) * alone;
-            made.table.values(i, j) =
+            const double deviation = synthetic.groups[at] < 0 ? own[at] * alone
+                                                              : options.ratio_deviation / std::sqrt(2.0) *
+                                                                        shared[static_cast<std::size_t>(synthetic.groups[at])] +
+                                                                    options.planted_deviation / std::sqrt(2.0) * alone;
+            synthetic.table.values(i, j) =
                 drawn < options.missing ? std::numeric_limits<double>::quiet_NaN() : std::exp(centre[at] + size + deviation);
         }
     }
-    return made;
+    return synthetic;
 }
 
 void SyntheticMeasuresOptions::describe(OptionList& visit) {
@@ -158,10 +160,10 @@ void SyntheticMeasuresOptions::describe(OptionList& visit) {
     visit("planted-deviation", planted_deviation, "standard deviation of the logarithm of fixed ratios", Range{0, 2});
     visit("size-deviation", size_deviation, "standard deviation of the logarithm of the objects' common size", Range{0, 2});
     visit("spread", spread,
-          "how different measures are in how closely they follow the size: their deviations are multiplied by factors evenly "
+          "spread of the individual deviations of measures: they are multiplied by evenly spaced factors "
           "from 1 - spread to 1 + spread",
           Range{0, 0.95});
-    visit("missing", missing, "share of values that are missing", Range{0, 0.95});
+    visit("missing", missing, "fraction of missing values", Range{0, 0.95});
     visit("seed", seed, "random seed", Range{0, 1e18});
 }
 

@@ -6,6 +6,8 @@
 #include "ostraka/geom/submesh.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,18 +17,19 @@ namespace {
 
 Mesh read_head(const CollectionObject& object, const std::vector<int>& leave_out, const ObjectParts& parts) {
     const std::string where = object.mesh.empty() ? object.name : object.mesh.filename().string();
-    if (object.mesh.empty()) fail_input(where, "there is no mesh", "heads are compared by their surfaces");
+    if (object.mesh.empty())
+        fail_input(where, "the object has no mesh", "give a mesh, since heads are compared by their surfaces");
     const ObjectPart part = parts.read(object);
     std::vector<bool> keep(part.mesh.number_of_faces(), true);
     if (!leave_out.empty()) {
         const auto& labels = part.face_labels;
         if (labels.size() != keep.size())
-            fail_input(where, "its faces have no labels, by which parts could be left out", "write labels into the PLY file");
+            fail_input(where, "the faces have no labels, so that no parts can be left out", "write labels into the PLY file");
         for (std::size_t f = 0; f < keep.size(); ++f)
             keep[f] = std::find(leave_out.begin(), leave_out.end(), labels[f]) == leave_out.end();
     }
     Mesh mesh = keep_faces(part.mesh, keep, true).mesh;
-    if (mesh.number_of_faces() == 0) fail_input(where, "no face is left of it", "leave fewer parts out");
+    if (mesh.number_of_faces() == 0) fail_input(where, "no face remains", "leave out fewer parts");
     return mesh;
 }
 
@@ -51,13 +54,13 @@ JsonValue to_json(const FeatureSet& set, JsonAllocator& allocator) {
 FeatureSet from_json(const JsonValue& value) {
     FeatureSet set;
     set.size = value["size"].GetDouble();
-    const JsonValue& list = value["features"];
-    set.features.resize(list.Size());
-    set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(list.Size()));
-    for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+    const JsonValue& feature_rows = value["features"];
+    set.features.resize(feature_rows.Size());
+    set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(feature_rows.Size()));
+    for (rapidjson::SizeType i = 0; i < feature_rows.Size(); ++i) {
         Feature& feature = set.features[i];
         rapidjson::SizeType at = 0;
-        const auto next = [&] { return list[i][at++].GetDouble(); };
+        const auto next = [&] { return feature_rows[i][at++].GetDouble(); };
         feature.vertex = static_cast<Index>(next());
         feature.scale = next();
         for (auto* v : {&feature.point, &feature.normal, &feature.direction})
@@ -77,12 +80,12 @@ double common_size(const std::vector<double>& sizes) {
 std::string remedy_by_size(const Mesh& mesh, double common, const std::string& otherwise) {
     const double ratio = common > 0 ? std::sqrt(surface_area(mesh)) / common : 1;
     if (!(ratio > 0) || (ratio > 0.2 && ratio < 5)) return otherwise;
-    return "its size is " + (ratio < 1 ? "1/" + digits(1 / ratio, 2) : digits(ratio, 2) + " times that") +
-           " of the others': is it in another unit?";
+    return fmt::format("its size is {} that of the others: is it in another unit?",
+                       ratio < 1 ? "1/" + digits(1 / ratio, 2) : digits(ratio, 2) + " times");
 }
 
 bool is_elsewhere(const std::vector<ObjectResult>& results) {
-    return std::any_of(results.begin(), results.end(), [](const ObjectResult& one) { return one.elsewhere; });
+    return std::any_of(results.begin(), results.end(), [](const ObjectResult& result) { return result.elsewhere; });
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
     check_options(options, "moulds");
     std::string left_out = "without";
     for (const int label : leave_out) left_out += " " + std::to_string(label);
-    for (const std::string& one : parts.key()) left_out += ", " + one;
+    for (const std::string& key_part : parts.key()) left_out += ", " + key_part;
     PreparedCollection prepared;
     prepared.options = options;
     double& size = prepared.options.features.size;
@@ -112,9 +115,9 @@ PreparedCollection prepare_collection(const Collection& collection, const Compar
             if (area.problem.empty() && area.result.GetDouble() > 0) sizes.push_back(area.result.GetDouble());
         size = common_size(std::move(sizes));
     }
-    std::vector<std::string> what{"mould features", left_out};
-    for (const auto& [name, value] : list_options(prepared.options.features)) what.push_back(name + "=" + value);
-    prepared.results = for_each_object(collection, store, what, [&](const CollectionObject& object) {
+    std::vector<std::string> key_parts{"mould features", left_out};
+    for (const auto& [name, value] : list_options(prepared.options.features)) key_parts.push_back(name + "=" + value);
+    prepared.results = for_each_object(collection, store, key_parts, [&](const CollectionObject& object) {
         const Mesh mesh = read_head(object, leave_out, parts);
         try {
             const PreparedHead head = prepare_head(mesh, prepared.options);

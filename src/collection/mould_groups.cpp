@@ -5,6 +5,8 @@
 #include "ostraka/stats/embedding.h"
 #include "ostraka/stats/k_means.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -25,10 +27,10 @@ std::vector<int> by_size(const std::vector<int>& labels) {
     std::vector<std::pair<std::pair<int, int>, int>> order;
     for (const auto& [label, group] : groups) order.emplace_back(group, label);
     std::sort(order.begin(), order.end());
-    std::map<int, int> fresh;
-    for (std::size_t i = 0; i < order.size(); ++i) fresh[order[i].second] = static_cast<int>(i);
+    std::map<int, int> new_label;
+    for (std::size_t i = 0; i < order.size(); ++i) new_label[order[i].second] = static_cast<int>(i);
     std::vector<int> result;
-    for (const int label : labels) result.push_back(fresh[label]);
+    for (const int label : labels) result.push_back(new_label[label]);
     return result;
 }
 
@@ -67,8 +69,8 @@ double knee_epsilon(const Eigen::MatrixXd& d) {
     const double low = nearest.front(), high = nearest.back();
     double maximum = 0, knee = high;
     for (std::size_t i = 0; i < nearest.size() && high > low; ++i) {
-        const double along = static_cast<double>(i) / static_cast<double>(nearest.size() - 1);
-        const double below = along - (nearest[i] - low) / (high - low);
+        const double fraction = static_cast<double>(i) / static_cast<double>(nearest.size() - 1);
+        const double below = fraction - (nearest[i] - low) / (high - low);
         if (below > maximum) maximum = below, knee = nearest[i];
     }
     return knee;
@@ -103,7 +105,7 @@ private:
     Linkage tree_;
 };
 
-Eigen::MatrixXd part_of(const Eigen::MatrixXd& d, const std::vector<std::size_t>& heads) {
+Eigen::MatrixXd submatrix(const Eigen::MatrixXd& d, const std::vector<std::size_t>& heads) {
     const auto n = static_cast<Eigen::Index>(heads.size());
     Eigen::MatrixXd part(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
@@ -115,20 +117,20 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& d, const std::vector<std::size_t>
 
 /// Minimum silhouette of distinct groups. Synthetic heads of a single mould, and heads each of its own mould, stay below both
 /// values (doc/moulds.md). An embedding exaggerates differences and needs a larger value.
-constexpr double min_in_distances = 0.2, min_in_embedding = 0.7;
+constexpr double min_silhouette_in_distances = 0.2, min_silhouette_in_embedding = 0.7;
 
 /// Splits recursively into distinct groups. In an embedding, where small differences can look large, the groups must also be
 /// distinct in the original distances. Returns the largest height at which a group is connected.
 double nested_groups(const Eigen::MatrixXd& d, const Eigen::MatrixXd& distances, const GroupOptions& options,
                      const std::vector<std::size_t>& heads, std::vector<int>& labels, int& next) {
-    const Eigen::MatrixXd own = part_of(d, heads);
-    const Grouping grouping(own, options);
+    const Eigen::MatrixXd head_distances = submatrix(d, heads);
+    const Grouping grouping(head_distances, options);
     const auto [epsilon, silhouette] = grouping.best_epsilon();
     const bool embedded = options.method == GroupOptions::Method::embedding;
-    const bool apart =
-        silhouette >= (embedded ? min_in_embedding : min_in_distances) &&
-        (!embedded || mean(silhouettes_of_distances(part_of(distances, heads), grouping.at(epsilon))) >= min_in_distances);
-    if (!apart) {
+    const bool are_distinct = silhouette >= (embedded ? min_silhouette_in_embedding : min_silhouette_in_distances) &&
+                              (!embedded || mean(silhouettes_of_distances(submatrix(distances, heads), grouping.at(epsilon))) >=
+                                                min_silhouette_in_distances);
+    if (!are_distinct) {
         for (const std::size_t head : heads) labels[head] = next;
         ++next;
         return grouping.top();
@@ -150,13 +152,14 @@ enum class EpsilonRule { knn, volume, knee, silhouette, nested, number };
 /// `value` is set if the rule is a number.
 EpsilonRule epsilon_rule(const std::string& word, double& value) {
     const char* const words[]{"knn", "volume", "knee", "silhouette", "nested"};
-    if (const auto known = std::find(std::begin(words), std::end(words), word); known != std::end(words))
-        return static_cast<EpsilonRule>(known - std::begin(words));
+    if (const auto matching_word = std::find(std::begin(words), std::end(words), word); matching_word != std::end(words))
+        return static_cast<EpsilonRule>(matching_word - std::begin(words));
     double number = 0;
     const char* end = word.data() + word.size();
     const auto parsed = std::from_chars(word.data(), end, number);
     if (parsed.ec != std::errc() || parsed.ptr != end || !(number >= 0))
-        fail_usage("epsilon is '" + word + "'", "give a number from 0 up, or knn, volume, knee, silhouette or nested");
+        fail_usage(fmt::format("epsilon '{}' is neither a number nor a rule", word),
+                   "give a number from 0 up, or knn, volume, knee, silhouette or nested");
     value = number;
     return EpsilonRule::number;
 }
@@ -186,12 +189,12 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
     MouldGroups groups;
     const auto embedding = spectral_embedding(distances, options.dimensions);
     groups.coordinates = embedding.coordinates;
-    Eigen::MatrixXd between = distance_matrix(groups.coordinates);
-    if (between.maxCoeff() > 0) {
-        groups.coordinates /= between.maxCoeff();
-        between /= between.maxCoeff();
+    Eigen::MatrixXd embedded_distances = distance_matrix(groups.coordinates);
+    if (embedded_distances.maxCoeff() > 0) {
+        groups.coordinates /= embedded_distances.maxCoeff();
+        embedded_distances /= embedded_distances.maxCoeff();
     }
-    const Eigen::MatrixXd& d = options.method == GroupOptions::Method::embedding ? between : distances;
+    const Eigen::MatrixXd& d = options.method == GroupOptions::Method::embedding ? embedded_distances : distances;
     const Grouping grouping(d, options);
     const EpsilonRule rule = epsilon_rule(options.epsilon, groups.epsilon);
     const int expected = options.expected_size > 0 ? options.expected_size - 1
@@ -203,12 +206,13 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
     groups.tree = grouping.tree();
     std::vector<int> labels = grouping.at(groups.epsilon);
     groups.silhouette = mean(silhouettes_of_distances(d, by_size(labels)));
-    groups.clear = groups.silhouette >= (options.method == GroupOptions::Method::embedding ? min_in_embedding : min_in_distances);
+    groups.clear = groups.silhouette >= (options.method == GroupOptions::Method::embedding ? min_silhouette_in_embedding
+                                                                                           : min_silhouette_in_distances);
     if (rule == EpsilonRule::nested && groups.clear) {
-        std::vector<std::size_t> all(labels.size());
-        std::iota(all.begin(), all.end(), std::size_t{0});
+        std::vector<std::size_t> all_heads(labels.size());
+        std::iota(all_heads.begin(), all_heads.end(), std::size_t{0});
         int next = 0;
-        groups.epsilon = nested_groups(d, distances, options, all, labels, next);
+        groups.epsilon = nested_groups(d, distances, options, all_heads, labels, next);
         groups.silhouette = mean(silhouettes_of_distances(d, labels));
     } else if ((rule == EpsilonRule::silhouette || rule == EpsilonRule::nested) && !groups.clear) {
         groups.epsilon = grouping.top();
@@ -221,16 +225,15 @@ MouldGroups group_heads(const Eigen::MatrixXd& distances, const GroupOptions& op
 
 std::vector<ClusterStability> group_stability(const Eigen::MatrixXd& distances, const MouldGroups& groups,
                                               const GroupOptions& options, const StabilityOptions& stability) {
-    const auto again = [&](const std::vector<std::size_t>& heads) {
-        return group_heads(part_of(distances, heads), options).labels;
+    const auto regroup = [&](const std::vector<std::size_t>& heads) {
+        return group_heads(submatrix(distances, heads), options).labels;
     };
-    return cluster_stability(groups.labels, again, stability);
+    return cluster_stability(groups.labels, regroup, stability);
 }
 
 std::vector<double> relative_sizes(const MouldMatrices& matrices, const std::vector<int>& labels) {
     if (static_cast<Eigen::Index>(labels.size()) != matrices.scale.rows())
-        fail_usage(std::to_string(labels.size()) + " labels for " + std::to_string(matrices.scale.rows()) + " heads",
-                   "give one a head");
+        fail_usage(fmt::format("{} labels for {} heads", labels.size(), matrices.scale.rows()), "give one label per head");
     std::vector<double> sizes(labels.size(), 1);
     for (std::size_t i = 0; i < labels.size(); ++i) {
         double sum = 0;

@@ -51,8 +51,8 @@ std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study) {
         MouldGroupSummary& summary = summaries[group];
         double within = 0;
         int pairs = 0;
-        std::vector<double> to(summaries.size(), 0);
-        std::vector<int> counts(to.size(), 0);
+        std::vector<double> distance_to(summaries.size(), 0);
+        std::vector<int> counts(distance_to.size(), 0);
         for (std::size_t i = 0; i < labels.size(); ++i) {
             if (labels[i] != static_cast<int>(group)) continue;
             summary.silhouette += study.groups.head_silhouettes[i];
@@ -60,16 +60,16 @@ std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study) {
             for (std::size_t j = 0; j < labels.size(); ++j) {
                 const double d = study.distances(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
                 const auto other = static_cast<std::size_t>(labels[j]);
-                if (other != group) to[other] += d, ++counts[other];
+                if (other != group) distance_to[other] += d, ++counts[other];
                 else if (j != i) within += d, ++pairs;
             }
         }
         summary.silhouette /= static_cast<double>(summary.members.size());
         if (pairs > 0) summary.within = within / pairs;
-        for (std::size_t other = 0; other < to.size(); ++other) {
-            if (counts[other] == 0 || (summary.to_nearest && to[other] / counts[other] >= *summary.to_nearest)) continue;
+        for (std::size_t other = 0; other < distance_to.size(); ++other) {
+            if (counts[other] == 0 || (summary.to_nearest && distance_to[other] / counts[other] >= *summary.to_nearest)) continue;
             summary.nearest = static_cast<int>(other);
-            summary.to_nearest = to[other] / counts[other];
+            summary.to_nearest = distance_to[other] / counts[other];
         }
     }
     return summaries;
@@ -77,13 +77,13 @@ std::vector<MouldGroupSummary> summarise_groups(const MouldStudy& study) {
 
 double agreement_with_answers(const std::vector<int>& groups, const std::vector<std::string>& answers) {
     std::map<std::string, int> numbers;
-    std::vector<int> some, truth;
+    std::vector<int> labelled_groups, truth;
     for (std::size_t i = 0; i < answers.size(); ++i) {
         if (answers[i].empty()) continue;
-        some.push_back(groups[i]);
+        labelled_groups.push_back(groups[i]);
         truth.push_back(numbers.try_emplace(answers[i], static_cast<int>(numbers.size())).first->second);
     }
-    return adjusted_rand_index(some, truth);
+    return adjusted_rand_index(labelled_groups, truth);
 }
 
 }  // namespace ostraka

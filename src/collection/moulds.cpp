@@ -5,6 +5,8 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <set>
 
@@ -15,8 +17,8 @@ PreparedHead prepare_head(const Mesh& mesh, const CompareOptions& options) {
     std::set<Index> points;
     for (const Feature& feature : head.features.features) points.insert(feature.vertex);
     if (points.size() < 3)
-        fail_input("mesh", "it has " + std::to_string(points.size()) + " salient points, which is too few to compare it by",
-                   "is it a head? Try smaller --first-scale, --contrast and --border");
+        fail_input("mesh", fmt::format("it has {} salient points, which are too few for a comparison", points.size()),
+                   "check that it is a head, or reduce --first-scale, --contrast and --border");
     return head;
 }
 
@@ -35,20 +37,20 @@ PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const 
     result.matches_ba = static_cast<int>(match_features(b.features, a.features, options.matches).size());
     MatchOptions loose = options.matches;
     loose.ratio = options.loose_ratio;
-    const ConsistentMatches there =
+    const ConsistentMatches forward =
         consistent_matches(a.features, b.features, match_features(a.features, b.features, loose), options.consistent);
-    const ConsistentMatches back =
+    const ConsistentMatches backward =
         consistent_matches(b.features, a.features, match_features(b.features, a.features, loose), options.consistent);
-    result.consistent_ab = static_cast<int>(there.matches.size());
-    result.consistent_ba = static_cast<int>(back.matches.size());
+    result.consistent_ab = static_cast<int>(forward.matches.size());
+    result.consistent_ba = static_cast<int>(backward.matches.size());
     // If few matches agree, their motion is unreliable: the principal axes are tried as well.
-    std::vector<Motion> starts{there.motion, back.motion.inverse()};
+    std::vector<Motion> initial_motions{forward.motion, backward.motion.inverse()};
     constexpr int trusted = 12;
     if (std::max(result.consistent_ab, result.consistent_ba) < trusted)
-        for (const Motion& start : principal_starts(a.surface, b.surface)) starts.push_back(start);
+        for (const Motion& start : principal_starts(a.surface, b.surface)) initial_motions.push_back(start);
     AlignOptions align_options = options.align;
     align_options.shrinkage = options.consistent.shrinkage;
-    const Alignment alignment = align(a.surface, b.surface, starts, align_options);
+    const Alignment alignment = align(a.surface, b.surface, initial_motions, align_options);
     result.distance = alignment.distance;
     result.overlap = alignment.overlap;
     result.scale = alignment.motion.scale;
@@ -56,11 +58,11 @@ PairComparison compare_pair(const PreparedHead& a, const PreparedHead& b, const 
 }
 
 JsonValue to_json(const PairComparison& pair, JsonAllocator& allocator) {
-    JsonValue list(rapidjson::kArrayType);
+    JsonValue row(rapidjson::kArrayType);
     for (const int count : {pair.matches_ab, pair.matches_ba, pair.consistent_ab, pair.consistent_ba})
-        list.PushBack(JsonValue(count), allocator);
-    for (const double value : {pair.distance, pair.overlap, pair.scale}) list.PushBack(JsonValue(value), allocator);
-    return list;
+        row.PushBack(JsonValue(count), allocator);
+    for (const double value : {pair.distance, pair.overlap, pair.scale}) row.PushBack(JsonValue(value), allocator);
+    return row;
 }
 
 bool from_json(const JsonValue& value, PairComparison& pair) {
@@ -97,8 +99,8 @@ MouldMatrices compare_heads(const std::vector<std::string>& names, const std::ve
         std::vector<PairComparison> row(heads.size() - i);
         std::vector<std::size_t> missing;
         for (std::size_t k = 0; k < row.size(); ++k) {
-            const JsonValue* known = kept ? find_member(*kept, checksums[i + k] + " " + names[i + k]) : nullptr;
-            if (known == nullptr || !from_json(*known, row[k])) missing.push_back(k);
+            const JsonValue* known_comparison = kept ? find_member(*kept, checksums[i + k] + " " + names[i + k]) : nullptr;
+            if (known_comparison == nullptr || !from_json(*known_comparison, row[k])) missing.push_back(k);
         }
         progress.advance(row.size() - missing.size());
         parallel_for(
@@ -132,26 +134,26 @@ std::vector<std::string> mould_similarities() { return {"matches", "consistent",
 
 namespace {
 
-Eigen::MatrixXd of_counts(const Eigen::MatrixXd& counts) {
+Eigen::MatrixXd distances_from_counts(const Eigen::MatrixXd& counts) {
     Eigen::MatrixXd d = Eigen::MatrixXd::Zero(counts.rows(), counts.cols());
     for (Eigen::Index i = 0; i < d.rows(); ++i) {
         for (Eigen::Index j = 0; j < i; ++j) {
-            const auto share = [&](Eigen::Index from, Eigen::Index to) {
-                return counts(from, from) > 0 ? std::min(counts(from, to) / counts(from, from), 1.0) : 0.0;
+            const auto matched_fraction = [&](Eigen::Index source, Eigen::Index target) {
+                return counts(source, source) > 0 ? std::min(counts(source, target) / counts(source, source), 1.0) : 0.0;
             };
-            d(i, j) = d(j, i) = 1 - 0.5 * (share(i, j) + share(j, i));
+            d(i, j) = d(j, i) = 1 - 0.5 * (matched_fraction(i, j) + matched_fraction(j, i));
         }
     }
     return d;
 }
 
-Eigen::MatrixXd of_lengths(const Eigen::MatrixXd& lengths) {
-    std::vector<double> list;
+Eigen::MatrixXd distances_from_lengths(const Eigen::MatrixXd& lengths) {
+    std::vector<double> pair_lengths;
     for (Eigen::Index i = 0; i < lengths.rows(); ++i)
-        for (Eigen::Index j = 0; j < i; ++j) list.push_back(lengths(i, j));
+        for (Eigen::Index j = 0; j < i; ++j) pair_lengths.push_back(lengths(i, j));
     Eigen::MatrixXd d = Eigen::MatrixXd::Zero(lengths.rows(), lengths.cols());
-    if (list.empty()) return d;
-    const double median = upper_median(std::move(list));
+    if (pair_lengths.empty()) return d;
+    const double median = upper_median(std::move(pair_lengths));
     for (Eigen::Index i = 0; i < d.rows(); ++i)
         for (Eigen::Index j = 0; j < d.cols(); ++j)
             if (i != j && lengths(i, j) > 0) d(i, j) = lengths(i, j) / (lengths(i, j) + median);
@@ -161,11 +163,12 @@ Eigen::MatrixXd of_lengths(const Eigen::MatrixXd& lengths) {
 }  // namespace
 
 Eigen::MatrixXd mould_distances(const MouldMatrices& matrices, const std::string& similarity) {
-    if (similarity == "matches") return of_counts(matrices.matches);
-    if (similarity == "consistent") return of_counts(matrices.consistent);
-    if (similarity == "registration") return of_lengths(matrices.registration);
-    if (similarity == "combined") return (of_counts(matrices.consistent) + of_lengths(matrices.registration)) / 2;
-    fail_usage("there is no similarity '" + similarity + "'", "use one of: matches, consistent, registration, combined");
+    if (similarity == "matches") return distances_from_counts(matrices.matches);
+    if (similarity == "consistent") return distances_from_counts(matrices.consistent);
+    if (similarity == "registration") return distances_from_lengths(matrices.registration);
+    if (similarity == "combined")
+        return (distances_from_counts(matrices.consistent) + distances_from_lengths(matrices.registration)) / 2;
+    fail_usage(fmt::format("there is no similarity '{}'", similarity), "use one of: matches, consistent, registration, combined");
 }
 
 void CompareOptions::describe(OptionList& visit) {

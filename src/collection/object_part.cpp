@@ -11,6 +11,8 @@
 #include "ostraka/select/scalars.h"
 #include "ostraka/slicing/cut_object.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +30,7 @@ constexpr double max_neck = 0.8;
 
 Band find_tube(const CutObject& cut) {
     const Tube tube = tubular_part(cut.stack(), cut.descriptors);
-    if (!tube.found) fail_input("mesh", "no tubular part is found: " + tube.reason, "annotate the part and name it instead");
+    if (!tube.found) fail_input("mesh", "no tubular part was found: " + tube.reason, "annotate the part and name it instead");
     const std::vector<double> heights = cut.sorted_heights();
     return {heights.at(tube.first), heights.at(tube.last)};
 }
@@ -43,18 +45,18 @@ Band above_neck(const CutObject& cut) {
     double minimum = max_neck;
     std::optional<std::size_t> neck;
     for (std::size_t i = n / 2; i < n; ++i) {
-        const double share = radius[i] / std::min(below[i], above[i]);
-        if (radius[i] > 0 && share < minimum) minimum = share, neck = i;
+        const double relative_radius = radius[i] / std::min(below[i], above[i]);
+        if (radius[i] > 0 && relative_radius < minimum) minimum = relative_radius, neck = i;
     }
     if (!neck)
-        fail_input("mesh", "has no neck in its upper half that a top could be cut off at",
+        fail_input("mesh", "has no neck in its upper half where a top could be cut off",
                    "annotate the part and name it instead, or give the upward direction by --up");
     return {cut.slices[*neck].height, std::numeric_limits<double>::infinity()};
 }
 
 /// Attributes errors of the work to the file.
 template <class Work>
-auto about_file(const Path& file, const Work& work) {
+auto with_file_context(const Path& file, const Work& work) {
     try {
         return work();
     } catch (const Error& error) {
@@ -67,8 +69,10 @@ auto about_file(const Path& file, const Work& work) {
 Mesh cut_band(const Mesh& mesh, const SliceFrame& frame, const Band& band, std::vector<Index>& origin) {
     const auto halfspace = [&](double height, double side) {
         const Vector place = (frame.origin - CGAL::ORIGIN) + height * frame.normal, normal = side * frame.normal;
-        const auto list = [](const Vector& v) { return "[" + digits(v.x()) + "," + digits(v.y()) + "," + digits(v.z()) + "]"; };
-        return R"({"halfspace":{"point":)" + list(place) + R"(,"normal":)" + list(normal) + "}}";
+        const auto vector_text = [](const Vector& v) {
+            return "[" + digits(v.x()) + "," + digits(v.y()) + "," + digits(v.z()) + "]";
+        };
+        return R"({"halfspace":{"point":)" + vector_text(place) + R"(,"normal":)" + vector_text(normal) + "}}";
     };
     std::string sides;
     if (std::isfinite(band.low)) sides += halfspace(band.low, 1);
@@ -110,8 +114,7 @@ void PartOptions::describe(OptionList& visit) {
 ObjectParts::ObjectParts(PartOptions options, TagWords words, std::string words_checksum)
     : options_(std::move(options)), words_(std::move(words)), checksum_(std::move(words_checksum)) {
     if (options_.proposed != PartOptions::Proposal::none && !(options_.annotations.empty() && options_.without.empty()))
-        fail_usage("--proposed is given with --annotation or --without",
-                   "choose one: a part that is found, or one that is annotated");
+        fail_usage("--proposed is given with --annotation or --without", "use either a detected part or an annotated one");
 }
 
 bool ObjectParts::whole() const {
@@ -130,45 +133,45 @@ ObjectPart ObjectParts::read(const CollectionObject& object, const std::optional
     MeshFile file = read_mesh(object.mesh);
     ObjectPart part;
     std::optional<AnnotationSet> set;
-    const bool named = !options_.annotations.empty() || !options_.without.empty();
+    const bool selects_annotations = !options_.annotations.empty() || !options_.without.empty();
     try {
         if (!object.annotations.empty()) set = read_annotations(object.annotations, file.mesh);
     } catch (const Error& error) {
-        if (named || error.kind() == ErrorKind::cancelled) throw;
+        if (selects_annotations || error.kind() == ErrorKind::cancelled) throw;
         part.annotations_error = std::current_exception();
     }
     if (set) part.up = set->up;
     std::vector<Index> origin;  // faces of the mesh in the file
-    if (named) {
+    if (selects_annotations) {
         if (!set)
-            fail_input(object.mesh.filename().string(), "has no annotations, which could name its parts",
-                       "put " + object.mesh.stem().string() + ".ant.json beside it, or leave the object out");
+            fail_input(object.mesh.filename().string(), "has no annotations that could name its parts",
+                       fmt::format("put {}.ant.json next to it, or leave the object out", object.mesh.stem().string()));
         const std::string where = object.annotations.filename().string();
         std::vector<std::size_t> regions, left_out;
-        const auto add = [&](const std::string& name, bool needed, std::vector<std::size_t>& to) {
+        const auto add = [&](const std::string& name, bool needed, std::vector<std::size_t>& regions_to) {
             for (const std::size_t i : needed ? words_.require(*set, name, where) : words_.find(*set, name))
-                if (set->annotations[i].type == AnnotationType::region) to.push_back(i);
+                if (set->annotations[i].type == AnnotationType::region) regions_to.push_back(i);
         };
-        const auto has = [&](const std::string& name) { return !words_.find(*set, name).empty(); };
+        const auto is_annotated = [&](const std::string& name) { return !words_.find(*set, name).empty(); };
         // One of several names is enough.
-        const bool any = std::any_of(options_.annotations.begin(), options_.annotations.end(), has);
-        for (const std::string& name : options_.annotations) add(name, !any, regions);
+        const bool any_annotated = std::any_of(options_.annotations.begin(), options_.annotations.end(), is_annotated);
+        for (const std::string& name : options_.annotations) add(name, !any_annotated, regions);
         for (const std::string& name : options_.without) add(name, false, left_out);
         if (regions.empty() && !options_.annotations.empty())
-            fail_input(where, "what is annotated as '" + printable(options_.annotations.front(), 60) + "' is no region",
-                       "annotate the part's surface");
-        CutPart cut = about_file(object.annotations, [&] { return cut_out_part(file.mesh, *set, regions, left_out); });
+            fail_input(where, fmt::format("no annotation '{}' is a region", printable(options_.annotations.front(), 60)),
+                       "annotate the surface of the part as a region");
+        CutPart cut = with_file_context(object.annotations, [&] { return cut_out_part(file.mesh, *set, regions, left_out); });
         for (const Index f : cut.faces) origin.push_back(cut.whole ? cut.whole->face_origin[f] : f);
         part.mesh = std::move(cut.mesh);
     } else if (options_.proposed == PartOptions::Proposal::segment) {
-        CutPart cut = about_file(object.mesh, [&] { return largest_segment(file.mesh); });
+        CutPart cut = with_file_context(object.mesh, [&] { return largest_segment(file.mesh); });
         origin = std::move(cut.faces);
         part.mesh = std::move(cut.mesh);
     } else if (options_.proposed != PartOptions::Proposal::none) {
         if (!up && part.annotations_error) std::rethrow_exception(part.annotations_error);
-        const std::array<double, 3> way = up ? *up : part.up.value_or(std::array<double, 3>{0, 0, 1});
-        part.mesh = about_file(object.mesh, [&] {
-            const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(way[0], way[1], way[2]));
+        const std::array<double, 3> up_direction = up ? *up : part.up.value_or(std::array<double, 3>{0, 0, 1});
+        part.mesh = with_file_context(object.mesh, [&] {
+            const SliceFrame frame = slice_frame(Point(0, 0, 0), Vector(up_direction[0], up_direction[1], up_direction[2]));
             const auto [lowest, highest] = height_range(file.mesh, frame);
             const CutObject cut = cut_parallel(file.mesh, frame, slice_heights(lowest, highest, 100));
             return cut_band(file.mesh, frame, options_.proposed == PartOptions::Proposal::tube ? find_tube(cut) : above_neck(cut),

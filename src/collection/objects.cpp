@@ -7,6 +7,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -30,8 +32,8 @@ constexpr const char* name_rule =
 std::string some_of(const std::vector<std::string>& names) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 3); ++i)
-        text += (i == 0 ? "'" : ", '") + printable(names[i], 60) + "'";
-    return names.size() <= 3 ? text : text + " and " + std::to_string(names.size() - 3) + " more";
+        text += fmt::format("{}{}'", i == 0 ? "'" : ", '", printable(names[i], 60));
+    return names.size() <= 3 ? text : fmt::format("{} and {} more", text, names.size() - 3);
 }
 
 /// Checksum of the contents of all files of an object; empty if one cannot be read.
@@ -39,8 +41,8 @@ std::string checksum_of(const CollectionObject& object) {
     Sha256 hash;
     try {
         for (const Path& file : {object.mesh, object.annotations, object.landmarks}) {
-            const std::string sum = file.empty() ? "-" : sha256_of_file(file);
-            hash.update(sum.data(), sum.size());
+            const std::string checksum = file.empty() ? "-" : sha256_of_file(file);
+            hash.update(checksum.data(), checksum.size());
         }
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::cancelled) throw;
@@ -61,8 +63,8 @@ Collection from_folder(const Path& folder) {
     std::map<std::string, Path> markups;
     std::set<std::string> annotations;
     Collection collection;
-    std::vector<std::string> others;
-    for (const std::string& name : files_in(folder, &others)) {
+    std::vector<std::string> unreadable;
+    for (const std::string& name : files_in(folder, &unreadable)) {
         const Path file = folder / name;
         if (name.front() == '.') continue;
         if (!is_memory(folder) && !is_inside(file, folder)) {
@@ -75,20 +77,21 @@ Collection from_folder(const Path& folder) {
         else if (std::find(mesh_endings.begin(), mesh_endings.end(), extension(file)) != mesh_endings.end())
             meshes[file.stem().string()].push_back(file);
     }
-    for (const std::string& name : others)
+    for (const std::string& name : unreadable)
         if (is_object_file(folder / name))
-            collection.left_out.emplace_back(printable(name, 60), "is no file that can be read (is it a link to nothing?)");
+            collection.left_out.emplace_back(printable(name, 60), "is not a readable file (check whether it is a broken link)");
     const auto add = [&](const std::string& name, const std::string& stem, const Path& mesh) {
         if (!is_name(name)) {
             collection.left_out.emplace_back(printable(name, 60),
-                                             std::string("its name cannot be that of an object (") + name_rule + ")");
+                                             fmt::format("its name is not valid for an object ({})", name_rule));
             return;
         }
         CollectionObject object;
         object.name = name;
         object.mesh = mesh;
         if (annotations.contains(stem + ".ant.json") && !mesh.empty()) object.annotations = folder / (stem + ".ant.json");
-        if (const auto it = markups.find(stem); it != markups.end()) object.landmarks = it->second;
+        if (const auto landmark_file = markups.find(stem); landmark_file != markups.end())
+            object.landmarks = landmark_file->second;
         collection.objects.push_back(std::move(object));
     };
     for (auto& [stem, files] : meshes) {
@@ -112,7 +115,7 @@ Collection from_file(const Path& file) {
         const auto file_of = [&](const char* member) {
             const std::string name = text_in(objects[i], member);
             if (name.empty()) return Path();
-            return file_inside(name, folder, file.string(), at + "/" + member, "the folder of the collection",
+            return file_inside(name, folder, file.string(), fmt::format("{}/{}", at, member), "the folder of the collection",
                                "put the objects into the folder of the file that lists them");
         };
         CollectionObject object;
@@ -122,23 +125,24 @@ Collection from_file(const Path& file) {
         object.unit = text_in(objects[i], "unit");
         object.label = text_in(objects[i], "label");
         if (object.mesh.empty() && object.landmarks.empty())
-            fail_input(file.string(), "at " + at + ": neither a mesh nor landmarks", "give one of both");
+            fail_input(file.string(), fmt::format("at {}: the object has neither a mesh nor landmarks", at),
+                       "give a mesh, landmarks or both");
         object.name = text_in(objects[i], "name");
         if (object.name.empty()) object.name = (object.mesh.empty() ? object.landmarks : object.mesh).stem().string();
         if (!is_name(object.name))
-            fail_input(file.string() + ", at " + at, "'" + printable(object.name, 60) + "' cannot be the name of an object",
-                       name_rule);
+            fail_input(fmt::format("{}, at {}", file.string(), at),
+                       fmt::format("'{}' is not a valid name of an object", printable(object.name, 60)), name_rule);
         collection.objects.push_back(std::move(object));
     }
     return collection;
 }
 
 void note_copies(Collection& collection) {
-    std::map<std::string, std::vector<std::string>> same;
+    std::map<std::string, std::vector<std::string>> names_by_checksum;
     for (const auto& object : collection.objects)
-        if (!object.checksum.empty()) same[object.checksum].push_back(object.name);
+        if (!object.checksum.empty()) names_by_checksum[object.checksum].push_back(object.name);
     std::vector<std::string> lines;
-    for (const auto& [checksum, names] : same) {
+    for (const auto& [checksum, names] : names_by_checksum) {
         if (names.size() < 2) continue;
         lines.push_back("the files of these objects are the same: " + joined(names));
     }
@@ -150,34 +154,36 @@ void note_copies(Collection& collection) {
 
 void check_new_collection(const Path& folder) {
     if (!is_folder(folder)) return;
-    std::vector<std::string> there = files_in(folder);
-    std::erase_if(there, [](const std::string& name) { return !is_object_file(name) && extension(name) != ".csv"; });
-    if (there.empty()) return;
+    std::vector<std::string> object_files = files_in(folder);
+    std::erase_if(object_files, [](const std::string& name) { return !is_object_file(name) && extension(name) != ".csv"; });
+    if (object_files.empty()) return;
     throw Error(
         ErrorKind::failure, folder.string(),
-        "the folder holds objects or tables already (" + std::to_string(there.size()) + ", such as '" + there.front() + "')",
-        "name a folder that is new or empty, so that made objects are not mixed with others");
+        fmt::format("the folder already contains {} objects or tables, such as '{}'", object_files.size(), object_files.front()),
+        "name a new or empty folder, so that synthetic objects are not mixed with others");
 }
 
 Collection read_collection(const Path& folder_or_file, const Share& share) {
     const std::string where = folder_or_file.string();
     const bool folder = is_folder(folder_or_file);
-    if (!folder && !file_exists(folder_or_file)) fail_input(where, "there is no such folder or file", "check the name");
+    if (!folder && !file_exists(folder_or_file)) fail_input(where, "the folder or file does not exist", "check the name");
     if (!folder && extension(folder_or_file) != ".json")
-        fail_input(where, "is no collection", "name a folder of meshes, or a file *.study.json");
+        fail_input(where, "is not a collection", "name a folder of meshes, or a file *.study.json");
     Collection collection = folder ? from_folder(folder_or_file) : from_file(folder_or_file);
     if (collection.objects.empty() && !collection.left_out.empty())
-        fail_input(where, "not one of its files can be an object",
-                   "the first, '" + collection.left_out.front().first + "': " + collection.left_out.front().second);
+        fail_input(
+            where, "none of its files is a valid object",
+            fmt::format("the first error, for '{}': {}", collection.left_out.front().first, collection.left_out.front().second));
     if (collection.objects.empty())
         fail_input(
-            where, "there is no object in it",
+            where, "contains no objects",
             folder ? "put meshes (OBJ, PLY, OFF, STL) or markups (.mrk.json) directly into the folder" : "list at least one");
     std::sort(collection.objects.begin(), collection.objects.end(),
               [](const CollectionObject& a, const CollectionObject& b) { return a.name < b.name; });
     for (std::size_t i = 1; i < collection.objects.size(); ++i)
         if (collection.objects[i].name == collection.objects[i - 1].name)
-            fail_input(where, "two objects have the name '" + collection.objects[i].name + "'", "give each a name of its own");
+            fail_input(where, fmt::format("two objects have the name '{}'", collection.objects[i].name),
+                       "give each object its own name");
     parallel_for(
         collection.objects.size(),
         [&](std::size_t i) {
@@ -191,56 +197,57 @@ Collection read_collection(const Path& folder_or_file, const Share& share) {
 std::map<std::string, std::string> read_labels(const Path& file, const std::string& column) {
     const std::string text = read_file(file), where = file.string();
     const auto rows = csv_rows(text, csv_separator(text), where);
-    if (rows.size() < 2)
-        fail_input(where, "there are no labels in it", "write a row with the columns' names, then a row an object");
+    if (rows.size() < 2) fail_input(where, "contains no labels", "write one row with the column names, then one row per object");
     const auto& names = rows.front().cells;
-    const auto column_of = [&](const std::string& wanted) {
-        std::string there;
+    const auto column_of = [&](const std::string& wanted_column) {
+        std::string column_names;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            if (trimmed(names[i]) == wanted) return i;
-            there += (i == 0 ? "'" : ", '") + printable(names[i], 60) + "'";
+            if (trimmed(names[i]) == wanted_column) return i;
+            column_names += fmt::format("{}{}'", i == 0 ? "'" : ", '", printable(names[i], 60));
         }
-        fail_input(
-            where + ", line " + std::to_string(rows.front().line),
-            "there is no column '" + printable(wanted, 60) + "' among " + there,
-            "the first row names the columns: 'name' for the objects, 'label' (or that of --truth-column) for the answers");
+        fail_input(fmt::format("{}, line {}", where, rows.front().line),
+                   fmt::format("there is no column '{}'; the columns are {}", printable(wanted_column, 60), column_names),
+                   "name the columns in the first row: 'name' for the objects, 'label' (or the name given by --truth-column) for "
+                   "the labels");
     };
     const std::size_t name_column = column_of("name"), label_column = column_of(column.empty() ? "label" : column);
     std::map<std::string, std::string> labels;
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const auto& cells = rows[i].cells;
-        const std::string at = where + ", line " + std::to_string(rows[i].line);
-        if (cells.size() <= std::max(name_column, label_column)) fail_input(at, "too few cells", "give every row all columns");
+        const std::string at = fmt::format("{}, line {}", where, rows[i].line);
+        if (cells.size() <= std::max(name_column, label_column))
+            fail_input(at, "the row has too few cells", "give every row a cell for each column");
         const std::string name = unguarded(std::string(trimmed(cells[name_column])));
         if (!labels.emplace(name, unguarded(std::string(trimmed(cells[label_column])))).second)
-            fail_input(at, "the object '" + without_controls(name, "?") + "' has a label already", "remove one of both");
+            fail_input(at, fmt::format("the object '{}' has two labels", without_controls(name, "?")), "remove one of them");
     }
     return labels;
 }
 
 void set_labels(Collection& collection, const std::map<std::string, std::string>& labels, const std::string& where) {
-    std::set<std::string> met;
-    std::size_t without = 0;
+    std::set<std::string> matched_names;
+    std::size_t unlabelled = 0;
     for (auto& object : collection.objects) {
-        const auto it = labels.find(object.name);
-        object.label = it == labels.end() ? std::string() : it->second;
-        if (it != labels.end()) met.insert(it->first);
-        if (object.label.empty()) ++without;
+        const auto entry = labels.find(object.name);
+        object.label = entry == labels.end() ? std::string() : entry->second;
+        if (entry != labels.end()) matched_names.insert(entry->first);
+        if (object.label.empty()) ++unlabelled;
     }
-    if (without == collection.objects.size()) {
+    if (unlabelled == collection.objects.size()) {
         std::vector<std::string> labelled, objects;
         for (const auto& [name, label] : labels) labelled.push_back(name);
         for (const auto& object : collection.objects) objects.push_back(object.name);
         fail_input(where,
-                   met.empty() ? "no label is of an object: there are labels of " + some_of(labelled) + ", and objects " +
-                                     some_of(objects)
-                               : "the labels of all objects are empty (" + some_of(objects) + ")",
-                   "name the objects as their files are named, without the ending");
+                   matched_names.empty() ? fmt::format("no label belongs to an object: the labels are for {}, the objects are {}",
+                                                       some_of(labelled), some_of(objects))
+                                         : fmt::format("the labels of all objects are empty ({})", some_of(objects)),
+                   "use the file names of the objects, without their endings");
     }
-    if (without > 0) collection.notes.push_back(std::to_string(without) + " objects have no label");
+    if (unlabelled > 0) collection.notes.push_back(std::to_string(unlabelled) + " objects have no label");
     for (const auto& [name, label] : labels)
-        if (!met.contains(name))
-            collection.notes.push_back("there is a label for '" + without_controls(name, "?") + "', but no such object");
+        if (!matched_names.contains(name))
+            collection.notes.push_back(
+                fmt::format("there is a label for '{}', which is not an object of the collection", without_controls(name, "?")));
 }
 
 }  // namespace ostraka

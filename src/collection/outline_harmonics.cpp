@@ -16,20 +16,21 @@ constexpr int directions = 360;
 /// Distance of the contour from the centre in each direction; 0 where a ray misses the contour.
 std::array<double, directions> radii_of(const Contour& contour, const Vector2d& centre) {
     std::array<double, directions> radii{};
-    const std::size_t pieces = contour.closed ? contour.points.size() : contour.points.size() - 1;
-    for (std::size_t i = 0; i < pieces; ++i) {
+    const std::size_t segment_count = contour.closed ? contour.points.size() : contour.points.size() - 1;
+    for (std::size_t i = 0; i < segment_count; ++i) {
         const Vector2d a = contour.points[i] - centre, b = contour.points[(i + 1) % contour.points.size()] - centre;
-        const double from = std::atan2(a.y(), a.x());
-        const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+        const double start_angle = std::atan2(a.y(), a.x());
+        const double swept_angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
         // Directions are offset by half a step so that none is parallel to an axis.
         const double step = 2 * pi / directions;
-        const double low = std::min(from, from + turn) / step - 0.5, high = std::max(from, from + turn) / step - 0.5;
+        const double low = std::min(start_angle, start_angle + swept_angle) / step - 0.5,
+                     high = std::max(start_angle, start_angle + swept_angle) / step - 0.5;
         for (auto d = static_cast<int>(std::ceil(low)); d <= static_cast<int>(std::floor(high)); ++d) {
             const double angle = (d + 0.5) * step;
-            const Vector2d way(std::cos(angle), std::sin(angle)), along = b - a;
-            const double across = way.x() * along.y() - way.y() * along.x();
+            const Vector2d ray(std::cos(angle), std::sin(angle)), segment = b - a;
+            const double across = ray.x() * segment.y() - ray.y() * segment.x();
             if (across == 0) continue;
-            const double r = (a.x() * along.y() - a.y() * along.x()) / across;
+            const double r = (a.x() * segment.y() - a.y() * segment.x()) / across;
             double& radius = radii.at(static_cast<std::size_t>(((d % directions) + directions) % directions));
             radius = std::max(radius, r);
         }

@@ -4,30 +4,35 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
 
 /// Why a ratio is not proposed.
-struct Refused {
+struct RejectedProposal {
     std::string why;
 };
 
-struct Carried {
+struct TemplateMeasure {
     int annotation;  ///< id of the annotation
     std::string tag, attribute;
 };
 
 Annotation& annotation_of(AnnotationSet& set, const MeasureDefinition& definition) {
-    if (definition.annotation.empty()) throw Refused{"'" + definition.name + "' does not say which annotation it measures"};
-    Annotation* found = nullptr;
+    if (definition.annotation.empty())
+        throw RejectedProposal{fmt::format("'{}' does not say which annotation it measures", definition.name)};
+    Annotation* matching_annotation = nullptr;
     for (Annotation& annotation : set.annotations) {
         if (annotation.tag != definition.annotation) continue;
-        if (found != nullptr) throw Refused{"the template has two annotations '" + definition.annotation + "'"};
-        found = &annotation;
+        if (matching_annotation != nullptr)
+            throw RejectedProposal{fmt::format("the template has two annotations '{}'", definition.annotation)};
+        matching_annotation = &annotation;
     }
-    if (found == nullptr) throw Refused{"the template has no annotation '" + definition.annotation + "'"};
-    return *found;
+    if (matching_annotation == nullptr)
+        throw RejectedProposal{fmt::format("the template has no annotation '{}'", definition.annotation)};
+    return *matching_annotation;
 }
 
 const Attribute* find_measure(const Annotation& annotation, const std::string& name) {
@@ -40,27 +45,29 @@ Index pin_of(const Mesh& mesh, const AnnotationSet& set, const MeasurePlace& pla
     for (const Annotation& annotation : set.annotations) {
         if (annotation.tag != place.name) continue;
         if (place.extreme) {
-            if (place.extreme->up && !set.up) throw Refused{"the template does not say which way is up"};
+            if (place.extreme->up && !set.up) throw RejectedProposal{"the template has no upward direction"};
             return extremes(mesh, annotation, place.extreme->up ? *set.up : place.extreme->coordinates)[1];
         }
         if (annotation.type == AnnotationType::point && !annotation.points.empty()) return annotation.points.front();
     }
-    throw Refused{"the template has no point '" + place.name + "'"};
+    throw RejectedProposal{fmt::format("the template has no point '{}'", place.name)};
 }
 
 /// The measure of the template's annotation; taken and stored if the annotation does not have it yet.
-Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& definition) {
+TemplateMeasure measure_on_template(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& definition) {
     Annotation& annotation = annotation_of(set, definition);
-    if (!definition.descriptor.empty()) throw Refused{"'" + definition.name + "' is a descriptor, which no constraint keeps"};
+    if (!definition.descriptor.empty())
+        throw RejectedProposal{fmt::format("'{}' is a descriptor, which no constraint can preserve", definition.name)};
     const std::string name = definition.attribute.empty() ? definition.name : definition.attribute;
     if (find_measure(annotation, name) == nullptr) {
-        if (!definition.attribute.empty()) throw Refused{"the template's '" + annotation.tag + "' has no measure '" + name + "'"};
+        if (!definition.attribute.empty())
+            throw RejectedProposal{fmt::format("annotation '{}' of the template has no measure '{}'", annotation.tag, name)};
         Measure measure;
         measure.tool = definition.tool;
         measure.exact = definition.exact;
         measure.unit = set.unit;
         if (definition.tool == "bounding") {
-            if (definition.direction.up && !set.up) throw Refused{"the template does not say which way is up"};
+            if (definition.direction.up && !set.up) throw RejectedProposal{"the template has no upward direction"};
             measure.direction = definition.direction.up ? *set.up : definition.direction.coordinates;
             const auto pins = extremes(mesh, annotation, *measure.direction);
             measure.points.assign(pins.begin(), pins.end());
@@ -74,7 +81,7 @@ Carried carry(const Mesh& mesh, AnnotationSet& set, const MeasureDefinition& def
 }
 
 /// The parameters of the constraint as the text of a JSON object.
-std::string parameters(const Carried& part, const Carried& reference, double low, double high, bool hard) {
+std::string parameters(const TemplateMeasure& part, const TemplateMeasure& reference, double low, double high, bool hard) {
     Json document(rapidjson::kObjectType);
     auto& allocator = document.GetAllocator();
     add_members(document, allocator, "measure1", part.attribute, "measure2", reference.attribute, "minValue", low, "maxValue",
@@ -97,10 +104,11 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
     for (const RatioRow& ratio : study.ratios) {
         if (ratio.fixedness != Fixedness::fixed && !(options.stable && ratio.fixedness == Fixedness::stable)) continue;
         try {
-            const Carried part = carry(mesh, result.set, definitions.list.at(ratio.denominator)),
-                          reference = carry(mesh, result.set, definitions.list.at(ratio.numerator));
+            const TemplateMeasure part = measure_on_template(mesh, result.set, definitions.list.at(ratio.denominator)),
+                                  reference = measure_on_template(mesh, result.set, definitions.list.at(ratio.numerator));
             if (part.annotation == reference.annotation)
-                throw Refused{"both measures are of '" + part.tag + "': a constraint is between two annotations"};
+                throw RejectedProposal{
+                    fmt::format("both measures belong to '{}', but a constraint relates two annotations", part.tag)};
             Relationship relationship;
             relationship.id = free_id(result.graph);
             relationship.type = "proportion";
@@ -110,15 +118,15 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
             relationship.constraint = parameters(part, reference, 1 / ratio.high, 1 / ratio.low, options.hard);
             relationship.origin = "stated";
             if (const RelationType* type = find_relation_type(relationship.type)) relationship.directed = type->directed;
-            if (find_twin(result.graph, relationship) != nullptr) throw Refused{"the graph has it already"};
+            if (find_twin(result.graph, relationship) != nullptr) throw RejectedProposal{"the graph already contains it"};
             check_relationship(relationship, result.set, "proposal");
             result.graph.relationships.push_back(std::move(relationship));
             ++result.proposed;
-        } catch (const Refused& refused) {
-            result.notes.push_back("not proposed: " + ratio.row.name + ": " + refused.why);
+        } catch (const RejectedProposal& rejected) {
+            result.notes.push_back(fmt::format("not proposed: {}: {}", ratio.row.name, rejected.why));
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::failure || error.kind() == ErrorKind::cancelled) throw;
-            result.notes.push_back("not proposed: " + ratio.row.name + ": " + error.problem());
+            result.notes.push_back(fmt::format("not proposed: {}: {}", ratio.row.name, error.problem()));
         }
     }
     return result;

@@ -6,6 +6,8 @@
 #include "ostraka/core/text.h"
 #include "ratio_tests.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,9 +63,9 @@ std::vector<double> corrected(const std::vector<double>& p, ProportionOptions::C
 }
 
 /// Labels connected components of measures: joined pairs get the same label.
-std::vector<int> components(std::size_t count, const std::vector<Pair>& joined) {
+std::vector<int> components(std::size_t count, const std::vector<Pair>& joined_pairs) {
     DisjointSets sets(count);
-    for (const Pair& pair : joined) sets.unite_into(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
+    for (const Pair& pair : joined_pairs) sets.unite_into(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
     std::vector<int> group;
     for (std::size_t i = 0; i < count; ++i) group.push_back(static_cast<int>(sets.find(i)));
     return group;
@@ -93,7 +95,7 @@ bool are_identical(const MeasureTable& table) {
 
 /// Rows and p-values of the ratios of one kind.
 std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, bool identical, const ProportionOptions& options) {
-    std::vector<Candidate> list;
+    std::vector<Candidate> candidates;
     const auto m = static_cast<Eigen::Index>(kind.measures.size());
     std::vector<double> medians;
     for (Eigen::Index j = 0; j < m; ++j) {
@@ -109,13 +111,13 @@ std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, bo
             candidate.pair = swapped ? Pair{b, a} : Pair{a, b};
             candidate.ratio.numerator = kind.measures[static_cast<std::size_t>(candidate.pair.a)];
             candidate.ratio.denominator = kind.measures[static_cast<std::size_t>(candidate.pair.b)];
-            list.push_back(std::move(candidate));
+            candidates.push_back(std::move(candidate));
         }
     const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
     parallel_for(
-        list.size(),
+        candidates.size(),
         [&](std::size_t r) {
-            Candidate& candidate = list[r];
+            Candidate& candidate = candidates[r];
             RatioRow& ratio = candidate.ratio;
             std::vector<double> values;
             for (Eigen::Index i = 0; i < centred.rows(); ++i) {
@@ -128,41 +130,42 @@ std::vector<Candidate> ratios_of(const MeasureTable& table, const Kind& kind, bo
             candidate.constant =
                 !identical && values.size() >= 4 &&
                 all_same(*std::min_element(values.begin(), values.end()), *std::max_element(values.begin(), values.end()));
-            ratio.row = row_of(table.measures[ratio.numerator].name + " / " + table.measures[ratio.denominator].name, "", values,
-                               options.confidence);
+            ratio.row =
+                row_of(fmt::format("{} / {}", table.measures[ratio.numerator].name, table.measures[ratio.denominator].name), "",
+                       values, options.confidence);
             if (values.empty()) return;
             ratio.log_deviation = std::sqrt(proportions::ratio_variance(centred, candidate.pair).value);
             ratio.low = sample_quantile(values, (1 - options.range) / 2);
             ratio.high = sample_quantile(values, (1 + options.range) / 2);
         },
         1);
-    return list;
+    return candidates;
 }
 
-void test(std::vector<Candidate>& list, const Kind& kind, const ProportionOptions& options, int permutations,
+void test(std::vector<Candidate>& candidates, const Kind& kind, const ProportionOptions& options, int permutations,
           std::uint64_t seed) {
-    if (list.empty()) return;
+    if (candidates.empty()) return;
     const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
     std::vector<Pair> pairs;
-    for (const Candidate& candidate : list) pairs.push_back(candidate.pair);
+    for (const Candidate& candidate : candidates) pairs.push_back(candidate.pair);
     std::vector<double> pairing = proportions::pairing_test(centred, pairs, permutations, seed);
     // With two measures of a kind there is no other ratio to compare with.
-    std::vector<double> others = kind.measures.size() < 3 ? std::vector<double>(list.size(), 1.0)
-                                                          : proportions::others_test(centred, pairs, permutations, seed + 1);
+    std::vector<double> p_others = kind.measures.size() < 3 ? std::vector<double>(candidates.size(), 1.0)
+                                                            : proportions::others_test(centred, pairs, permutations, seed + 1);
     // A ratio that does not vary at all is not due to chance: it gets the smallest p-value of the permutation test.
-    for (std::size_t r = 0; r < list.size(); ++r)
-        if (list[r].constant) pairing[r] = others[r] = 1 / (1 + static_cast<double>(permutations));
-    const std::vector<double> q = corrected(others, options.correction);
-    std::vector<Pair> joined;
-    for (std::size_t r = 0; r < list.size(); ++r) {
-        list[r].ratio.p_pairing = pairing[r];
-        list[r].ratio.p_others = others[r];
-        if (q[r] <= options.false_discoveries) joined.push_back(pairs[r]);
+    for (std::size_t r = 0; r < candidates.size(); ++r)
+        if (candidates[r].constant) pairing[r] = p_others[r] = 1 / (1 + static_cast<double>(permutations));
+    const std::vector<double> q = corrected(p_others, options.correction);
+    std::vector<Pair> joined_pairs;
+    for (std::size_t r = 0; r < candidates.size(); ++r) {
+        candidates[r].ratio.p_pairing = pairing[r];
+        candidates[r].ratio.p_others = p_others[r];
+        if (q[r] <= options.false_discoveries) joined_pairs.push_back(pairs[r]);
     }
-    const std::vector<int> groups = components(kind.measures.size(), joined);
-    for (std::size_t r = 0; r < list.size(); ++r)
-        if (q[r] <= options.false_discoveries && !list[r].constant)
-            list[r].ratio.p_size = proportions::size_test(centred, pairs[r], groups, permutations, seed + 2 + r);
+    const std::vector<int> groups = components(kind.measures.size(), joined_pairs);
+    for (std::size_t r = 0; r < candidates.size(); ++r)
+        if (q[r] <= options.false_discoveries && !candidates[r].constant)
+            candidates[r].ratio.p_size = proportions::size_test(centred, pairs[r], groups, permutations, seed + 2 + r);
 }
 
 Fixedness verdict(const Candidate& candidate, bool identical, double alpha, double q_others) {
@@ -174,10 +177,10 @@ Fixedness verdict(const Candidate& candidate, bool identical, double alpha, doub
 }
 
 void check(const MeasureTable& table, std::vector<std::string>& notes) {
-    if (table.measures.empty()) fail_input("measures", "there is no measure", "define at least one");
-    if (table.objects.empty()) fail_input("measures", "there is no object", "give at least one");
+    if (table.measures.empty()) fail_input("measures", "the table has no measure", "define at least one measure");
+    if (table.objects.empty()) fail_input("measures", "the table has no object", "give at least one object");
     if (table.measures.size() > max_measures)
-        fail_usage("there are " + std::to_string(table.measures.size()) + " measures, and a ratio for each two of them",
+        fail_usage(fmt::format("there are {} measures, and every pair of them gives a ratio", table.measures.size()),
                    "use at most " + std::to_string(max_measures));
     std::size_t missing = 0, not_positive = 0;
     for (Eigen::Index i = 0; i < table.values.rows(); ++i)
@@ -185,17 +188,18 @@ void check(const MeasureTable& table, std::vector<std::string>& notes) {
             const double value = table.values(i, j);
             if (std::isnan(value)) ++missing;
             else if (!std::isfinite(value))
-                fail_input("measures",
-                           "the value of '" + table.measures[static_cast<std::size_t>(j)].name + "' of object '" +
-                               table.objects[static_cast<std::size_t>(i)] + "' is not finite",
-                           "leave it out");
+                fail_input(
+                    "measures",
+                    fmt::format("the value of '{}' of object '{}' is not finite",
+                                table.measures[static_cast<std::size_t>(j)].name, table.objects[static_cast<std::size_t>(i)]),
+                    "remove the value");
             else if (!(value > 0)) ++not_positive;
         }
     if (missing > 0)
-        notes.push_back("values that are missing: " + std::to_string(missing) + " of " + std::to_string(table.values.size()) +
-                        "; each row tells its number of objects");
+        notes.push_back(
+            fmt::format("missing values: {} of {}; each row reports its number of objects", missing, table.values.size()));
     if (not_positive > 0)
-        notes.push_back("values that are not above zero: " + std::to_string(not_positive) + "; ratios with them are left out");
+        notes.push_back(fmt::format("values that are not positive: {}; ratios with them are left out", not_positive));
 }
 
 /// Values whose fourth powers, or those of their ratios, overflow or underflow become missing.
@@ -209,13 +213,13 @@ MeasureTable without_extremes(MeasureTable table, std::vector<std::string>& note
             const double size = std::abs(value);
             if (!std::isfinite(value) || value == 0 || (size <= largest && size >= 1 / largest)) continue;
             if (count++ == 0)
-                first = "'" + table.measures[static_cast<std::size_t>(j)].name + "' of '" +
-                        table.objects[static_cast<std::size_t>(i)] + "' is " + digits(value);
+                first = fmt::format("'{}' of '{}' is {}", table.measures[static_cast<std::size_t>(j)].name,
+                                    table.objects[static_cast<std::size_t>(i)], digits(value));
             value = no_ratio;
         }
     if (count > 0)
-        notes.push_back("values left out as too large or too small to compute with: " + std::to_string(count) +
-                        " (the first: " + first + ")");
+        notes.push_back(fmt::format(
+            "values left out because they are too large or too small for the computation: {} (the first: {})", count, first));
     return table;
 }
 
@@ -240,18 +244,18 @@ std::string not_fixed_because(const RatioRow& ratio, double false_discoveries) {
         case Fixedness::unknown:
             break;
     }
-    return "nothing is known";
+    return "unknown";
 }
 
-ProportionStudy study_proportions(const MeasureTable& given, const ProportionOptions& options) {
+ProportionStudy study_proportions(const MeasureTable& measured, const ProportionOptions& options) {
     check_options(options, "proportions");
     ProportionStudy study;
-    const UnifiedMeasures unified = unify_units(without_extremes(given, study.notes));
+    const UnifiedMeasures unified = unify_units(without_extremes(measured, study.notes));
     const MeasureTable& table = unified.table;
     check(table, study.notes);
     const bool identical = table.objects.size() > 1 && are_identical(table);
     if (identical)
-        study.notes.emplace_back("the objects are identical in all measures: nothing varies, so nothing can be said of ratios");
+        study.notes.emplace_back("the objects are identical in all measures: without variation, ratios cannot be classified");
     study.notes.insert(study.notes.end(), unified.notes.begin(), unified.notes.end());
 
     for (std::size_t j = 0; j < table.measures.size(); ++j) {
@@ -265,18 +269,20 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
         study.measures.push_back(
             row_of(table.measures[j].name, absent ? "" : table.measures[j].unit, values, options.confidence));
         if (absent)
-            study.notes.push_back("measure '" + table.measures[j].name + "' has no value in any object: no ratios with it");
+            study.notes.push_back(
+                fmt::format("measure '{}' has no value in any object and is not used in ratios", table.measures[j].name));
         else if (values.empty())
-            study.notes.push_back("measure '" + table.measures[j].name + "' has no value that can be compared");
+            study.notes.push_back(fmt::format("measure '{}' has no value that can be compared", table.measures[j].name));
     }
 
     if (table.objects.size() < enough_objects)
-        study.notes.push_back(std::to_string(table.objects.size()) + (table.objects.size() == 1 ? " object" : " objects") +
-                              ": a fixed ratio can hardly be shown; ten or more are wanted");
+        study.notes.push_back(fmt::format("{}{}: too few to establish fixed ratios; at least ten are recommended",
+                                          table.objects.size(), table.objects.size() == 1 ? " object" : " objects"));
     const std::vector<Kind> kinds = kinds_of(table);
     if (kinds.size() > 1)
-        study.notes.push_back("measures of different kinds (lengths, areas, volumes, others): ratios are taken within each kind");
-    std::vector<Candidate> all;
+        study.notes.push_back(
+            "measures of different kinds (lengths, areas, volumes, others): ratios are formed within each kind");
+    std::vector<Candidate> all_candidates;
     std::size_t ratios = 0;
     for (const Kind& kind : kinds) ratios += kind.measures.size() * (kind.measures.size() - 1) / 2;
     // Enough permutations that a single fixed ratio can fall below its corrected limit.
@@ -284,11 +290,12 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
         std::max(options.permutations, static_cast<int>(std::ceil(2 * static_cast<double>(ratios) / options.false_discoveries)));
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const Kind& kind = kinds[k];
-        std::vector<Candidate> list = ratios_of(table, kind, identical, options);
-        test(list, kind, options, permutations, options.seed + 1000003 * (k + 1));
+        std::vector<Candidate> candidates = ratios_of(table, kind, identical, options);
+        test(candidates, kind, options, permutations, options.seed + 1000003 * (k + 1));
         const Eigen::MatrixXd centred = proportions::centred_columns(kind.logs);
-        if (const auto own = proportions::own_deviations(centred)) {
-            for (std::size_t c = 0; c < own->size(); ++c) study.measures[kind.measures[c]].own_deviation = (*own)[c];
+        if (const auto deviations = proportions::own_deviations(centred)) {
+            for (std::size_t c = 0; c < deviations->size(); ++c)
+                study.measures[kind.measures[c]].own_deviation = (*deviations)[c];
             if (table.measures[kind.measures.front()].power == 1) {
                 // The size shared by two lengths: their covariance over the comparable objects.
                 double sum = 0, count = 0;
@@ -299,43 +306,43 @@ ProportionStudy study_proportions(const MeasureTable& given, const ProportionOpt
                             mean += centred(i, c), square += centred(i, c) * centred(i, c), n += 1;
                     if (n < 2) continue;
                     sum += (square - mean * mean / n) / (n - 1) -
-                           (*own)[static_cast<std::size_t>(c)] * (*own)[static_cast<std::size_t>(c)];
+                           (*deviations)[static_cast<std::size_t>(c)] * (*deviations)[static_cast<std::size_t>(c)];
                     count += 1;
                 }
                 if (count > 0) study.size_deviation = std::sqrt(std::max(0.0, sum / count));
             }
         }
-        all.insert(all.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+        all_candidates.insert(all_candidates.end(), std::make_move_iterator(candidates.begin()),
+                              std::make_move_iterator(candidates.end()));
     }
 
     std::vector<double> joint, others, pairing;
-    for (const Candidate& candidate : all) {
+    for (const Candidate& candidate : all_candidates) {
         joint.push_back(std::max(candidate.ratio.p_others, candidate.ratio.p_size.value_or(0)));
         others.push_back(candidate.ratio.p_others);
         pairing.push_back(candidate.ratio.p_pairing);
     }
     const std::vector<double> q = corrected(joint, options.correction), q_others = corrected(others, options.correction),
                               q_pairing = corrected(pairing, options.correction);
-    std::size_t few = 0, constant = 0;
-    for (std::size_t r = 0; r < all.size(); ++r) {
-        all[r].ratio.q = q[r];
-        all[r].ratio.q_pairing = q_pairing[r];
-        all[r].ratio.q_others = q_others[r];
-        all[r].ratio.fixedness = verdict(all[r], identical, options.false_discoveries, q_others[r]);
-        few += all[r].count < 4 ? 1 : 0;
-        constant += all[r].constant ? 1 : 0;
-        study.ratios.push_back(std::move(all[r].ratio));
+    std::size_t too_few = 0, constant = 0;
+    for (std::size_t r = 0; r < all_candidates.size(); ++r) {
+        all_candidates[r].ratio.q = q[r];
+        all_candidates[r].ratio.q_pairing = q_pairing[r];
+        all_candidates[r].ratio.q_others = q_others[r];
+        all_candidates[r].ratio.fixedness = verdict(all_candidates[r], identical, options.false_discoveries, q_others[r]);
+        too_few += all_candidates[r].count < 4 ? 1 : 0;
+        constant += all_candidates[r].constant ? 1 : 0;
+        study.ratios.push_back(std::move(all_candidates[r].ratio));
     }
-    if (few > 0)
-        study.notes.push_back("ratios known of fewer than four objects, of which nothing can be said: " + std::to_string(few));
-    if (constant > 0)
-        study.notes.push_back("ratios that are the same in all objects, to the last digit: " + std::to_string(constant));
-    if (study.ratios.empty()) study.notes.push_back("there are no two measures of one kind: no ratios");
+    if (too_few > 0)
+        study.notes.push_back("ratios known for fewer than four objects, which are not classified: " + std::to_string(too_few));
+    if (constant > 0) study.notes.push_back("ratios that are exactly equal in all objects: " + std::to_string(constant));
+    if (study.ratios.empty()) study.notes.push_back("no two measures are of the same kind, so that there are no ratios");
     for (const Kind& kind : kinds)
         if (kind.measures.size() == 2)
-            study.notes.push_back("'" + table.measures[kind.measures[0]].name + "' and '" +
-                                  table.measures[kind.measures[1]].name +
-                                  "' are the only measures of their kind: there is no other ratio to compare theirs with");
+            study.notes.push_back(fmt::format(
+                "'{}' and '{}' are the only measures of their kind, so that their ratio cannot be compared with others",
+                table.measures[kind.measures[0]].name, table.measures[kind.measures[1]].name));
     return study;
 }
 
@@ -347,7 +354,7 @@ void ProportionOptions::describe(OptionList& visit) {
           Choices{"bh", "by"});
     visit("permutations", permutations, "number of random permutations per test; more where the number of ratios requires it",
           Range{99, 1000000});
-    visit("range", range, "share of the observed ratios that a proposed range spans", Range{0.01, 1});
+    visit("range", range, "fraction of the observed ratios that a proposed range covers", Range{0.01, 1});
     visit("confidence", confidence, "confidence level of intervals", Range{0.5, 0.999});
     visit("seed", seed, "random seed", Range{0, 1e18});
 }

@@ -14,31 +14,31 @@ namespace ostraka::proportions {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_value = std::numeric_limits<double>::quiet_NaN();
 /// Sums in a different order differ by rounding; differences up to this tolerance count as equal.
 constexpr double rounding = 1e-12;
 
-bool has(double value) { return !std::isnan(value); }
+bool is_known(double value) { return !std::isnan(value); }
 
 /// Variance of a difference over rows that have both values, from moments about 0 of columns that are already centred.
 Variance variance_of(const double* a, const double* b, Eigen::Index rows) {
     double sum = 0, square = 0, n = 0;
     for (Eigen::Index i = 0; i < rows; ++i)
-        if (const double d = a[i] - b[i]; has(d)) sum += d, square += d * d, n += 1;
+        if (const double d = a[i] - b[i]; is_known(d)) sum += d, square += d * d, n += 1;
     if (n < 2) return {0, static_cast<std::size_t>(n)};
     return {std::max(0.0, square - sum * sum / n) / (n - 1), static_cast<std::size_t>(n)};
 }
 
 /// Correlation of the deviations of the first two columns from the mean of the others, corrected for the error of that mean.
 /// `columns`: rows that have the first two values and at least two others.
-double bond(const Eigen::MatrixXd& columns) {
+double residual_correlation(const Eigen::MatrixXd& columns) {
     const Eigen::Index n = columns.rows(), m = columns.cols();
     std::vector<double> da, db;
     double error = 0, sum_a = 0, sum_b = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
         double sum = 0, square = 0, k = 0;
         for (Eigen::Index j = 2; j < m; ++j)
-            if (const double y = columns(i, j); has(y)) sum += y, square += y * y, k += 1;
+            if (const double y = columns(i, j); is_known(y)) sum += y, square += y * y, k += 1;
         const double mean = sum / k;
         error += std::max(0.0, square - sum * mean) / (k - 1) / k;
         da.push_back(columns(i, 0) - mean);
@@ -65,7 +65,7 @@ Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs) {
     for (Eigen::Index j = 0; j < m; ++j) {
         double first = 0;
         for (Eigen::Index i = n; i-- > 0;)
-            if (has(logs(i, j))) first = logs(i, j);
+            if (is_known(logs(i, j))) first = logs(i, j);
         x.col(j).array() -= first;
     }
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(m, m);
@@ -73,13 +73,13 @@ Eigen::MatrixXd centred_columns(const Eigen::MatrixXd& logs) {
     for (Eigen::Index i = 0; i < n; ++i) {
         double sum = 0, k = 0;
         for (Eigen::Index j = 0; j < m; ++j)
-            if (has(x(i, j))) sum += x(i, j), k += 1;
+            if (is_known(x(i, j))) sum += x(i, j), k += 1;
         for (Eigen::Index j = 0; j < m; ++j) {
-            if (!has(x(i, j))) continue;
+            if (!is_known(x(i, j))) continue;
             normal(j, j) += 1;
             right[j] += x(i, j) - sum / k;
             for (Eigen::Index l = 0; l < m; ++l)
-                if (has(x(i, l))) normal(j, l) -= 1 / k;
+                if (is_known(x(i, l))) normal(j, l) -= 1 / k;
         }
     }
     // The columns are determined up to a constant, which the sizes can absorb: take the minimum-norm solution.
@@ -99,7 +99,7 @@ std::vector<double> pairing_test(const Eigen::MatrixXd& centred, const std::vect
         [&](std::size_t r) {
             std::vector<double> a, b;
             for (Eigen::Index i = 0; i < centred.rows(); ++i)
-                if (has(centred(i, pairs[r].a)) && has(centred(i, pairs[r].b)))
+                if (is_known(centred(i, pairs[r].a)) && is_known(centred(i, pairs[r].b)))
                     a.push_back(centred(i, pairs[r].a)), b.push_back(centred(i, pairs[r].b));
             // The variance of the difference decreases as the sum of products increases.
             const auto products = [&] {
@@ -125,20 +125,20 @@ std::vector<double> pairing_test(const Eigen::MatrixXd& centred, const std::vect
 std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vector<Pair>& pairs, int permutations,
                                 std::uint64_t seed) {
     const Eigen::Index n = centred.rows();
-    Eigen::MatrixXd own = centred;
+    Eigen::MatrixXd row_centred = centred;
     std::vector<std::vector<Eigen::Index>> present(static_cast<std::size_t>(n));
     for (Eigen::Index i = 0; i < n; ++i) {
         double sum = 0;
         auto& columns = present[static_cast<std::size_t>(i)];
-        for (Eigen::Index j = 0; j < own.cols(); ++j)
-            if (has(own(i, j))) sum += own(i, j), columns.push_back(j);
-        own.row(i).array() -= columns.empty() ? 0 : sum / static_cast<double>(columns.size());
+        for (Eigen::Index j = 0; j < row_centred.cols(); ++j)
+            if (is_known(row_centred(i, j))) sum += row_centred(i, j), columns.push_back(j);
+        row_centred.row(i).array() -= columns.empty() ? 0 : sum / static_cast<double>(columns.size());
     }
     // Under the null hypothesis, ratios over the same number of objects have the same variance: they are pooled.
     std::map<std::size_t, std::vector<double>> observed;
     std::vector<Variance> variances;
     for (const Pair& pair : pairs) {
-        variances.push_back(ratio_variance(own, pair));
+        variances.push_back(ratio_variance(row_centred, pair));
         observed[variances.back().count].push_back(variances.back().value);
     }
     for (auto& [count, values] : observed) std::sort(values.begin(), values.end());
@@ -150,17 +150,17 @@ std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vecto
         blocks,
         [&](std::size_t part) {
             for (const auto& [count, values] : observed) counted[part][count].assign(values.size() + 1, 0);
-            Eigen::MatrixXd dealt = own;
+            Eigen::MatrixXd permuted = row_centred;
             for (std::size_t k = part * block; k < std::min((part + 1) * block, static_cast<std::size_t>(permutations)); ++k) {
                 Random random(seed, k);
                 for (Eigen::Index i = 0; i < n; ++i) {
                     const auto& columns = present[static_cast<std::size_t>(i)];
                     std::vector<Eigen::Index> order = columns;
                     random.shuffle(order);
-                    for (std::size_t c = 0; c < columns.size(); ++c) dealt(i, columns[c]) = own(i, order[c]);
+                    for (std::size_t c = 0; c < columns.size(); ++c) permuted(i, columns[c]) = row_centred(i, order[c]);
                 }
                 for (const Pair& pair : pairs) {
-                    const Variance v = ratio_variance(dealt, pair);
+                    const Variance v = ratio_variance(permuted, pair);
                     const std::vector<double>& values = observed.at(v.count);
                     // The first observed variance that is at least as large.
                     const auto at = std::lower_bound(values.begin(), values.end(), v.value * (1 - rounding)) - values.begin();
@@ -185,26 +185,26 @@ std::vector<double> others_test(const Eigen::MatrixXd& centred, const std::vecto
 std::optional<double> size_test(const Eigen::MatrixXd& centred, const Pair& pair, const std::vector<int>& groups,
                                 int permutations, std::uint64_t seed) {
     const auto group_of = [&](Eigen::Index column) { return groups[static_cast<std::size_t>(column)]; };
-    std::map<int, std::vector<Eigen::Index>> others;
+    std::map<int, std::vector<Eigen::Index>> other_groups;
     for (Eigen::Index j = 0; j < centred.cols(); ++j)
-        if (group_of(j) != group_of(pair.a) && group_of(j) != group_of(pair.b)) others[group_of(j)].push_back(j);
-    if (others.size() < 2) return std::nullopt;
+        if (group_of(j) != group_of(pair.a) && group_of(j) != group_of(pair.b)) other_groups[group_of(j)].push_back(j);
+    if (other_groups.size() < 2) return std::nullopt;
 
-    Eigen::MatrixXd columns(centred.rows(), static_cast<Eigen::Index>(others.size()) + 2);
+    Eigen::MatrixXd columns(centred.rows(), static_cast<Eigen::Index>(other_groups.size()) + 2);
     Eigen::Index rows = 0;
     for (Eigen::Index i = 0; i < centred.rows(); ++i) {
         columns(rows, 0) = centred(i, pair.a);
         columns(rows, 1) = centred(i, pair.b);
         Eigen::Index next = 2;
-        int there = 0;
-        for (const auto& [group, members] : others) {
+        int known_groups = 0;
+        for (const auto& [group, members] : other_groups) {
             double sum = 0, k = 0;
             for (const Eigen::Index j : members)
-                if (has(centred(i, j))) sum += centred(i, j), k += 1;
-            columns(rows, next++) = k > 0 ? sum / k : none;
-            there += k > 0 ? 1 : 0;
+                if (is_known(centred(i, j))) sum += centred(i, j), k += 1;
+            columns(rows, next++) = k > 0 ? sum / k : unknown_value;
+            known_groups += k > 0 ? 1 : 0;
         }
-        if (has(columns(rows, 0)) && has(columns(rows, 1)) && there >= 2) ++rows;
+        if (is_known(columns(rows, 0)) && is_known(columns(rows, 1)) && known_groups >= 2) ++rows;
     }
     if (rows < 4) return std::nullopt;
     columns.conservativeResize(rows, Eigen::NoChange);
@@ -213,16 +213,16 @@ std::optional<double> size_test(const Eigen::MatrixXd& centred, const Pair& pair
     for (Eigen::Index i = 0; i < rows; ++i) {
         double sum = 0, k = 0;
         for (Eigen::Index j = 0; j < columns.cols(); ++j)
-            if (has(columns(i, j))) sum += columns(i, j), k += 1;
+            if (is_known(columns(i, j))) sum += columns(i, j), k += 1;
         columns.row(i).array() -= sum / k;
     }
     for (Eigen::Index j = 0; j < columns.cols(); ++j) {
         double sum = 0, k = 0;
         for (Eigen::Index i = 0; i < rows; ++i)
-            if (has(columns(i, j))) sum += columns(i, j), k += 1;
+            if (is_known(columns(i, j))) sum += columns(i, j), k += 1;
         if (k > 0) columns.col(j).array() -= sum / k;
     }
-    const double observed = bond(columns) - rounding;
+    const double observed = residual_correlation(columns) - rounding;
     std::vector<double> chance(static_cast<std::size_t>(permutations));
     parallel_for(
         chance.size(),
@@ -232,13 +232,13 @@ std::optional<double> size_test(const Eigen::MatrixXd& centred, const Pair& pair
             for (Eigen::Index j = 0; j < columns.cols(); ++j) {
                 std::vector<double> values;
                 for (Eigen::Index i = 0; i < rows; ++i)
-                    if (has(columns(i, j))) values.push_back(columns(i, j));
+                    if (is_known(columns(i, j))) values.push_back(columns(i, j));
                 random.shuffle(values);
                 std::size_t next = 0;
                 for (Eigen::Index i = 0; i < rows; ++i)
-                    if (has(columns(i, j))) shuffled(i, j) = values[next++];
+                    if (is_known(columns(i, j))) shuffled(i, j) = values[next++];
             }
-            chance[k] = bond(shuffled);
+            chance[k] = residual_correlation(shuffled);
         },
         64);
     return permutation_p_value(observed, chance);

@@ -15,7 +15,7 @@ ResultStore::ResultStore(Path folder, const Share& share) : folder_(std::move(fo
     if (folder_.empty()) return;
     std::error_code code;
     if (std::filesystem::is_symlink(folder_, code))
-        fail_input(folder_.string(), "is a link, and results are kept in a folder of their own", "remove it");
+        fail_input(folder_.string(), "is a link, but results are kept in a separate folder", "remove the link");
     remove_stale_temporaries(folder_);
 }
 
@@ -62,13 +62,13 @@ void ResultStore::keep(const std::string& name, const std::string& key, const Js
     add_members(document, allocator, "format", "ostraka-study-result", "version", 1, "key", key, "checksum",
                 sha256(to_text(result)), "result", JsonValue(result, allocator));
     // Stored at once, even if the caller's own output transaction fails.
-    OutputTransaction own;
+    OutputTransaction transaction;
     write_json(folder_ / (name + ".json"), document);
-    own.commit();
+    transaction.commit();
 }
 
 std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,
-                                          const std::vector<std::string>& what,
+                                          const std::vector<std::string>& key_parts,
                                           const std::function<Json(const CollectionObject&)>& work) {
     std::vector<ObjectResult> results(collection.objects.size());
     Progress progress("objects", results.size());
@@ -76,29 +76,29 @@ std::vector<ObjectResult> for_each_object(const Collection& collection, const Re
         results.size(),
         [&](std::size_t i) {
             const CollectionObject& object = collection.objects[i];
-            ObjectResult& mine = results[i];
-            std::vector<std::string> parts = what;
+            ObjectResult& object_result = results[i];
+            std::vector<std::string> parts = key_parts;
             parts.insert(parts.end(), {object.name, object.checksum, object.unit});
             const std::string key = ResultStore::key(parts);
             try {
                 if (!object.checksum.empty())
                     if (auto kept = store.find(object.name, key)) {
-                        mine.result = std::move(*kept);
-                        mine.resumed = true;
+                        object_result.result = std::move(*kept);
+                        object_result.resumed = true;
                     }
-                if (!mine.resumed && !store.share().has(i)) {
-                    mine.elsewhere = true;
-                } else if (!mine.resumed) {
-                    mine.result = work(object);
-                    if (!object.checksum.empty()) store.keep(object.name, key, mine.result);
+                if (!object_result.resumed && !store.share().has(i)) {
+                    object_result.elsewhere = true;
+                } else if (!object_result.resumed) {
+                    object_result.result = work(object);
+                    if (!object.checksum.empty()) store.keep(object.name, key, object_result.result);
                 }
             } catch (const Error& error) {
                 if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::cancelled) throw;
-                mine.result.SetNull();
-                mine.problem = error.what();
+                object_result.result.SetNull();
+                object_result.problem = error.what();
             } catch (const std::bad_alloc&) {
-                mine.result.SetNull();
-                mine.problem = object.name + ": out of memory (use a smaller mesh or --threads 1)";
+                object_result.result.SetNull();
+                object_result.problem = object.name + ": out of memory (use a smaller mesh or --threads 1)";
             }
             progress.advance();
         },

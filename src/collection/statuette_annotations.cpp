@@ -3,6 +3,8 @@
 #include "ostraka/annotation/label_file.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -15,9 +17,10 @@ void add_measure(const Statuette& statuette, Annotation& object, const std::stri
     Measure measure;
     measure.tool = tool;
     measure.unit = "mm";
-    for (const std::string& each : landmarks) {
-        const auto landmark = std::find_if(statuette.landmarks.begin(), statuette.landmarks.end(),
-                                           [&](const StatuetteLandmark& one) { return one.name == each; });
+    for (const std::string& landmark_name : landmarks) {
+        const auto landmark =
+            std::find_if(statuette.landmarks.begin(), statuette.landmarks.end(),
+                         [&](const StatuetteLandmark& statuette_landmark) { return statuette_landmark.name == landmark_name; });
         if (landmark == statuette.landmarks.end()) return;
         measure.points.push_back(landmark->vertex);
         measure.locations.push_back({landmark->face, landmark->barycentric});
@@ -52,10 +55,10 @@ AnnotationSet annotate_statuette(const Statuette& statuette) {
     add_measure(object, "total height", std::move(height));
     add_measure(statuette, object, "base diameter", "ruler", {"base right", "base left"});
     for (const std::string side : {"right", "left"}) {
-        std::vector<std::string> way{"arm joint " + side};
-        for (int i = 1; i <= 5; ++i) way.push_back("arm outside " + std::to_string(i) + " " + side);
-        way.push_back("hand end " + side);
-        add_measure(statuette, object, "arm length " + side, "tape", way);
+        std::vector<std::string> tape_pins{"arm joint " + side};
+        for (int i = 1; i <= 5; ++i) tape_pins.push_back(fmt::format("arm outside {} {}", i, side));
+        tape_pins.push_back("hand end " + side);
+        add_measure(statuette, object, "arm length " + side, "tape", tape_pins);
     }
     add_measure(statuette, object, "head height", "ruler", {"head joint", "top of the head"});
     for (const StatuetteLandmark& landmark : statuette.landmarks) {

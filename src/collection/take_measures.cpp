@@ -9,6 +9,8 @@
 #include "ostraka/measure/measure.h"
 #include "ostraka/slicing/clay.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -18,11 +20,11 @@ namespace ostraka {
 namespace {
 
 /// Reason why a measure cannot be taken on this object.
-struct Missing {
+struct MissingMeasure {
     std::string why;
 };
 
-struct Taken {
+struct MeasuredValue {
     double value = 0;
     int power = 1;
     std::string unit;  ///< for values that are not a power of a length
@@ -37,12 +39,12 @@ std::pair<std::string, int> length_power(const std::string& unit) {
 }
 
 /// The files of one object, read on demand.
-class Taker {
+class MeasureReader {
 public:
-    Taker(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks, const TagWords* words)
+    MeasureReader(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks, const TagWords* words)
         : mesh_(mesh), set_(set), landmarks_(landmarks), words_(words) {}
 
-    Taken take(const MeasureDefinition& definition) {
+    MeasuredValue value_of(const MeasureDefinition& definition) {
         if (!definition.attribute.empty()) return attribute(definition);
         if (!definition.descriptor.empty()) return descriptor(definition);
         if (!definition.clay.empty()) return clay(definition);
@@ -52,78 +54,79 @@ public:
 
 private:
     const Mesh& mesh() const {
-        if (mesh_ == nullptr) throw Missing{"there is no mesh"};
+        if (mesh_ == nullptr) throw MissingMeasure{"the object has no mesh"};
         return *mesh_;
     }
     const Annotation* find(const std::string& tag) const {
         if (set_ == nullptr) return nullptr;
-        const Annotation* found = nullptr;
+        const Annotation* matching_annotation = nullptr;
         for (const Annotation& annotation : set_->annotations) {
             if (annotation.tag != tag) continue;
-            if (found != nullptr) throw Missing{"two annotations are called '" + tag + "'"};
-            found = &annotation;
+            if (matching_annotation != nullptr) throw MissingMeasure{fmt::format("two annotations are called '{}'", tag)};
+            matching_annotation = &annotation;
         }
-        if (found != nullptr || words_ == nullptr) return found;
-        const std::vector<std::size_t> meant = words_->find(*set_, tag);
-        if (meant.size() > 1) throw Missing{"several annotations are meant by '" + tag + "'"};
-        return meant.empty() ? nullptr : &set_->annotations[meant.front()];
+        if (matching_annotation != nullptr || words_ == nullptr) return matching_annotation;
+        const std::vector<std::size_t> matching_indices = words_->find(*set_, tag);
+        if (matching_indices.size() > 1) throw MissingMeasure{fmt::format("several annotations match '{}'", tag)};
+        return matching_indices.empty() ? nullptr : &set_->annotations[matching_indices.front()];
     }
     const Annotation& require(const std::string& tag) const {
-        if (set_ == nullptr) throw Missing{"there are no annotations"};
-        const Annotation* found = find(tag);
-        if (found == nullptr) throw Missing{"no annotation is called '" + tag + "'"};
-        return *found;
+        if (set_ == nullptr) throw MissingMeasure{"the object has no annotations"};
+        const Annotation* annotation = find(tag);
+        if (annotation == nullptr) throw MissingMeasure{fmt::format("no annotation is called '{}'", tag)};
+        return *annotation;
     }
     /// The annotation to measure; the whole mesh if none is named.
     Annotation measured(const MeasureDefinition& definition) const {
         if (!definition.annotation.empty()) return require(definition.annotation);
-        Annotation whole;
-        whole.type = AnnotationType::region;
-        whole.all = true;
-        whole.faces.resize(mesh().number_of_faces());
-        std::iota(whole.faces.begin(), whole.faces.end(), Index{0});
-        return whole;
+        Annotation whole_object;
+        whole_object.type = AnnotationType::region;
+        whole_object.all = true;
+        whole_object.faces.resize(mesh().number_of_faces());
+        std::iota(whole_object.faces.begin(), whole_object.faces.end(), Index{0});
+        return whole_object;
     }
-    std::array<double, 3> along(const MeasureDirection& direction) const {
+    std::array<double, 3> direction_of(const MeasureDirection& direction) const {
         if (!direction.up) return direction.coordinates;
-        if (set_ == nullptr || !set_->up) throw Missing{"the annotations do not say which way is up"};
+        if (set_ == nullptr || !set_->up) throw MissingMeasure{"the annotations have no upward direction"};
         return *set_->up;
     }
 
-    /// The vertex at a place; throws Missing if there is none.
+    /// The vertex at a place; throws MissingMeasure if there is none.
     Index vertex(const MeasurePlace& place) const {
-        if (place.extreme) return extremes(mesh(), require(place.name), along(*place.extreme))[1];
+        if (place.extreme) return extremes(mesh(), require(place.name), direction_of(*place.extreme))[1];
         std::string tag = place.name;
         std::size_t number = 0;
-        const Annotation* found = find(tag);
-        if (found == nullptr) {
+        const Annotation* annotation = find(tag);
+        if (annotation == nullptr) {
             const std::size_t blank = tag.rfind(' ');
             const std::optional<int> last = blank == std::string::npos ? std::nullopt : whole_of(tag.substr(blank + 1));
-            if (last && *last >= 1) found = find(tag.substr(0, blank)), number = static_cast<std::size_t>(*last - 1);
+            if (last && *last >= 1) annotation = find(tag.substr(0, blank)), number = static_cast<std::size_t>(*last - 1);
         }
-        if (found == nullptr) throw Missing{"nothing is called '" + place.name + "'"};
-        if (found->type != AnnotationType::point)
-            throw Missing{"'" + found->tag + "' is a " + to_string(found->type) + ", not a point"};
-        if (number >= found->points.size())
-            throw Missing{"'" + found->tag + "' has " + std::to_string(found->points.size()) + " points"};
-        return found->points[number];
+        if (annotation == nullptr) throw MissingMeasure{fmt::format("nothing is called '{}'", place.name)};
+        if (annotation->type != AnnotationType::point)
+            throw MissingMeasure{fmt::format("'{}' is a {}, not a point", annotation->tag, to_string(annotation->type))};
+        if (number >= annotation->points.size())
+            throw MissingMeasure{fmt::format("'{}' has {} points", annotation->tag, annotation->points.size())};
+        return annotation->points[number];
     }
     /// The position of a place: of a landmark if it names one, otherwise of a vertex.
-    Point place(const MeasurePlace& wanted) const {
-        if (landmarks_ != nullptr && !wanted.extreme && find(wanted.name) == nullptr) {
-            const Landmark* found = nullptr;
+    Point place(const MeasurePlace& pin) const {
+        if (landmarks_ != nullptr && !pin.extreme && find(pin.name) == nullptr) {
+            const Landmark* matching_landmark = nullptr;
             for (const Landmark& landmark : landmarks_->landmarks) {
-                if (landmark.name != wanted.name) continue;
-                if (found != nullptr) throw Missing{"two landmarks are called '" + wanted.name + "'"};
-                found = &landmark;
+                if (landmark.name != pin.name) continue;
+                if (matching_landmark != nullptr) throw MissingMeasure{fmt::format("two landmarks are called '{}'", pin.name)};
+                matching_landmark = &landmark;
             }
-            if (found != nullptr) return {found->position[0], found->position[1], found->position[2]};
-            if (set_ == nullptr) throw Missing{"no landmark is called '" + wanted.name + "'"};
+            if (matching_landmark != nullptr)
+                return {matching_landmark->position[0], matching_landmark->position[1], matching_landmark->position[2]};
+            if (set_ == nullptr) throw MissingMeasure{fmt::format("no landmark is called '{}'", pin.name)};
         }
-        return mesh().point(Vertex(vertex(wanted)));
+        return mesh().point(Vertex(vertex(pin)));
     }
 
-    Taken ruler(const MeasureDefinition& definition) const {
+    MeasuredValue ruler(const MeasureDefinition& definition) const {
         double length = 0;
         for (std::size_t i = 1; i < definition.pins.size(); ++i) {
             const Vector step = place(definition.pins[i]) - place(definition.pins[i - 1]);
@@ -131,79 +134,85 @@ private:
         }
         return {length, 1, ""};
     }
-    Taken tape(const MeasureDefinition& definition) const {
+    MeasuredValue tape(const MeasureDefinition& definition) const {
         Measure measure;
         measure.tool = "tape";
         measure.exact = definition.exact;
         for (const MeasurePlace& pin : definition.pins) measure.points.push_back(vertex(pin));
         return {evaluate(mesh(), {}, measure), 1, ""};
     }
-    Taken bounding(const MeasureDefinition& definition) const {
+    MeasuredValue bounding(const MeasureDefinition& definition) const {
         const Annotation annotation = measured(definition);
         Measure measure;
         measure.tool = "bounding";
-        measure.direction = along(definition.direction);
+        measure.direction = direction_of(definition.direction);
         const auto pins = extremes(mesh(), annotation, *measure.direction);
         measure.points.assign(pins.begin(), pins.end());
         return {evaluate(mesh(), annotation, measure), 1, ""};
     }
-    Taken descriptor(const MeasureDefinition& definition) const {
+    MeasuredValue descriptor(const MeasureDefinition& definition) const {
         const Annotation annotation = measured(definition);
         DescriptorSearch search(mesh());
-        const std::optional<Quantity> found = search.find(annotation, definition.descriptor);
-        if (!found) throw Missing{"'" + definition.descriptor + "' is no descriptor of a " + to_string(annotation.type)};
-        if (static_cast<std::size_t>(definition.entry) > found->values.size())
-            throw Missing{"'" + definition.descriptor + "' has " + std::to_string(found->values.size()) + " numbers"};
-        return {found->values[static_cast<std::size_t>(definition.entry - 1)], found->power, found->unit};
+        const std::optional<Quantity> quantity = search.find(annotation, definition.descriptor);
+        if (!quantity)
+            throw MissingMeasure{
+                fmt::format("'{}' is not a descriptor of a {}", definition.descriptor, to_string(annotation.type))};
+        if (static_cast<std::size_t>(definition.entry) > quantity->values.size())
+            throw MissingMeasure{fmt::format("'{}' has {} numbers", definition.descriptor, quantity->values.size())};
+        return {quantity->values[static_cast<std::size_t>(definition.entry - 1)], quantity->power, quantity->unit};
     }
     /// Sliced across the object's up direction, or across z if the annotations give none.
-    Taken clay(const MeasureDefinition& definition) {
+    MeasuredValue clay(const MeasureDefinition& definition) {
         if (!clay_) {
             const std::array<double, 3> up = set_ != nullptr && set_->up ? *set_->up : std::array<double, 3>{0, 0, 1};
             clay_ = clay_volume(mesh(), slice_frame(Point(0, 0, 0), Vector(up[0], up[1], up[2])));
         }
         const double value = definition.clay == "max" ? clay_->maximum : clay_->minimum;
         if (std::isnan(value))
-            throw Missing{definition.clay == "max" || std::isnan(clay_->maximum) ? "no slice has a closed outline"
-                                                                                 : "no wall is seen, so there is no least"};
+            throw MissingMeasure{definition.clay == "max" || std::isnan(clay_->maximum)
+                                     ? "no slice has a closed outline"
+                                     : "no wall is found, so that there is no minimum"};
         return {value, 3, ""};
     }
-    Taken attribute(const MeasureDefinition& definition) const {
+    MeasuredValue attribute(const MeasureDefinition& definition) const {
         const Annotation& annotation = require(definition.annotation);
-        const Attribute* found = nullptr;
+        const Attribute* matching_attribute = nullptr;
         for (const Attribute& attribute : annotation.attributes) {
             if (attribute.name != definition.attribute || attribute.type == AttributeType::semantic) continue;
-            if (found != nullptr) throw Missing{"'" + annotation.tag + "' has two attributes '" + definition.attribute + "'"};
-            found = &attribute;
+            if (matching_attribute != nullptr)
+                throw MissingMeasure{fmt::format("'{}' has two attributes '{}'", annotation.tag, definition.attribute)};
+            matching_attribute = &attribute;
         }
-        if (found == nullptr)
-            throw Missing{"'" + annotation.tag + "' has no measure or descriptor '" + definition.attribute + "'"};
-        if (found->type == AttributeType::measure) {
-            if (found->measure.stale || !found->measure.value)
-                throw Missing{"the value of '" + definition.attribute + "' is stale: run 'ostraka measure refresh'"};
-            return in_own_unit(*found->measure.value, found->measure.unit, true);
+        if (matching_attribute == nullptr)
+            throw MissingMeasure{fmt::format("'{}' has no measure or descriptor '{}'", annotation.tag, definition.attribute)};
+        if (matching_attribute->type == AttributeType::measure) {
+            if (matching_attribute->measure.stale || !matching_attribute->measure.value)
+                throw MissingMeasure{
+                    fmt::format("the value of '{}' is stale: run 'ostraka measure refresh'", definition.attribute)};
+            return in_annotation_unit(*matching_attribute->measure.value, matching_attribute->measure.unit, true);
         }
-        if (found->descriptor.stale)
-            throw Missing{"the value of '" + definition.attribute + "' is stale: run 'ostraka measure refresh'"};
-        if (static_cast<std::size_t>(definition.entry) > found->descriptor.values.size())
-            throw Missing{"'" + definition.attribute + "' has " + std::to_string(found->descriptor.values.size()) + " numbers"};
-        return in_own_unit(found->descriptor.values[static_cast<std::size_t>(definition.entry - 1)], found->descriptor.unit,
-                           false);
+        if (matching_attribute->descriptor.stale)
+            throw MissingMeasure{fmt::format("the value of '{}' is stale: run 'ostraka measure refresh'", definition.attribute)};
+        if (static_cast<std::size_t>(definition.entry) > matching_attribute->descriptor.values.size())
+            throw MissingMeasure{
+                fmt::format("'{}' has {} numbers", definition.attribute, matching_attribute->descriptor.values.size())};
+        return in_annotation_unit(matching_attribute->descriptor.values[static_cast<std::size_t>(definition.entry - 1)],
+                                  matching_attribute->descriptor.unit, false);
     }
     /// A value with its own unit, converted to the unit of the annotations if both are lengths.
-    Taken in_own_unit(double value, const std::string& unit, bool length) const {
+    MeasuredValue in_annotation_unit(double value, const std::string& unit, bool length) const {
         const auto [base, power] = length_power(unit);
-        const std::string own = set_ == nullptr ? "" : set_->unit;
+        const std::string own_unit = set_ == nullptr ? "" : set_->unit;
         if (unit.empty()) return {value, length ? 1 : 0, ""};
-        if (power != 0 && base == own) return {value, power, ""};
-        if (power != 0 && !own.empty()) {
+        if (power != 0 && base == own_unit) return {value, power, ""};
+        if (power != 0 && !own_unit.empty()) {
             // Uses the conversion of the measure table, so that there is only one list of units.
-            MeasureTable one;
-            one.objects = {"a", "b", "c"};
-            one.units = {base, own, own};
-            one.measures = {{"value", power, ""}};
-            one.values = Eigen::Vector3d(value, 1, 1);
-            const UnifiedMeasures unified = unify_units(one);
+            MeasureTable conversion;
+            conversion.objects = {"a", "b", "c"};
+            conversion.units = {base, own_unit, own_unit};
+            conversion.measures = {{"value", power, ""}};
+            conversion.values = Eigen::Vector3d(value, 1, 1);
+            const UnifiedMeasures unified = unify_units(conversion);
             if (unified.comparable[0]) return {unified.table.values(0, 0), power, ""};
         }
         return {value, 0, unit};
@@ -216,27 +225,27 @@ private:
     std::optional<ClayVolume> clay_;
 };
 
-ObjectMeasures take(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks,
-                    const MeasureDefinitions& definitions, const TagWords* words) {
+ObjectMeasures measure_object(const Mesh* mesh, const AnnotationSet* set, const LandmarkSet* landmarks,
+                              const MeasureDefinitions& definitions, const TagWords* words) {
     ObjectMeasures result;
-    Taker taker(mesh, set, landmarks, words);
+    MeasureReader reader(mesh, set, landmarks, words);
     for (const MeasureDefinition& definition : definitions.list) {
         std::optional<double> value;
         int power = 1;
         std::string unit, why;
         try {
-            const Taken taken = taker.take(definition);
-            if (!std::isfinite(taken.value)) throw Missing{"the value is not finite"};
-            value = taken.value;
-            power = taken.power;
-            unit = taken.unit;
-        } catch (const Missing& missing) {
+            const MeasuredValue measured = reader.value_of(definition);
+            if (!std::isfinite(measured.value)) throw MissingMeasure{"the value is not finite"};
+            value = measured.value;
+            power = measured.power;
+            unit = measured.unit;
+        } catch (const MissingMeasure& missing) {
             why = missing.why;
         } catch (const Error& error) {
             if (error.kind() == ErrorKind::failure || error.kind() == ErrorKind::cancelled) throw;
             why = error.problem();
         }
-        if (!value) result.notes.push_back("no '" + definition.name + "': " + why);
+        if (!value) result.notes.push_back(fmt::format("no '{}': {}", definition.name, why));
         result.values.push_back(value);
         result.powers.push_back(power);
         result.units.push_back(unit);
@@ -245,13 +254,13 @@ ObjectMeasures take(const Mesh* mesh, const AnnotationSet* set, const LandmarkSe
 }
 
 /// Whether landmarks are sufficient for all measures.
-bool by_landmarks(const LandmarkSet& landmarks, const MeasureDefinitions& definitions) {
-    const auto known = [&](const MeasurePlace& place) {
+bool needs_only_landmarks(const LandmarkSet& landmarks, const MeasureDefinitions& definitions) {
+    const auto is_landmark = [&](const MeasurePlace& place) {
         return !place.extreme && std::any_of(landmarks.landmarks.begin(), landmarks.landmarks.end(),
                                              [&](const Landmark& landmark) { return landmark.name == place.name; });
     };
     return std::all_of(definitions.list.begin(), definitions.list.end(), [&](const MeasureDefinition& definition) {
-        return definition.tool == "ruler" && std::all_of(definition.pins.begin(), definition.pins.end(), known);
+        return definition.tool == "ruler" && std::all_of(definition.pins.begin(), definition.pins.end(), is_landmark);
     });
 }
 
@@ -262,22 +271,22 @@ ObjectMeasures take_measures(const CollectionObject& object, const MeasureDefini
     if (!object.landmarks.empty()) landmarks = read_landmarks(object.landmarks, LandmarkFormat::mrk);
     std::optional<MeshFile> file;
     std::optional<AnnotationSet> set;
-    if (!object.mesh.empty() && !(landmarks && by_landmarks(*landmarks, definitions))) {
+    if (!object.mesh.empty() && !(landmarks && needs_only_landmarks(*landmarks, definitions))) {
         file = read_mesh(object.mesh);
         if (!object.annotations.empty()) set = read_annotations(object.annotations, file->mesh);
     }
-    ObjectMeasures result =
-        take(file ? &file->mesh : nullptr, set ? &*set : nullptr, landmarks ? &*landmarks : nullptr, definitions, words);
+    ObjectMeasures result = measure_object(file ? &file->mesh : nullptr, set ? &*set : nullptr, landmarks ? &*landmarks : nullptr,
+                                           definitions, words);
     result.unit = !object.unit.empty() ? object.unit : set && !set->unit.empty() ? set->unit : landmarks ? landmarks->unit : "";
     if (std::none_of(result.values.begin(), result.values.end(), [](const auto& value) { return value.has_value(); }))
-        fail_input(object.name, "no measure can be taken: " + result.notes.front(),
-                   "are its annotations or landmarks there, and named as the measures say?");
+        fail_input(object.name, "no measure could be taken: " + result.notes.front(),
+                   "check that its annotations or landmarks exist and have the names used by the measures");
     return result;
 }
 
 ObjectMeasures take_measures(const Mesh& mesh, const AnnotationSet& set, const MeasureDefinitions& definitions,
                              const TagWords* words) {
-    ObjectMeasures result = take(&mesh, &set, nullptr, definitions, words);
+    ObjectMeasures result = measure_object(&mesh, &set, nullptr, definitions, words);
     result.unit = set.unit;
     return result;
 }

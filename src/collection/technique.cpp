@@ -10,6 +10,7 @@
 #include "ostraka/slicing/slice.h"
 #include "ostraka/slicing/slice_descriptors.h"
 
+#include <fmt/core.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ using Eigen::Vector2d;
 constexpr double unknown = TechniqueSlice::unknown;
 
 /// The slice reduced to one contour and the holes directly in it.
-Slice alone(const Slice& slice, std::size_t outline) {
+Slice only_contour(const Slice& slice, std::size_t outline) {
     Slice part;
     part.height = slice.height;
     part.contours.push_back(slice.contours[outline]);
@@ -54,16 +55,17 @@ std::optional<std::size_t> main_outline(const Slice& slice) {
 /// Measures of one slice of the body; only the angular coverage if its outline is too open.
 TechniqueSlice measure_slice(const Slice& slice, std::size_t outline, double min_turn) {
     TechniqueSlice result;
-    const Slice body = alone(slice, outline);
+    const Slice body = only_contour(slice, outline);
     const SliceDescriptors d = describe_slice(body);
     const Contour& contour = body.contours[0];
     Circle circle{d.fitted_centre, contour.closed ? d.fitted_radius : -1};
     double roundness = d.roundness_fitted_relative;
     if (!contour.closed) {
-        PlaneSegments pieces;
-        for (std::size_t i = 0; i + 1 < contour.points.size(); ++i) pieces.emplace_back(contour.points[i], contour.points[i + 1]);
-        circle = fit_circle(pieces);
-        roundness = circle_deviation(pieces, circle).absolute / circle.radius;  // of an almost full turn
+        PlaneSegments segments;
+        for (std::size_t i = 0; i + 1 < contour.points.size(); ++i)
+            segments.emplace_back(contour.points[i], contour.points[i + 1]);
+        circle = fit_circle(segments);
+        roundness = circle_deviation(segments, circle).absolute / circle.radius;  // of an almost full turn
     }
     if (!(circle.radius > 0)) return result;
     const OutlineHarmonics shape = outline_harmonics(contour, circle.centre);
@@ -125,8 +127,8 @@ LineDeviation line_deviation(const std::vector<TechniqueSlice>& slices) {
         radius += slice.radius;
     }
     radius /= static_cast<double>(n);
-    const Eigen::MatrixXd rest = B - A * solve_full_rank(A, B);
-    result.line = std::sqrt(rest.squaredNorm() / static_cast<double>(n)) / radius;
+    const Eigen::MatrixXd residual = B - A * solve_full_rank(A, B);
+    result.line = std::sqrt(residual.squaredNorm() / static_cast<double>(n)) / radius;
     result.upright = (B.rowwise() - B.colwise().mean()).rowwise().norm().mean() / radius;
     return result;
 }
@@ -134,7 +136,7 @@ LineDeviation line_deviation(const std::vector<TechniqueSlice>& slices) {
 }  // namespace
 
 const std::vector<DescriptorMeaning>& technique_descriptors() {
-    static const std::vector<DescriptorMeaning> list{
+    static const std::vector<DescriptorMeaning> meanings{
         {"roundness mean", "mean distance from the fitted circle", true},
         {"roundness variance", "variance of that over the slices", true},
         {"equivalent roundness mean", "mean distance from the circle of equal area", true},
@@ -147,12 +149,12 @@ const std::vector<DescriptorMeaning>& technique_descriptors() {
         {"straightness", "centres' distance from their straight line, root mean square", true},
         {"upright straightness", "centres' mean distance from the upright line through their mean", true},
         {"wall variation", "deviation of the thickness around a slice, over its mean", true}};
-    return list;
+    return meanings;
 }
 
 double TechniqueMeasures::value(const std::string& descriptor) const {
-    for (const TechniqueDescriptor& each : descriptors)
-        if (each.name == descriptor) return each.value;
+    for (const TechniqueDescriptor& descriptor_value : descriptors)
+        if (descriptor_value.name == descriptor) return descriptor_value.value;
     return unknown;
 }
 
@@ -172,8 +174,8 @@ void describe_technique(TechniqueMeasures& measures) {
     const auto amplitude = [](const TechniqueSlice& s) { return std::hypot(s.ovality[0], s.ovality[1]); };
     const Moments oval = moments(slices, [&](const auto& s) { return amplitude(s) * amplitude(s); });
     add("ovality", std::sqrt(oval.mean), oval.count);
-    const Moments marks = moments(slices, [](const auto& s) { return s.marks * s.marks; });
-    add("marks", std::sqrt(marks.mean), marks.count);
+    const Moments mark_moments = moments(slices, [](const auto& s) { return s.marks * s.marks; });
+    add("marks", std::sqrt(mark_moments.mean), mark_moments.count);
     const Moments x = moments(slices, [](const auto&s) { return s.ovality[0]; }),
                   y = moments(slices, [](const auto&s) { return s.ovality[1]; }), length = moments(slices, amplitude);
     add("coherence", length.mean > 0 ? std::hypot(x.mean, y.mean) / length.mean : unknown, length.count);
@@ -188,9 +190,9 @@ void describe_technique(TechniqueMeasures& measures) {
 TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const TechniqueOptions& options) {
     check_options(options, "technique");
     if (!(options.from < options.to))
-        fail_usage(
-            "the slices begin at " + std::to_string(options.from) + " of the height and end at " + std::to_string(options.to),
-            "let --from be below --to");
+        fail_usage(fmt::format("the slices begin at {} of the height and end at {}", std::to_string(options.from),
+                               std::to_string(options.to)),
+                   "give a value of --from that is below --to");
     const SliceFrame frame = slice_frame(Point(0, 0, 0), up);
     const auto [low, high] = height_range(mesh, frame);
     if (!(high > low)) fail_input("mesh", "has no height along its upward direction", "check --up, or repair the mesh");
@@ -221,9 +223,8 @@ TechniqueMeasures measure_technique(const Mesh& mesh, const Vector& up, const Te
     }
     if (result.slices.size() < static_cast<std::size_t>(options.min_slices))
         fail_input("mesh",
-                   "only " + std::to_string(result.slices.size()) + " of " + std::to_string(result.asked) +
-                       " slices can be used: " + std::to_string(result.too_open) + " are too open, " +
-                       std::to_string(result.empty) + " have no outline",
+                   fmt::format("only {} of {} slices can be used: {} are too open, {} have no outline", result.slices.size(),
+                               result.asked, result.too_open, result.empty),
                    "fill the holes (ostraka mesh repair), check --up, or lower --min-turn or --min-slices");
     describe_technique(result);
     return result;

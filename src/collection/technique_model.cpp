@@ -36,60 +36,65 @@ DescriptorTable descriptor_table(const std::vector<TechniqueObject>& objects, co
 
 namespace {
 
-struct Kinds {
+struct ClassStatistics {
     VectorXd mean[2];
     MatrixXd scatter;  ///< pooled covariance
     std::size_t count[2] = {0, 0};
 };
-Kinds kinds_of(const MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows) {
-    Kinds kinds{{VectorXd::Zero(values.cols()), VectorXd::Zero(values.cols())}, MatrixXd::Zero(values.cols(), values.cols())};
+ClassStatistics class_statistics(const MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows) {
+    ClassStatistics statistics{{VectorXd::Zero(values.cols()), VectorXd::Zero(values.cols())},
+                               MatrixXd::Zero(values.cols(), values.cols())};
     for (const std::size_t row : rows) {
-        const int kind = truth[row] ? 1 : 0;
-        kinds.mean[kind] += values.row(static_cast<Eigen::Index>(row)).transpose();
-        ++kinds.count[kind];
+        const int class_index = truth[row] ? 1 : 0;
+        statistics.mean[class_index] += values.row(static_cast<Eigen::Index>(row)).transpose();
+        ++statistics.count[class_index];
     }
-    for (int kind = 0; kind < 2; ++kind) kinds.mean[kind] /= static_cast<double>(std::max<std::size_t>(kinds.count[kind], 1));
+    for (int class_index = 0; class_index < 2; ++class_index)
+        statistics.mean[class_index] /= static_cast<double>(std::max<std::size_t>(statistics.count[class_index], 1));
     for (const std::size_t row : rows) {
-        const VectorXd away = values.row(static_cast<Eigen::Index>(row)).transpose() - kinds.mean[truth[row] ? 1 : 0];
-        kinds.scatter += away * away.transpose();
+        const VectorXd deviation_from_mean =
+            values.row(static_cast<Eigen::Index>(row)).transpose() - statistics.mean[truth[row] ? 1 : 0];
+        statistics.scatter += deviation_from_mean * deviation_from_mean.transpose();
     }
-    kinds.scatter /= std::max(1.0, static_cast<double>(rows.size()) - 2);
-    return kinds;
+    statistics.scatter /= std::max(1.0, static_cast<double>(rows.size()) - 2);
+    return statistics;
 }
 
 }  // namespace
 
 TechniqueModel learn(const MatrixXd& values, const std::vector<bool>& truth, const std::vector<std::size_t>& rows) {
-    const Kinds kinds = kinds_of(values, truth, rows);
+    const ClassStatistics statistics = class_statistics(values, truth, rows);
     TechniqueModel model;
     if (values.cols() == 1) {
         std::vector<double> x;
-        std::vector<bool> known;
-        for (const std::size_t row : rows) x.push_back(values(static_cast<Eigen::Index>(row), 0)), known.push_back(truth[row]);
-        model.threshold = best_threshold(x, known, Side::either);
-        const double deviation = std::max(std::sqrt(kinds.scatter(0, 0)), 1e-300);
+        std::vector<bool> row_truth;
+        for (const std::size_t row : rows)
+            x.push_back(values(static_cast<Eigen::Index>(row), 0)), row_truth.push_back(truth[row]);
+        model.threshold = best_threshold(x, row_truth, Side::either);
+        const double deviation = std::max(std::sqrt(statistics.scatter(0, 0)), 1e-300);
         model.weights = VectorXd::Constant(1, (model.threshold->above ? 1 : -1) / deviation);
         model.middle = VectorXd::Constant(1, model.threshold->value);
         return model;
     }
     // Fisher's discriminant (1936) of standardised columns. A twentieth of the identity is added so that nearly equal columns
     // do not get large opposite weights.
-    const VectorXd size = kinds.scatter.diagonal().cwiseSqrt().cwiseMax(1e-12);
-    const MatrixXd standard = size.cwiseInverse().asDiagonal() * kinds.scatter * size.cwiseInverse().asDiagonal();
-    const MatrixXd damped = standard + 0.05 * MatrixXd::Identity(values.cols(), values.cols());
-    const VectorXd apart = (kinds.mean[1] - kinds.mean[0]).cwiseQuotient(size);
-    model.weights = solve_ldlt<Eigen::Dynamic>(damped, apart).cwiseQuotient(size);
-    const double deviation = std::sqrt(std::max(model.weights.dot(kinds.scatter * model.weights), 0.0));
+    const VectorXd column_scale = statistics.scatter.diagonal().cwiseSqrt().cwiseMax(1e-12);
+    const MatrixXd standard =
+        column_scale.cwiseInverse().asDiagonal() * statistics.scatter * column_scale.cwiseInverse().asDiagonal();
+    const MatrixXd regularised = standard + 0.05 * MatrixXd::Identity(values.cols(), values.cols());
+    const VectorXd mean_difference = (statistics.mean[1] - statistics.mean[0]).cwiseQuotient(column_scale);
+    model.weights = solve_ldlt<Eigen::Dynamic>(regularised, mean_difference).cwiseQuotient(column_scale);
+    const double deviation = std::sqrt(std::max(model.weights.dot(statistics.scatter * model.weights), 0.0));
     if (deviation > 1e-300) model.weights /= deviation;
-    model.middle = 0.5 * (kinds.mean[0] + kinds.mean[1]);
+    model.middle = 0.5 * (statistics.mean[0] + statistics.mean[1]);
     // The threshold is where F1 is best, as for a single descriptor.
     std::vector<double> scores;
-    std::vector<bool> known;
+    std::vector<bool> row_truth;
     for (const std::size_t row : rows) {
         scores.push_back(model.score(values.row(static_cast<Eigen::Index>(row))));
-        known.push_back(truth[row]);
+        row_truth.push_back(truth[row]);
     }
-    model.limit = best_threshold(scores, known, Side::above).value;
+    model.limit = best_threshold(scores, row_truth, Side::above).value;
     return model;
 }
 

@@ -31,42 +31,42 @@ struct LabelledValues {
 
 /// Outward distance of `x` from the nearer class median, in robust standard deviations about the medians (Rousseeuw and Croux
 /// 1993), widened by 5 / n for the uncertainty of small samples.
-double distance_outside(const LabelledValues& known, double x) {
-    const double medians[2]{sample_quantile(known.values[0], 0.5), sample_quantile(known.values[1], 0.5)};
-    std::vector<double> away;
-    for (int kind = 0; kind < 2; ++kind)
-        for (const double value : known.values[kind]) away.push_back(std::abs(value - medians[kind]));
-    const double n = static_cast<double>(away.size());
-    const double spread = std::max(min_spread, 1.4826 * sample_quantile(std::move(away), 0.5)) * (1 + 5 / n);
+double distance_outside(const LabelledValues& class_values, double x) {
+    const double medians[2]{sample_quantile(class_values.values[0], 0.5), sample_quantile(class_values.values[1], 0.5)};
+    std::vector<double> deviations;
+    for (int class_index = 0; class_index < 2; ++class_index)
+        for (const double value : class_values.values[class_index]) deviations.push_back(std::abs(value - medians[class_index]));
+    const double n = static_cast<double>(deviations.size());
+    const double spread = std::max(min_spread, 1.4826 * sample_quantile(std::move(deviations), 0.5)) * (1 + 5 / n);
     return std::max({0.0, std::min(medians[0], medians[1]) - x, x - std::max(medians[0], medians[1])}) / spread;
 }
 
 }  // namespace
 
-std::vector<std::optional<TechniqueOutlier>> unlike_the_labelled(const std::vector<TechniqueObject>& objects,
-                                                                 const std::string& positive, double unlike_from) {
+std::vector<std::optional<TechniqueOutlier>> technique_outliers(const std::vector<TechniqueObject>& objects,
+                                                                const std::string& positive, double unlike_from) {
     std::vector<std::optional<TechniqueOutlier>> result(objects.size());
     for (const DescriptorMeaning& descriptor : technique_descriptors()) {
         if (!compared(descriptor)) continue;
         const DescriptorTable table = descriptor_table(objects, {descriptor.name});
-        const Labelled known = labelled(objects, table, positive);
+        const Labelled labelled_rows = labelled(objects, table, positive);
         parallel_for(
             table.objects.size(),
             [&](std::size_t row) {
-                const auto value = [&](std::size_t of) {
-                    return on_scale(descriptor, table.values(static_cast<Eigen::Index>(of), 0));
+                const auto value = [&](std::size_t table_row) {
+                    return on_scale(descriptor, table.values(static_cast<Eigen::Index>(table_row), 0));
                 };
-                LabelledValues others;
-                for (const std::size_t other : known.rows)
-                    if (other != row) others.values[known.truth[other] ? 1 : 0].push_back(value(other));
-                if (!others.enough()) return;
-                const double distance = distance_outside(others, value(row));
+                LabelledValues other_values;
+                for (const std::size_t other : labelled_rows.rows)
+                    if (other != row) other_values.values[labelled_rows.truth[other] ? 1 : 0].push_back(value(other));
+                if (!other_values.enough()) return;
+                const double distance = distance_outside(other_values, value(row));
                 auto& maximum = result[table.objects[row]];
                 if (distance < unlike_from || (maximum && maximum->distance >= distance)) return;
-                std::vector<double> all = others.values[0];
-                all.insert(all.end(), others.values[1].begin(), others.values[1].end());
-                for (double& each : all) each = from_scale(descriptor, each);
-                const auto [low, high] = std::minmax_element(all.begin(), all.end());
+                std::vector<double> scaled_values = other_values.values[0];
+                scaled_values.insert(scaled_values.end(), other_values.values[1].begin(), other_values.values[1].end());
+                for (double& scaled_value : scaled_values) scaled_value = from_scale(descriptor, scaled_value);
+                const auto [low, high] = std::minmax_element(scaled_values.begin(), scaled_values.end());
                 maximum = TechniqueOutlier{descriptor.name, from_scale(descriptor, value(row)), *low, *high, distance};
             },
             8);

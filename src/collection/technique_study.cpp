@@ -7,6 +7,8 @@
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -19,9 +21,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-const std::vector<std::string>& outside() {
-    static const std::vector<std::string> list{"ovality", "marks", "coherence", "straightness"};
-    return list;
+const std::vector<std::string>& outside_descriptors() {
+    static const std::vector<std::string> names{"ovality", "marks", "coherence", "straightness"};
+    return names;
 }
 const std::string component_name = "first component";
 
@@ -48,9 +50,9 @@ std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, st
     std::vector<double> means;
     for (int i = 0; i < 400; ++i) {
         double sum = 0;
-        for (std::size_t taken = 0; taken < count;) {
+        for (std::size_t resampled = 0; resampled < count;) {
             const std::size_t start = random.below(count - block + 1);
-            for (std::size_t k = 0; k < block && taken < count; ++k, ++taken) sum += measures.slices[start + k].roundness;
+            for (std::size_t k = 0; k < block && resampled < count; ++k, ++resampled) sum += measures.slices[start + k].roundness;
         }
         means.push_back(sum / static_cast<double>(count));
     }
@@ -58,65 +60,65 @@ std::optional<Interval> roundness_interval(const TechniqueMeasures& measures, st
 }
 
 /// Certainty of an answer: the agreement measures how stable it is, the classifier's error how often stable answers are wrong.
-std::string certainty_of(const TechniqueAnswer& answer, const ClassifierResult& by) {
+std::string certainty_of(const TechniqueAnswer& answer, const ClassifierResult& classifier) {
     if (answer.unlike) return "unlike";
-    if (!by.better) return "not told apart";
+    if (!classifier.better) return "not told apart";
     if (answer.agreement < 0.5) return "undecided";
-    if (answer.agreement >= 0.95 && by.error <= 0.05) return "clear";
-    return answer.agreement >= 0.8 && by.error <= 0.2 ? "likely" : "doubtful";
+    if (answer.agreement >= 0.95 && classifier.error <= 0.05) return "clear";
+    return answer.agreement >= 0.8 && classifier.error <= 0.2 ? "likely" : "doubtful";
 }
 
 /// Answers of the chosen classifier; each object is classified by a model trained without it.
 void answer_learned(TechniqueStudy& study, const std::vector<TechniqueObject>& objects, const ClassifierResult& chosen,
                     const TechniqueStudyOptions& options) {
     const DescriptorTable table = descriptor_table(objects, chosen.classifier.descriptors);
-    const Labelled known = labelled(objects, table, study.positive);
-    if (!known.enough()) return;
+    const Labelled labelled_rows = labelled(objects, table, study.positive);
+    if (!labelled_rows.enough()) return;
     study.separated = chosen.better;
     const std::size_t rows = table.objects.size();
     std::vector<TechniqueModel> models(rows);
     parallel_for(
         rows,
         [&](std::size_t row) {
-            std::vector<std::size_t> others = known.rows;
-            std::erase(others, row);
-            models[row] = learn(table.values, known.truth, others);
+            std::vector<std::size_t> training_rows = labelled_rows.rows;
+            std::erase(training_rows, row);
+            models[row] = learn(table.values, labelled_rows.truth, training_rows);
         },
         8);
     // Bootstrap: each class is resampled with replacement to its original size.
     std::vector<std::vector<std::int8_t>> votes(static_cast<std::size_t>(options.resamples));
-    std::vector<std::size_t> kinds[2];
-    for (const std::size_t row : known.rows) kinds[known.truth[row] ? 1 : 0].push_back(row);
+    std::vector<std::size_t> class_rows[2];
+    for (const std::size_t row : labelled_rows.rows) class_rows[labelled_rows.truth[row] ? 1 : 0].push_back(row);
     parallel_for(
         votes.size(),
         [&](std::size_t i) {
             Random random(options.seed, i);
             std::vector<std::size_t> drawn;
-            std::vector<bool> taken(rows, false);
-            for (const auto& kind : kinds)
-                for (const std::size_t sample : random.resample(kind.size())) {
-                    drawn.push_back(kind[sample]);
-                    taken[kind[sample]] = true;
+            std::vector<bool> is_drawn(rows, false);
+            for (const auto& rows_of_class : class_rows)
+                for (const std::size_t sample : random.resample(rows_of_class.size())) {
+                    drawn.push_back(rows_of_class[sample]);
+                    is_drawn[rows_of_class[sample]] = true;
                 }
-            const TechniqueModel model = learn(table.values, known.truth, drawn);
+            const TechniqueModel model = learn(table.values, labelled_rows.truth, drawn);
             votes[i].assign(rows, -1);
             for (std::size_t row = 0; row < rows; ++row)
-                if (!taken[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
+                if (!is_drawn[row]) votes[i][row] = model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0 ? 1 : 0;
         },
         8);
-    const auto unlike = unlike_the_labelled(objects, study.positive, options.unlike_from);
+    const auto unlike = technique_outliers(objects, study.positive, options.unlike_from);
     for (std::size_t row = 0; row < rows; ++row) {
         TechniqueAnswer& answer = study.answers[table.objects[row]];
         answer.score = models[row].score(table.values.row(static_cast<Eigen::Index>(row)));
         answer.positive = answer.score >= 0;
         answer.answer = answer.positive ? study.positive : study.negative;
-        int same = 0;
+        int agreeing_votes = 0;
         for (const auto& vote : votes) {
             if (vote[row] < 0) continue;
             ++answer.asked;
-            if ((vote[row] == 1) == answer.positive) ++same;
+            if ((vote[row] == 1) == answer.positive) ++agreeing_votes;
         }
-        answer.agreement = answer.asked > 0 ? static_cast<double>(same) / answer.asked : 0;
+        answer.agreement = answer.asked > 0 ? static_cast<double>(agreeing_votes) / answer.asked : 0;
         answer.unlike = unlike[table.objects[row]];
         answer.certainty = certainty_of(answer, chosen);
         if (answer.certainty != "clear" && answer.certainty != "likely" && answer.certainty != "doubtful") answer.answer.clear();
@@ -133,9 +135,9 @@ std::vector<double> first_component(const DescriptorTable& table) {
         X.col(k) /= size > 1e-12 ? size : 1;
     }
     const SymmetricEigenX parts(X.transpose() * X);
-    VectorXd way = parts.eigenvectors().col(X.cols() - 1);
-    if (way[0] < 0) way = -way;  // increases with ovality
-    const VectorXd y = X * way;
+    VectorXd axis = parts.eigenvectors().col(X.cols() - 1);
+    if (axis[0] < 0) axis = -axis;  // increases with ovality
+    const VectorXd y = X * axis;
     return {y.data(), y.data() + y.size()};
 }
 
@@ -145,7 +147,8 @@ TechniqueSplit split_by(const std::vector<TechniqueObject>& objects, const std::
     split.descriptor = descriptor;
     split.group.assign(objects.size(), -1);
     const bool component = descriptor == component_name;
-    const DescriptorTable table = descriptor_table(objects, component ? outside() : std::vector<std::string>{descriptor});
+    const DescriptorTable table =
+        descriptor_table(objects, component ? outside_descriptors() : std::vector<std::string>{descriptor});
     split.objects = table.objects.size();
     if (split.objects < 4) return split;
     std::vector<double> values = component ? first_component(table) : std::vector<double>();
@@ -163,19 +166,20 @@ TechniqueSplit split_by(const std::vector<TechniqueObject>& objects, const std::
         chance.size(),
         [&](std::size_t i) {
             Random random(options.seed, 2000000 + i);
-            std::vector<double> one(values.size());
-            for (double& value : one) value = random.normal();
-            chance[i] = divide_in_two(std::move(one)).share;
+            std::vector<double> simulated(values.size());
+            for (double& value : simulated) value = random.normal();
+            chance[i] = divide_in_two(std::move(simulated)).share;
         },
         16);
     split.p_value = split.share > 0 ? permutation_p_value(split.share, chance) : 1;
-    ConfusionScores as[2];
+    ConfusionScores scores_by_side[2];
     for (std::size_t i = 0; i < objects.size(); ++i) {
         if (split.group[i] < 0 || objects[i].label.empty()) continue;
-        for (int side = 0; side < 2; ++side) as[side].add(split.group[i] == side, objects[i].label == positive);
+        for (int side = 0; side < 2; ++side) scores_by_side[side].add(split.group[i] == side, objects[i].label == positive);
     }
-    const std::size_t positives = as[0].true_positive + as[0].false_negative;
-    if (positives > 0 && positives < as[0].count()) split.f1 = std::max(as[0].f1(), as[1].f1());
+    const std::size_t positives = scores_by_side[0].true_positive + scores_by_side[0].false_negative;
+    if (positives > 0 && positives < scores_by_side[0].count())
+        split.f1 = std::max(scores_by_side[0].f1(), scores_by_side[1].f1());
     return split;
 }
 
@@ -186,11 +190,11 @@ void answer_by_split(TechniqueStudy& study, const TechniqueSplit& split, const s
     std::vector<double> roundness[2];
     for (std::size_t i = 0; i < objects.size(); ++i)
         if (split.group[i] >= 0) roundness[split.group[i]].push_back(objects[i].measures.value("roundness mean"));
-    const int round = sample_quantile(roundness[0], 0.5) <= sample_quantile(roundness[1], 0.5) ? 0 : 1;
+    const int rounder_group = sample_quantile(roundness[0], 0.5) <= sample_quantile(roundness[1], 0.5) ? 0 : 1;
     for (std::size_t i = 0; i < objects.size(); ++i) {
         if (split.group[i] < 0) continue;
         TechniqueAnswer& answer = study.answers[i];
-        answer.positive = split.group[i] == round;
+        answer.positive = split.group[i] == rounder_group;
         answer.answer = answer.positive ? study.positive : study.negative;
     }
 }
@@ -198,7 +202,7 @@ void answer_by_split(TechniqueStudy& study, const TechniqueSplit& split, const s
 }  // namespace
 
 const std::vector<TechniqueClassifier>& technique_classifiers() {
-    static const std::vector<TechniqueClassifier> list{
+    static const std::vector<TechniqueClassifier> classifiers{
         {"roundness", {"roundness mean"}, "roundness"},
         {"roundness variance", {"roundness variance"}, "the variance of roundness"},
         {"roundness mean and variance", {"roundness mean", "roundness variance"}, "roundness and its variance"},
@@ -220,7 +224,7 @@ const std::vector<TechniqueClassifier>& technique_classifiers() {
         {"outside and wall",
          {"ovality", "marks", "coherence", "straightness", "wall variation"},
          "ovality, marks, coherence, straightness and wall variation"}};
-    return list;
+    return classifiers;
 }
 
 TwoGroups divide_in_two(std::vector<double> values) {
@@ -245,7 +249,7 @@ TwoGroups divide_in_two(std::vector<double> values) {
 
 TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, const TechniqueStudyOptions& options) {
     check_options(options, "study technique");
-    if (objects.empty()) fail_input("study technique", "no object is left to study");
+    if (objects.empty()) fail_input("study technique", "no object remains to study");
     const auto& classifiers = technique_classifiers();
     const auto chosen =
         std::find_if(classifiers.begin(), classifiers.end(), [&](const auto& each) { return each.name == options.answer_by; });
@@ -253,10 +257,10 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
     for (const auto& object : objects)
         if (!object.label.empty()) labels.insert(object.label);
     if (labels.size() > 2)
-        fail_input("study technique", "the labels are of " + std::to_string(labels.size()) + " kinds",
-                   "give two, such as wheel and hand, and leave out the label of the others");
+        fail_input("study technique", fmt::format("there are {} different labels", labels.size()),
+                   "use two labels, such as wheel and hand, and remove the labels of other objects");
     if (!options.positive.empty() && !labels.contains(options.positive))
-        fail_usage("no object has the label '" + options.positive + "'", "name one that the truth gives");
+        fail_usage(fmt::format("no object has the label '{}'", options.positive), "name one of the labels in the ground truth");
 
     TechniqueStudy study;
     study.learned = labels.size() == 2;
@@ -278,10 +282,10 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
             study.classifiers.push_back(validate_classifier(objects, classifier, study.positive, options));
         answer_learned(study, objects, study.classifiers[static_cast<std::size_t>(chosen - classifiers.begin())], options);
     } else {
-        const std::string by = chosen->name.starts_with("outside") ? component_name : chosen->descriptors.front();
-        study.answered_by = by;
+        const std::string descriptor = chosen->name.starts_with("outside") ? component_name : chosen->descriptors.front();
+        study.answered_by = descriptor;
         for (const TechniqueSplit& split : study.splits)
-            if (split.descriptor == by) answer_by_split(study, split, objects);
+            if (split.descriptor == descriptor) answer_by_split(study, split, objects);
     }
     explain_answers(study, objects);
     return study;
@@ -290,7 +294,7 @@ TechniqueStudy study_technique(const std::vector<TechniqueObject>& objects, cons
 void TechniqueStudyOptions::describe(OptionList& visit) {
     visit("positive", positive, "positive class of F1; otherwise the class whose bodies are rounder");
     std::vector<std::string> classifiers;
-    for (const TechniqueClassifier& one : technique_classifiers()) classifiers.push_back(one.name);
+    for (const TechniqueClassifier& classifier : technique_classifiers()) classifiers.push_back(classifier.name);
     visit("answer-by", answer_by, "classifier whose answer is reported for each object", Choices(std::move(classifiers)));
     visit("folds", folds, "number of folds of the cross-validation", Range{2, 1000});
     visit("repeats", repeats, "number of repeated divisions into folds", Range{1, 1000});

@@ -56,24 +56,24 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
     ClassifierResult result;
     result.classifier = classifier;
     const DescriptorTable table = descriptor_table(objects, classifier.descriptors);
-    const Labelled known = labelled(objects, table, positive);
-    result.objects = known.rows.size();
-    if (!known.enough()) return result;
+    const Labelled labelled_rows = labelled(objects, table, positive);
+    result.objects = labelled_rows.rows.size();
+    if (!labelled_rows.enough()) return result;
     result.validated = true;
     const auto rows_of = [&](const std::vector<std::size_t>& samples) {
         std::vector<std::size_t> rows;
-        for (const std::size_t sample : samples) rows.push_back(known.rows[sample]);
+        for (const std::size_t sample : samples) rows.push_back(labelled_rows.rows[sample]);
         return rows;
     };
     std::vector<bool> truth;
-    for (const std::size_t row : known.rows) truth.push_back(known.truth[row]);
+    for (const std::size_t row : labelled_rows.rows) truth.push_back(labelled_rows.truth[row]);
     const CrossValidationOptions folds{.folds = options.folds, .repeats = options.repeats, .seed = options.seed};
     result.validation = cross_validate(
         truth,
-        [&](const std::vector<std::size_t>& taught, const std::vector<std::size_t>& asked) {
-            const TechniqueModel model = learn(table.values, known.truth, rows_of(taught));
+        [&](const std::vector<std::size_t>& training_samples, const std::vector<std::size_t>& test_samples) {
+            const TechniqueModel model = learn(table.values, labelled_rows.truth, rows_of(training_samples));
             std::vector<bool> answers;
-            for (const std::size_t row : rows_of(asked)) {
+            for (const std::size_t row : rows_of(test_samples)) {
                 const double x = table.values(static_cast<Eigen::Index>(row), 0);
                 answers.push_back(model.threshold ? model.threshold->positive(x)
                                                   : model.score(table.values.row(static_cast<Eigen::Index>(row))) >= 0);
@@ -81,25 +81,26 @@ ClassifierResult validate_classifier(const std::vector<TechniqueObject>& objects
             return answers;
         },
         folds);
-    std::vector<double> scores(known.rows.size());
-    const TechniqueModel all = learn(table.values, known.truth, known.rows);
+    std::vector<double> scores(labelled_rows.rows.size());
+    const TechniqueModel full_model = learn(table.values, labelled_rows.truth, labelled_rows.rows);
     parallel_for(
         scores.size(),
         [&](std::size_t i) {
-            if (all.threshold) {
-                scores[i] = (all.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(known.rows[i]), 0);
+            if (full_model.threshold) {
+                scores[i] =
+                    (full_model.threshold->above ? 1 : -1) * table.values(static_cast<Eigen::Index>(labelled_rows.rows[i]), 0);
                 return;
             }
-            std::vector<std::size_t> others = known.rows;
-            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+            std::vector<std::size_t> training_rows = labelled_rows.rows;
+            training_rows.erase(training_rows.begin() + static_cast<std::ptrdiff_t>(i));
             // Held-out weights, but a common threshold: a threshold trained without an object shifts against its label.
-            const VectorXd x = table.values.row(static_cast<Eigen::Index>(known.rows[i]));
-            scores[i] = learn(table.values, known.truth, others).weights.dot(x - all.middle);
+            const VectorXd x = table.values.row(static_cast<Eigen::Index>(labelled_rows.rows[i]));
+            scores[i] = learn(table.values, labelled_rows.truth, training_rows).weights.dot(x - full_model.middle);
         },
         8);
     judge(result, truth, options);
     result.roc = roc_curve(scores, truth);
-    result.threshold = all.threshold;
+    result.threshold = full_model.threshold;
     if (result.threshold && table.logarithm) result.threshold->value = std::exp(result.threshold->value);
     return result;
 }

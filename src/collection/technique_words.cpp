@@ -1,6 +1,8 @@
 // Explanations of the answers of a technique study.
 #include "technique_model.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,10 +16,10 @@ std::string digits(const char* pattern, double value) {
     std::snprintf(text, sizeof text, pattern, value);
     return text;
 }
-std::string percent_of_radius(double share) { return digits("%.3g %% of the radius", 100 * share); }
+std::string percent_of_radius(double fraction) { return digits("%.3g %% of the radius", 100 * fraction); }
 
 /// A descriptor's value for display: variances as deviations, lengths in per cent of the radius.
-std::string shown(const std::string& descriptor, double value) {
+std::string display_value(const std::string& descriptor, double value) {
     const bool variance = descriptor.ends_with("variance");
     const double number = variance ? std::sqrt(std::max(value, 0.0)) : value;
     if (descriptor == "coherence" || descriptor == "eccentricity mean") return digits("%.3f", number);
@@ -32,37 +34,41 @@ std::string name_of(const std::string& descriptor) {
 }
 
 /// A descriptor's value with its threshold and side; empty if unknown.
-std::string beside(const TechniqueStudy& study, const TechniqueObject& object, const std::string& classifier,
-                   const std::string& words) {
-    for (const ClassifierResult& each : study.classifiers) {
-        if (each.classifier.name != classifier || !each.threshold) continue;
-        const std::string& descriptor = each.classifier.descriptors.front();
+std::string threshold_words(const TechniqueStudy& study, const TechniqueObject& object, const std::string& classifier,
+                            const std::string& words) {
+    for (const ClassifierResult& classifier_result : study.classifiers) {
+        if (classifier_result.classifier.name != classifier || !classifier_result.threshold) continue;
+        const std::string& descriptor = classifier_result.classifier.descriptors.front();
         const double value = object.measures.value(descriptor);
         if (!std::isfinite(value)) return {};
-        return words + " " + shown(descriptor, value) + " (threshold " + shown(descriptor, each.threshold->value) + ": as " +
-               (each.threshold->positive(value) ? study.positive : study.negative) + ")";
+        return fmt::format("{} {} (threshold {}: as {})", words, display_value(descriptor, value),
+                           display_value(descriptor, classifier_result.threshold->value),
+                           classifier_result.threshold->positive(value) ? study.positive : study.negative);
     }
     return {};
 }
 
-std::string unlike_words(const TechniqueOutlier& unlike) {
-    return "unlike the labelled objects, so that no answer is given: " + name_of(unlike.descriptor) + " " +
-           shown(unlike.descriptor, unlike.value) + ", theirs from " + shown(unlike.descriptor, unlike.low) + " to " +
-           shown(unlike.descriptor, unlike.high) + " (" + digits("%.0f", unlike.distance) +
-           " robust standard deviations outside)";
+std::string outlier_words(const TechniqueOutlier& unlike) {
+    return fmt::format(
+        "unlike the labelled objects, so that no answer is given: {} {}, theirs from {} to {} ({} robust standard deviations "
+        "outside)",
+        name_of(unlike.descriptor), display_value(unlike.descriptor, unlike.value), display_value(unlike.descriptor, unlike.low),
+        display_value(unlike.descriptor, unlike.high), digits("%.0f", unlike.distance));
 }
 
-std::string verdict(const TechniqueStudy& study, const TechniqueAnswer& answer, const std::string& by) {
-    if (answer.unlike) return unlike_words(*answer.unlike);
+std::string verdict(const TechniqueStudy& study, const TechniqueAnswer& answer, const std::string& classifier_words) {
+    if (answer.unlike) return outlier_words(*answer.unlike);
     if (answer.certainty == "not told apart")
-        return "no answer: " + by + " does not tell " + study.positive + " from " + study.negative + " here";
-    const std::string agree = std::to_string(static_cast<int>(std::lround(answer.agreement * answer.asked))) + " of " +
-                              std::to_string(answer.asked) + " resampled collections agree: " + answer.certainty;
-    const std::string away = digits("%.2g", std::abs(answer.score)) + " standard deviations from the limit";
+        return fmt::format("no answer: {} does not distinguish {} from {} here", classifier_words, study.positive,
+                           study.negative);
+    const std::string agreement_words =
+        fmt::format("{} of {} resampled collections agree: {}", static_cast<int>(std::lround(answer.agreement * answer.asked)),
+                    answer.asked, answer.certainty);
+    const std::string distance_from_limit = digits("%.2g", std::abs(answer.score)) + " standard deviations from the limit";
     if (answer.answer.empty())
-        return "by " + by + " nearer to " + (answer.positive ? study.positive : study.negative) + ", " + away + ", but only " +
-               agree;
-    return "by " + by + " " + answer.answer + ", " + away + "; " + agree;
+        return fmt::format("by {} nearer to {}, {}, but only {}", classifier_words,
+                           answer.positive ? study.positive : study.negative, distance_from_limit, agreement_words);
+    return fmt::format("by {} {}, {}; {}", classifier_words, answer.answer, distance_from_limit, agreement_words);
 }
 
 std::string explain(const TechniqueStudy& study, const TechniqueObject& object, const TechniqueAnswer& answer) {
@@ -71,36 +77,39 @@ std::string explain(const TechniqueStudy& study, const TechniqueObject& object, 
     if (!study.learned) {
         for (const TechniqueSplit& split : study.splits) {
             if (split.descriptor != study.answered_by) continue;
-            text = "roundness " + percent_of_radius(roundness) + " in the mean; ";
+            text = fmt::format("roundness {} in the mean; ", percent_of_radius(roundness));
             if (!study.separated)
-                return text + "the collection does not fall into two groups by " + study.answered_by +
-                       (split.objects < 4 ? " (fewer than four objects)" : " (p = " + digits("%.2g", split.p_value) + ")");
-            if (answer.answer.empty()) return text + "no answer: " + study.answered_by + " is not known";
-            return text + "the " + answer.answer + " one of two groups by " + study.answered_by +
-                   " (p = " + digits("%.2g", split.p_value) + ")" +
-                   (answer.positive ? ", as wheel-made bodies are" : ", as hand-made bodies are");
+                return fmt::format(
+                    "{}the collection does not fall into two groups by {}{}", text, study.answered_by,
+                    split.objects < 4 ? " (fewer than four objects)" : fmt::format(" (p = {})", digits("%.2g", split.p_value)));
+            if (answer.answer.empty()) return fmt::format("{}no answer: {} is not known", text, study.answered_by);
+            return fmt::format("{}the {} one of two groups by {} (p = {}){}", text, answer.answer, study.answered_by,
+                               digits("%.2g", split.p_value),
+                               answer.positive ? ", as wheel-made bodies are" : ", as hand-made bodies are");
         }
         return text;
     }
-    const std::pair<std::string, std::string> list[] = {{"roundness", "roundness in the mean"},
-                                                        {"roundness variance", "its deviation over the slices"},
-                                                        {"eccentricity", "eccentricity in the mean"},
-                                                        {"eccentricity variance", "its deviation"}};
-    for (const auto& [classifier, words] : list) {
-        const std::string part = beside(study, object, classifier, words);
+    const std::pair<std::string, std::string> shown_classifiers[] = {{"roundness", "roundness in the mean"},
+                                                                     {"roundness variance", "its deviation over the slices"},
+                                                                     {"eccentricity", "eccentricity in the mean"},
+                                                                     {"eccentricity variance", "its deviation"}};
+    for (const auto& [classifier, words] : shown_classifiers) {
+        const std::string part = threshold_words(study, object, classifier, words);
         if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
     }
-    std::string by = study.answered_by;
-    for (const ClassifierResult& each : study.classifiers)
-        if (each.classifier.name == study.answered_by) by = each.classifier.words;
+    std::string classifier_words = study.answered_by;
+    for (const ClassifierResult& classifier_result : study.classifiers)
+        if (classifier_result.classifier.name == study.answered_by) classifier_words = classifier_result.classifier.words;
     if (answer.certainty.empty())
-        return text + (text.empty() ? "" : "; ") + "no answer by " + by + ": it needs descriptors that are not known here";
-    text += "; " + verdict(study, answer, by);
+        return fmt::format("{}{}no answer by {}: it needs descriptors that are unknown for this object", text,
+                           text.empty() ? "" : "; ", classifier_words);
+    text += "; " + verdict(study, answer, classifier_words);
     if (answer.answer.empty()) return text;
-    for (const ClassifierResult& each : study.classifiers) {
-        if (each.classifier.name != "roundness" || !each.threshold || !answer.roundness) continue;
-        if (answer.roundness->low < each.threshold->value && answer.roundness->high > each.threshold->value)
-            text += "; its own slices leave the roundness on either side of the threshold";
+    for (const ClassifierResult& classifier_result : study.classifiers) {
+        if (classifier_result.classifier.name != "roundness" || !classifier_result.threshold || !answer.roundness) continue;
+        if (answer.roundness->low < classifier_result.threshold->value &&
+            answer.roundness->high > classifier_result.threshold->value)
+            text += "; the variation over its slices leaves the roundness on either side of the threshold";
     }
     return text;
 }

@@ -20,12 +20,12 @@ namespace {
 
 using test::Scratch;
 
-std::string definitions_text(const std::string& list) {
-    return R"({"format": "ostraka-measures", "version": 1, "measures": [)" + list + "]}";
+std::string definitions_text(const std::string& entries) {
+    return R"({"format": "ostraka-measures", "version": 1, "measures": [)" + entries + "]}";
 }
 
-MeasureDefinitions definitions(const std::string& list) {
-    return measure_definitions_from_text(definitions_text(list), "m.json");
+MeasureDefinitions definitions(const std::string& entries) {
+    return measure_definitions_from_text(definitions_text(entries), "m.json");
 }
 
 /// A ball of radius r whose poles are annotated, and its upper half as a region.
@@ -75,15 +75,15 @@ const char* const all_kinds = R"(
 
 TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
     const Ball ball(10);
-    const auto taken =
+    const auto measures =
         take_measures(ball.mesh, ball.set, definitions(R"({"name": "most", "clay": "max"}, {"name": "least", "clay": "min"},
                                                                          {"name": "height", "tool": "bounding", "direction": "up"})"));
-    ASSERT_TRUE(taken.values[0].has_value());
-    EXPECT_EQ(taken.powers[0], 3);
-    EXPECT_NEAR(*taken.values[0], closed_volume(ball.mesh), 1e-4 * closed_volume(ball.mesh));
-    EXPECT_FALSE(taken.values[1].has_value());  // no wall is seen
-    ASSERT_EQ(taken.notes.size(), 1U);
-    EXPECT_NE(taken.notes[0].find("no wall is seen"), std::string::npos) << taken.notes[0];
+    ASSERT_TRUE(measures.values[0].has_value());
+    EXPECT_EQ(measures.powers[0], 3);
+    EXPECT_NEAR(*measures.values[0], closed_volume(ball.mesh), 1e-4 * closed_volume(ball.mesh));
+    EXPECT_FALSE(measures.values[1].has_value());  // no wall is seen
+    ASSERT_EQ(measures.notes.size(), 1U);
+    EXPECT_NE(measures.notes[0].find("no wall is seen"), std::string::npos) << measures.notes[0];
     EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "most"})"), Error);
     EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "max", "annotation": "cap"})"), Error);
 }
@@ -91,25 +91,25 @@ TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
 TEST(MeasureDefinitions, AreTakenOnABall) {
     for (const double r : {1.0, 1e-6, 1e6}) {
         const Ball ball(r);
-        const ObjectMeasures taken = take_measures(ball.mesh, ball.set, definitions(all_kinds));
-        ASSERT_TRUE(taken.notes.empty()) << taken.notes.front();
-        ASSERT_EQ(taken.values.size(), 8u);
-        EXPECT_NEAR(*taken.values[0], 2 * r, 1e-12 * r);
-        EXPECT_NEAR(*taken.values[1], std::numbers::pi * r, 0.03 * r);
-        EXPECT_NEAR(*taken.values[2], 2 * r, 1e-12 * r);
-        EXPECT_NEAR(*taken.values[3], r, 1e-12 * r);
-        EXPECT_NEAR(*taken.values[4], 2 * r, 1e-12 * r);
-        EXPECT_NEAR(*taken.values[5], r, 1e-12 * r) << "centimetres become millimetres";
-        EXPECT_NEAR(*taken.values[6], surface_area(ball.mesh), 1e-12 * r * r);
-        EXPECT_NEAR(*taken.values[7], 2 * r, 0.02 * r);
-        EXPECT_EQ(taken.powers, (std::vector<int>{1, 1, 1, 1, 1, 1, 2, 1}));
-        EXPECT_EQ(taken.unit, "mm");
+        const ObjectMeasures measures = take_measures(ball.mesh, ball.set, definitions(all_kinds));
+        ASSERT_TRUE(measures.notes.empty()) << measures.notes.front();
+        ASSERT_EQ(measures.values.size(), 8u);
+        EXPECT_NEAR(*measures.values[0], 2 * r, 1e-12 * r);
+        EXPECT_NEAR(*measures.values[1], std::numbers::pi * r, 0.03 * r);
+        EXPECT_NEAR(*measures.values[2], 2 * r, 1e-12 * r);
+        EXPECT_NEAR(*measures.values[3], r, 1e-12 * r);
+        EXPECT_NEAR(*measures.values[4], 2 * r, 1e-12 * r);
+        EXPECT_NEAR(*measures.values[5], r, 1e-12 * r) << "centimetres become millimetres";
+        EXPECT_NEAR(*measures.values[6], surface_area(ball.mesh), 1e-12 * r * r);
+        EXPECT_NEAR(*measures.values[7], 2 * r, 0.02 * r);
+        EXPECT_EQ(measures.powers, (std::vector<int>{1, 1, 1, 1, 1, 1, 2, 1}));
+        EXPECT_EQ(measures.unit, "mm");
     }
 }
 
-TEST(MeasureDefinitions, WhatCannotBeTakenIsMissingAndToldWhy) {
+TEST(MeasureDefinitions, ImpossibleMeasuresAreMissingWithANote) {
     Ball ball(1);
-    const ObjectMeasures taken = take_measures(ball.mesh, ball.set, definitions(R"(
+    const ObjectMeasures measures = take_measures(ball.mesh, ball.set, definitions(R"(
         {"name": "a", "tool": "ruler", "from": "pole", "to": "nose"},
         {"name": "b", "tool": "ruler", "from": "pole", "to": "cap"},
         {"name": "c", "tool": "ruler", "from": "pole", "to": "pole 3"},
@@ -119,11 +119,11 @@ TEST(MeasureDefinitions, WhatCannotBeTakenIsMissingAndToldWhy) {
         {"name": "g", "annotation": "pole", "descriptor": "area"},
         {"name": "h", "annotation": "cap", "descriptor": "box sides", "entry": 4},
         {"name": "i", "tool": "ruler", "from": "pole", "to": "pole 2"})"));
-    for (std::size_t i = 0; i < 8; ++i) EXPECT_FALSE(taken.values[i]) << i;
-    EXPECT_TRUE(taken.values[8]);
-    ASSERT_EQ(taken.notes.size(), 8u);
-    EXPECT_EQ(taken.notes[0], "no 'a': nothing is called 'nose'");
-    EXPECT_NE(taken.notes[1].find("not a point"), std::string::npos);
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_FALSE(measures.values[i]) << i;
+    EXPECT_TRUE(measures.values[8]);
+    ASSERT_EQ(measures.notes.size(), 8u);
+    EXPECT_EQ(measures.notes[0], "no 'a': nothing is called 'nose'");
+    EXPECT_NE(measures.notes[1].find("not a point"), std::string::npos);
     ball.set.up.reset();
     EXPECT_FALSE(
         take_measures(ball.mesh, ball.set, definitions(R"({"name": "h", "tool": "bounding", "direction": "up"})")).values[0]);
@@ -133,15 +133,15 @@ TEST(MeasureDefinitions, WhatCannotBeTakenIsMissingAndToldWhy) {
         << "two annotations of one name";
 }
 
-TEST(MeasureDefinitions, OfFilesThatDoNotFitAreRefused) {
-    for (const std::string list :
+TEST(MeasureDefinitions, InvalidFilesAreRefused) {
+    for (const std::string entries :
          {R"({"name": "a"})", R"({"name": "a", "tool": "ruler", "from": "x"})",
           R"({"name": "a", "tool": "scale", "from": "x", "to": "y"})",
           R"({"name": "a", "tool": "bounding", "from": "x", "to": "y", "direction": [0, 0, 1]})",
           R"({"name": "a", "tool": "bounding", "direction": [0, 0, 0]})", R"({"name": "a", "attribute": "x"})",
           R"({"name": "a", "descriptor": "area", "tool": "tape"})", R"({"name": "a", "descriptor": "area", "entry": 0})",
           R"({"name": "a", "descriptor": "area"}, {"name": "a", "descriptor": "volume"})", ""})
-        EXPECT_THROW(definitions(list), Error) << list;
+        EXPECT_THROW(definitions(entries), Error) << entries;
     EXPECT_THROW(measure_definitions_from_text("{", "m.json"), Error);
 }
 
@@ -153,13 +153,13 @@ TEST(MeasureDefinitions, ObjectsOfLandmarksNeedNoMesh) {
         "markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": "cm", "controlPoints": [
         {"label": "tip", "position": [0, 3, 4], "positionStatus": "defined"}, {"label": "root", "position": [0, 0, 0], "positionStatus": "defined"}]}]})");
     const Collection collection = read_collection(scratch.path());
-    const ObjectMeasures taken = take_measures(
+    const ObjectMeasures measures = take_measures(
         collection.objects.at(0),
         definitions(
             R"({"name": "l", "tool": "ruler", "from": "tip", "to": "root"}, {"name": "n", "tool": "ruler", "from": "tip", "to": "none"})"));
-    EXPECT_EQ(taken.values[0], 5);
-    EXPECT_FALSE(taken.values[1]);
-    EXPECT_EQ(taken.unit, "cm");
+    EXPECT_EQ(measures.values[0], 5);
+    EXPECT_FALSE(measures.values[1]);
+    EXPECT_EQ(measures.unit, "cm");
     EXPECT_THROW(take_measures(collection.objects.at(0), definitions(R"({"name": "a", "descriptor": "area"})")), Error)
         << "not one can be taken";
 }
@@ -167,10 +167,10 @@ TEST(MeasureDefinitions, ObjectsOfLandmarksNeedNoMesh) {
 TEST(MeasureTable, FromObjectsWithDifferentKinds) {
     const MeasureDefinitions two =
         definitions(R"({"name": "a", "annotation": "x", "attribute": "a"}, {"name": "b", "descriptor": "area"})");
-    ObjectMeasures one{"mm", {1, 2}, {1, 2}, {"", ""}, {}}, other{"cm", {3, std::nullopt}, {1, 2}, {"", ""}, {}},
+    ObjectMeasures first{"mm", {1, 2}, {1, 2}, {"", ""}, {}}, second{"cm", {3, std::nullopt}, {1, 2}, {"", ""}, {}},
         odd{"mm", {7, 8}, {0, 2}, {"kg", ""}, {}};
     std::vector<std::string> notes;
-    const MeasureTable table = measure_table({"p", "q", "r", "s"}, {one, other, std::nullopt, odd}, two, notes);
+    const MeasureTable table = measure_table({"p", "q", "r", "s"}, {first, second, std::nullopt, odd}, two, notes);
     EXPECT_EQ(table.objects, (std::vector<std::string>{"p", "q", "s"}));
     EXPECT_EQ(table.units, (std::vector<std::string>{"mm", "cm", "mm"}));
     EXPECT_EQ(table.values(1, 0), 3);
@@ -178,25 +178,25 @@ TEST(MeasureTable, FromObjectsWithDifferentKinds) {
     EXPECT_TRUE(std::isnan(table.values(2, 0)));
     EXPECT_EQ(table.measures[1].power, 2);
     EXPECT_EQ(notes.size(), 1u);
-    const ObjectMeasures back = object_measures_from_json(object_measures_to_json(other));
-    EXPECT_EQ(back.values, other.values);
-    EXPECT_EQ(back.unit, "cm");
+    const ObjectMeasures reread = object_measures_from_json(object_measures_to_json(second));
+    EXPECT_EQ(reread.values, second.values);
+    EXPECT_EQ(reread.unit, "cm");
 }
 
-TEST(MeasureTable, OfACollectionTellsEachNoteOnce) {
-    const MeasureDefinitions one = definitions(R"({"name": "a", "annotation": "x", "attribute": "a"})");
+TEST(MeasureTable, ReportsEachNoteOfACollectionOnce) {
+    const MeasureDefinitions definition = definitions(R"({"name": "a", "annotation": "x", "attribute": "a"})");
     Collection collection;
-    std::vector<ObjectResult> taken;
+    std::vector<ObjectResult> results;
     for (const char* name : {"p", "q", "r"}) {
         collection.objects.emplace_back().name = name;
-        taken.push_back({object_measures_to_json({"mm", {1}, {1}, {""}, {"no attribute b"}}), {}, false});
+        results.push_back({object_measures_to_json({"mm", {1}, {1}, {""}, {"no attribute b"}}), {}, false});
     }
-    taken[1].problem = "broken";
+    results[1].problem = "broken";
     std::vector<std::string> notes;
-    EXPECT_EQ(measure_table(collection, taken, one, notes, "here").objects, (std::vector<std::string>{"p", "r"}));
+    EXPECT_EQ(measure_table(collection, results, definition, notes, "here").objects, (std::vector<std::string>{"p", "r"}));
     EXPECT_EQ(notes, (std::vector<std::string>{"p and 1 more: no attribute b"}));
-    for (ObjectResult& each : taken) each.problem = "broken";
-    EXPECT_THROW(measure_table(collection, taken, one, notes, "here"), Error);
+    for (ObjectResult& each : results) each.problem = "broken";
+    EXPECT_THROW(measure_table(collection, results, definition, notes, "here"), Error);
 }
 
 TEST(MeasureTable, AsCsvReadsBack) {
@@ -211,21 +211,21 @@ TEST(MeasureTable, AsCsvReadsBack) {
     EXPECT_EQ(table.measures[2].unit, "kg");
     EXPECT_TRUE(std::isnan(table.values(0, 2)));
     EXPECT_TRUE(std::isnan(table.values(1, 0)));
-    const MeasureTable again = read_measure_table(scratch.file("u.csv", measure_table_to_csv(table)));
-    EXPECT_EQ(measure_table_to_csv(again), measure_table_to_csv(table));
+    const MeasureTable reread = read_measure_table(scratch.file("u.csv", measure_table_to_csv(table)));
+    EXPECT_EQ(measure_table_to_csv(reread), measure_table_to_csv(table));
     EXPECT_EQ(read_measure_table(scratch.file("v.csv", "name,h [cm],w [cm]\na,1,2\n")).units[0], "cm");
     for (const std::string bad : {"name,a\n", "name\nx\n", "name,a\nx,y\n", "name,a,a\nx,1,2\n", "name,a\nx,1\nx,2\n",
                                   "name,a\nx,1,2\n", "name,a [mm],b [cm]\nx,1,2\n", "name,a\nx,nan\n"})
         EXPECT_THROW(read_measure_table(scratch.file("w.csv", bad)), Error) << bad;
 }
 
-TEST(MeasureTable, ADecimalCommaIsTold) {
+TEST(MeasureTable, ADecimalCommaIsReported) {
     const Scratch scratch;
     try {
         (void)read_measure_table(scratch.file("comma.csv", "name;a\nx;1,5\n"));
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("decimal comma? Write 1.5"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("use a decimal point: 1.5"), std::string::npos) << error.what();
     }
 }
 
@@ -251,12 +251,12 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     belt.attributes.clear();
     belt.faces.resize(belt.faces.size() / 2);
     ball.set.annotations.push_back(belt);
-    const MeasureDefinitions both = definitions(R"(
+    const MeasureDefinitions two_measures = definitions(R"(
         {"name": "cap width", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]},
         {"name": "belt width", "tool": "bounding", "annotation": "belt", "direction": [1, 0, 0]})");
-    const Proposals made = propose_proportions(ball.mesh, ball.set, {}, both, fixed_ratio(1.25, 2));
-    ASSERT_EQ(made.proposed, 1u);
-    const Relationship& r = made.graph.relationships.at(0);
+    const Proposals proposals = propose_proportions(ball.mesh, ball.set, {}, two_measures, fixed_ratio(1.25, 2));
+    ASSERT_EQ(proposals.proposed, 1u);
+    const Relationship& r = proposals.graph.relationships.at(0);
     EXPECT_EQ(r.type, "proportion");
     EXPECT_EQ(r.annotations, (std::vector<int>{2, 1})) << "the smaller follows the larger";
     EXPECT_TRUE(r.is_constraint);
@@ -266,18 +266,19 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     EXPECT_STREQ(parameters["measure1"].GetString(), "belt width");
     EXPECT_STREQ(parameters["measure2"].GetString(), "cap width");
     // The measures are there now, with values, and a second proposal adds nothing.
-    EXPECT_NEAR(*made.set.find(1)->attributes.back().measure.value, 2, 1e-12);
+    EXPECT_NEAR(*proposals.set.find(1)->attributes.back().measure.value, 2, 1e-12);
     Relationship copy = r;
-    RelationGraph before;
-    before.relationships.push_back(copy);
-    const Proposals again = propose_proportions(ball.mesh, made.set, std::move(before), both, fixed_ratio(1.25, 2));
-    EXPECT_EQ(again.proposed, 0u);
-    EXPECT_EQ(again.graph.relationships.size(), 1u);
-    EXPECT_EQ(again.notes.size(), 1u);
-    EXPECT_EQ(again.set.find(1)->attributes.size(), made.set.find(1)->attributes.size());
+    RelationGraph relabelled;
+    relabelled.relationships.push_back(copy);
+    const Proposals second_proposals =
+        propose_proportions(ball.mesh, proposals.set, std::move(relabelled), two_measures, fixed_ratio(1.25, 2));
+    EXPECT_EQ(second_proposals.proposed, 0u);
+    EXPECT_EQ(second_proposals.graph.relationships.size(), 1u);
+    EXPECT_EQ(second_proposals.notes.size(), 1u);
+    EXPECT_EQ(second_proposals.set.find(1)->attributes.size(), proposals.set.find(1)->attributes.size());
 }
 
-TEST(ProposedProportions, TellWhatCannotBeProposed) {
+TEST(ProposedProportions, ReportRejectedProposals) {
     const Ball ball(1);
     for (const std::string first :
          {R"({"name": "a", "descriptor": "area"})", R"({"name": "a", "tool": "bounding", "direction": "up"})",
@@ -285,13 +286,13 @@ TEST(ProposedProportions, TellWhatCannotBeProposed) {
           R"({"name": "a", "tool": "bounding", "annotation": "cap", "direction": "up"})",
           R"({"name": "a", "annotation": "cap", "attribute": "height"})",
           R"({"name": "a", "annotation": "cap", "tool": "ruler", "from": "pole", "to": "nose"})"}) {
-        const Proposals made = propose_proportions(
+        const Proposals proposals = propose_proportions(
             ball.mesh, ball.set, {},
             definitions(first + R"(, {"name": "b", "tool": "bounding", "annotation": "cap", "direction": [1, 0, 0]})"),
             fixed_ratio(1, 2));
-        EXPECT_EQ(made.proposed, 0u) << first;
-        EXPECT_EQ(made.notes.size(), 1u) << first;
-        EXPECT_TRUE(made.graph.relationships.empty());
+        EXPECT_EQ(proposals.proposed, 0u) << first;
+        EXPECT_EQ(proposals.notes.size(), 1u) << first;
+        EXPECT_TRUE(proposals.graph.relationships.empty());
     }
 }
 

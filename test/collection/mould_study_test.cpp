@@ -22,7 +22,7 @@ MouldStudy five_heads() {
     return study;
 }
 
-TEST(MouldSummaries, SayWhatIsNearAndHowFarMembersAreApart) {
+TEST(MouldSummaries, ReportNearestGroupAndDistances) {
     const MouldStudy study = five_heads();
     EXPECT_EQ(study.group_count(), 3);
     EXPECT_DOUBLE_EQ(study.mean_distance(0, 0), 0.1);

@@ -37,7 +37,7 @@ std::vector<int> labels_of(const std::vector<int>& sizes) {
     return labels;
 }
 
-TEST(MouldGroups, EveryMethodFindsWhatStandsOut) {
+TEST(MouldGroups, EveryMethodFindsDistinctGroups) {
     const std::vector<int> sizes{7, 5, 4};
     for (const char* method : {"linkage", "dbscan", "embedding"}) {
         GroupOptions options;
@@ -49,7 +49,7 @@ TEST(MouldGroups, EveryMethodFindsWhatStandsOut) {
     }
 }
 
-TEST(MouldGroups, AnEpsilonIsTakenAtItsWord) {
+TEST(MouldGroups, AGivenEpsilonIsUsedUnchanged) {
     GroupOptions options;
     options.epsilon = "0.1";
     EXPECT_EQ(adjusted_rand_index(group_heads(blocks({3, 3}), options).labels, {0, 1, 2, 3, 4, 5}), 1);
@@ -75,7 +75,7 @@ TEST(MouldGroups, GroupsWithinGroupsAreFound) {
     EXPECT_EQ(group_heads(d, options).labels, labels_of({6, 6, 6}));
 }
 
-TEST(MouldGroups, WhereNothingStandsOutThereIsOneGroupAndItSaysSo) {
+TEST(MouldGroups, WithoutDistinctGroupsThereIsOneGroup) {
     for (const std::vector<int>& sizes : {std::vector<int>{9}, std::vector<int>{1, 1, 1, 1, 1, 1}}) {
         const MouldGroups groups = group_heads(blocks(sizes));
         EXPECT_FALSE(groups.clear);
@@ -89,7 +89,7 @@ TEST(MouldGroups, WhereNothingStandsOutThereIsOneGroupAndItSaysSo) {
     EXPECT_THROW((void)group_heads(skew), Error);
 }
 
-TEST(MouldGroups, StabilityTellsFirmGroupsFromLooseOnes) {
+TEST(MouldGroups, StabilityDistinguishesFirmFromLooseGroups) {
     const Eigen::MatrixXd firm = blocks({8, 8});
     for (const auto& group : group_stability(firm, group_heads(firm), {})) EXPECT_GT(group.jaccard, 0.99);
     GroupOptions options;
@@ -101,7 +101,7 @@ TEST(MouldGroups, StabilityTellsFirmGroupsFromLooseOnes) {
     EXPECT_LT(minimum, 0.9);
 }
 
-TEST(MouldDistances, AreSharesOfTheSelfSimilarity) {
+TEST(MouldDistances, AreFractionsOfTheSelfSimilarity) {
     MouldMatrices m;
     m.matches.resize(2, 2);
     m.matches << 100, 30, 20, 50;
@@ -124,11 +124,11 @@ TEST(MouldDistances, RelativeSizesAreMeansOverTheGroup) {
     for (Eigen::Index i = 0; i < 4; ++i)
         for (Eigen::Index j = 0; j < 4; ++j)
             m.scale(i, j) = sizes[static_cast<std::size_t>(j)] / sizes[static_cast<std::size_t>(i)];
-    const std::vector<double> found = relative_sizes(m, {0, 0, 0, 1});
-    EXPECT_NEAR(found[0], 1 / 0.9, 1e-12);
-    EXPECT_NEAR(found[1], 1, 1e-12);
-    EXPECT_NEAR(found[2], 0.9, 1e-12);
-    EXPECT_NEAR(found[3], 1, 1e-12);
+    const std::vector<double> mould_sizes = relative_sizes(m, {0, 0, 0, 1});
+    EXPECT_NEAR(mould_sizes[0], 1 / 0.9, 1e-12);
+    EXPECT_NEAR(mould_sizes[1], 1, 1e-12);
+    EXPECT_NEAR(mould_sizes[2], 0.9, 1e-12);
+    EXPECT_NEAR(mould_sizes[3], 1, 1e-12);
 }
 
 /// Nine heads of three moulds, worn and pressed, as PLY files; their moulds.
@@ -140,10 +140,10 @@ std::map<std::string, std::string> write_heads(const Path& folder) {
     std::map<std::string, std::string> moulds;
     std::filesystem::create_directories(folder);
     for (const auto& head : plan_heads(population, cast)) {
-        const HeadCast made = cast_head(head.shape, head.cast);
+        const HeadCast head_cast = cast_head(head.shape, head.cast);
         MeshExtras extras;
-        extras.face_labels = made.face_labels;
-        write_mesh(folder / (head.name + ".ply"), made.mesh, extras);
+        extras.face_labels = head_cast.face_labels;
+        write_mesh(folder / (head.name + ".ply"), head_cast.mesh, extras);
         moulds[head.name] = head.mould;
     }
     return moulds;
@@ -183,26 +183,26 @@ TEST_F(MouldStudy, FindsTheMouldsOfWornCasts) {
 }
 
 TEST_F(MouldStudy, SameForAnyNumberOfThreadsAndAfterAnInterruption) {
-    const Collection all = read_collection(*scratch / "heads");
-    Collection some = all;
+    const Collection collection = read_collection(*scratch / "heads");
+    Collection some = collection;
     some.objects.resize(5);
     CompareOptions options;
     options.features.size = 66;
     set_threads(1);
-    const auto plain = prepare_collection(all, options, {}, ResultStore());
-    const MouldMatrices expected = compare(plain);
+    const auto complete = prepare_collection(collection, options, {}, ResultStore());
+    const MouldMatrices expected = compare(complete);
     set_threads(2);
     const ResultStore features(*scratch / "features"), pairs(*scratch / "pairs");
     // As a run that broke off: five heads are done.
     (void)compare(prepare_collection(some, options, {}, features), pairs);
-    const auto resumed = prepare_collection(all, options, {}, features);
+    const auto resumed = prepare_collection(collection, options, {}, features);
     EXPECT_EQ(std::count_if(resumed.results.begin(), resumed.results.end(), [](const auto& r) { return r.resumed; }), 5);
     for (int round = 0; round < 2; ++round) {
-        const MouldMatrices found = compare(resumed, pairs);
-        EXPECT_TRUE(found.matches == expected.matches);
-        EXPECT_TRUE(found.consistent == expected.consistent);
-        EXPECT_TRUE(found.registration == expected.registration);
-        EXPECT_TRUE(found.scale == expected.scale);
+        const MouldMatrices resumed_matrices = compare(resumed, pairs);
+        EXPECT_TRUE(resumed_matrices.matches == expected.matches);
+        EXPECT_TRUE(resumed_matrices.consistent == expected.consistent);
+        EXPECT_TRUE(resumed_matrices.registration == expected.registration);
+        EXPECT_TRUE(resumed_matrices.scale == expected.scale);
     }
     set_threads(0);
 }
@@ -215,28 +215,28 @@ std::map<std::string, std::filesystem::file_time_type> times(const Path& folder)
     return result;
 }
 
-TEST_F(MouldStudy, ASecondRunTakesAllFromTheStore) {
+TEST_F(MouldStudy, ASecondRunReadsAllResultsFromTheStore) {
     Collection collection = read_collection(*scratch / "heads");
     collection.objects.resize(4);
     const ResultStore features(*scratch / "again" / "features"), pairs(*scratch / "again" / "pairs");
     // The size is not given: it is measured, and kept as well.
     const MouldMatrices first = compare(prepare_collection(collection, {}, {}, features), pairs);
-    const auto before = times(*scratch / "again");
-    EXPECT_EQ(before.size(), 12U) << "sizes, features and pairs of four heads";
+    const auto times_before = times(*scratch / "again");
+    EXPECT_EQ(times_before.size(), 12U) << "sizes, features and pairs of four heads";
     const auto prepared = prepare_collection(collection, {}, {}, features);
     for (const auto& result : prepared.results) EXPECT_TRUE(result.resumed);
     EXPECT_EQ(compare(prepared, pairs).registration, first.registration);
-    EXPECT_EQ(times(*scratch / "again"), before);
+    EXPECT_EQ(times(*scratch / "again"), times_before);
 }
 
-TEST_F(MouldStudy, SharesMakeWhatOneRunMakes) {
+TEST_F(MouldStudy, ShardsGiveTheResultOfOneRun) {
     Collection collection = read_collection(*scratch / "heads");
     collection.objects.resize(5);
     const MouldMatrices expected = compare(prepare_collection(collection, {}, {}, ResultStore()), ResultStore());
     const Path folder = *scratch / "shares";
-    const auto part = [&](const Share& share) {
-        const auto prepared = prepare_collection(collection, {}, {}, ResultStore(folder / "features", share));
-        if (prepared.waits_for.empty()) (void)compare(prepared, ResultStore(folder / "pairs", share));
+    const auto part = [&](const Share& shard) {
+        const auto prepared = prepare_collection(collection, {}, {}, ResultStore(folder / "features", shard));
+        if (prepared.waits_for.empty()) (void)compare(prepared, ResultStore(folder / "pairs", shard));
         return prepared.waits_for;
     };
     EXPECT_EQ(part({0, 3}), "sizes");
@@ -245,18 +245,18 @@ TEST_F(MouldStudy, SharesMakeWhatOneRunMakes) {
     EXPECT_EQ(part({2, 3}), "features") << "all sizes are there";
     EXPECT_EQ(part({0, 3}), "features");
     for (const std::size_t k : {1, 2, 0}) EXPECT_EQ(part({k, 3}), "");
-    const auto before = times(folder);
+    const auto times_before = times(folder);
     const auto prepared = prepare_collection(collection, {}, {}, ResultStore(folder / "features"));
     const MouldMatrices gathered = compare(prepared, ResultStore(folder / "pairs"));
-    EXPECT_EQ(times(folder), before) << "nothing is done again";
+    EXPECT_EQ(times(folder), times_before) << "nothing is done again";
     EXPECT_EQ(gathered.matches, expected.matches);
     EXPECT_EQ(gathered.registration, expected.registration);
     EXPECT_EQ(gathered.scale, expected.scale);
 }
 
-TEST_F(MouldStudy, AFurtherHeadCostsItsOwnPairsOnly) {
-    const Collection all = read_collection(*scratch / "heads");
-    Collection some = all, more = all;
+TEST_F(MouldStudy, AnAddedHeadComputesOnlyItsPairs) {
+    const Collection collection = read_collection(*scratch / "heads");
+    Collection some = collection, more = collection;
     some.objects.resize(4);
     some.objects.erase(some.objects.begin() + 1);
     more.objects.resize(4);
@@ -273,16 +273,16 @@ TEST_F(MouldStudy, AFurtherHeadCostsItsOwnPairsOnly) {
     }
     const auto with_another = prepare_collection(more, options, {}, ResultStore());
     ASSERT_EQ(with_another.names.size(), 4U);
-    const MouldMatrices found = compare(with_another, pairs);
+    const MouldMatrices extended = compare(with_another, pairs);
     for (Eigen::Index i = 0; i < 4; ++i)
         for (Eigen::Index j = 0; j < 4; ++j) {
             if (i == j) continue;
             const bool is_new = i == 1 || j == 1;
-            EXPECT_EQ(found.registration(i, j) == 77, !is_new) << i << " " << j;
+            EXPECT_EQ(extended.registration(i, j) == 77, !is_new) << i << " " << j;
         }
 }
 
-TEST_F(MouldStudy, WhatCannotBeComparedIsLeftOut) {
+TEST_F(MouldStudy, HeadsThatCannotBeComparedAreLeftOut) {
     const Path folder = *scratch / "odd";
     std::filesystem::create_directories(folder);
     int count = 0;
@@ -302,7 +302,7 @@ TEST_F(MouldStudy, WhatCannotBeComparedIsLeftOut) {
     EXPECT_NE(without.results[0].problem.find("labels"), std::string::npos) << without.results[0].problem;
 }
 
-TEST_F(MouldStudy, TheCommandWritesAllItPromises) {
+TEST_F(MouldStudy, TheCommandWritesAllOutputs) {
     std::string truth = "name,label\n";
     for (const auto& [name, mould] : moulds) truth += name + "," + mould + "\n";
     const Path table = scratch->file("truth.csv", truth), out = *scratch / "out";
@@ -321,10 +321,10 @@ TEST_F(MouldStudy, TheCommandWritesAllItPromises) {
     for (const char* name :
          {"groups.csv", "groups.md", "heads.csv", "choices.csv", "distances.svg", "dendrogram.svg", "embedding-1-2.svg"})
         EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
-    const std::string before = read_file(out / "moulds.json");
-    const auto again = test::run_command(call + " --threads 1");
-    ASSERT_EQ(again.code, 0) << again.err;
-    EXPECT_EQ(read_file(out / "moulds.json"), before);
+    const std::string first_output = read_file(out / "moulds.json");
+    const auto repeated = test::run_command(call + " --threads 1");
+    ASSERT_EQ(repeated.code, 0) << repeated.err;
+    EXPECT_EQ(read_file(out / "moulds.json"), first_output);
     EXPECT_EQ(report["result"]["truth"]["labelled"].GetInt(), 9);
 
     // With answers of a part, or of one kind only, the report says of how many, and scores where there is something to score.
@@ -334,9 +334,9 @@ TEST_F(MouldStudy, TheCommandWritesAllItPromises) {
         if (some.size() < 60) some += name + "," + label + "\n";
         if (label == mould) one += name + "," + label + "\n";
     }
-    const auto study = [&](const std::string& answers, const std::string& more) {
+    const auto study = [&](const std::string& answers, const std::string& options) {
         return test::run_command("study moulds " + (*scratch / "heads").string() + " --output " + out.string() + " --truth " +
-                                 scratch->file("part.csv", answers).string() + more);
+                                 scratch->file("part.csv", answers).string() + options);
     };
     const auto part = study(some, "");
     EXPECT_NE(part.out.find("of 9 objects"), std::string::npos) << part.out;
@@ -356,10 +356,10 @@ TEST(MouldCommand, SaysWhatIsWrong) {
     const Scratch scratch;
     std::filesystem::create_directories(scratch / "heads");
     write_mesh(scratch / "heads" / "ball.ply", build_mesh(test::octahedron_sphere(3)));
-    const auto one =
+    const auto truncated =
         test::run_command("study moulds " + (scratch / "heads").string() + " --output " + (scratch / "out").string());
-    EXPECT_EQ(one.code, 1);
-    EXPECT_NE(one.err.find("at least two"), std::string::npos) << one.err;
+    EXPECT_EQ(truncated.code, 1);
+    EXPECT_NE(truncated.err.find("at least two"), std::string::npos) << truncated.err;
     EXPECT_EQ(test::run_command("study moulds " + (scratch / "heads").string() + " --output " + (scratch / "out").string() +
                                 " --similarity taste")
                   .code,

@@ -16,13 +16,14 @@ using namespace ostraka;
 
 namespace {
 
-Annotation region_of_part(int id, const std::string& tag, const HeadCast& cast, const std::function<bool(HeadPart)>& holds) {
-    Annotation one;
-    one.id = id;
-    one.tag = tag;
+Annotation region_of_part(int id, const std::string& tag, const HeadCast& cast,
+                          const std::function<bool(HeadPart)>& is_in_region) {
+    Annotation region;
+    region.id = id;
+    region.tag = tag;
     for (std::size_t f = 0; f < cast.face_labels.size(); ++f)
-        if (holds(static_cast<HeadPart>(cast.face_labels[f]))) one.faces.push_back(static_cast<Index>(f));
-    return one;
+        if (is_in_region(static_cast<HeadPart>(cast.face_labels[f]))) region.faces.push_back(static_cast<Index>(f));
+    return region;
 }
 
 /// A statuette in any pose, annotated: its head, without the stump of the neck, and the body.
@@ -48,8 +49,8 @@ struct OneStatuette {
         write_annotations(scratch / "one.ant.json", set, cast.mesh, "one.ply", Provenance{"test", {}, {}});
         collection = read_collection(scratch.path());
     }
-    [[nodiscard]] double area(const std::function<bool(HeadPart)>& holds) const {
-        return area_of(cast.mesh, region_of_part(0, "", cast, holds).faces);
+    [[nodiscard]] double area(const std::function<bool(HeadPart)>& is_in_region) const {
+        return area_of(cast.mesh, region_of_part(0, "", cast, is_in_region).faces);
     }
 };
 
@@ -63,25 +64,25 @@ PartOptions named(std::vector<std::string> annotations, std::vector<std::string>
 }  // namespace
 
 TEST(ObjectParts, AreCutAlongTheirOutlines) {
-    const OneStatuette one;
-    const CollectionObject& object = one.collection.objects.at(0);
+    const OneStatuette statuette;
+    const CollectionObject& object = statuette.collection.objects.at(0);
     const ObjectPart body = ObjectParts(named({"body"})).read(object);
-    const double expected = one.area([](HeadPart part) { return part == HeadPart::body; });
+    const double expected = statuette.area([](HeadPart part) { return part == HeadPart::body; });
     EXPECT_NEAR(surface_area(body.mesh), expected, 1e-6 * expected);
     for (const auto label : body.face_labels) EXPECT_EQ(label, static_cast<std::int32_t>(HeadPart::body));
     ASSERT_TRUE(body.up);
     // What an object lacks cannot be left out of it.
-    const ObjectPart again = ObjectParts(named({"body"}, {"beard"})).read(object);
-    EXPECT_EQ(again.mesh.number_of_faces(), body.mesh.number_of_faces());
+    const ObjectPart without_beard = ObjectParts(named({"body"}, {"beard"})).read(object);
+    EXPECT_EQ(without_beard.mesh.number_of_faces(), body.mesh.number_of_faces());
     const ObjectPart bald = ObjectParts(named({"Kopf"}, {"hair"})).read(object);
     const double skin =
-        one.area([](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body && part != HeadPart::hair; });
+        statuette.area([](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body && part != HeadPart::hair; });
     EXPECT_NEAR(surface_area(bald.mesh), skin, 1e-6 * skin);
 }
 
 TEST(ObjectParts, AreNamedByConcepts) {
-    const OneStatuette one;
-    const CollectionObject& object = one.collection.objects.at(0);
+    const OneStatuette statuette;
+    const CollectionObject& object = statuette.collection.objects.at(0);
     EXPECT_THROW((void)ObjectParts(named({"head"})).read(object), Error);
     const Vocabulary vocabulary =
         vocabulary_from_json(parse_json(R"({"format": "ostraka-vocabulary", "version": 1, "uri": "http://example.org/figurines",
@@ -91,30 +92,31 @@ TEST(ObjectParts, AreNamedByConcepts) {
     EXPECT_GT(ObjectParts(named({"head"}), TagWords(&vocabulary)).read(object).mesh.number_of_faces(), 0U);
 }
 
-TEST(ObjectParts, TheTopIsWhatIsAboveTheNeck) {
-    const OneStatuette one;
+TEST(ObjectParts, TheTopLiesAboveTheNeck) {
+    const OneStatuette statuette;
     PartOptions options;
     options.proposed = PartOptions::Proposal::top;
-    const ObjectPart top = ObjectParts(options).read(one.collection.objects.at(0));
+    const ObjectPart top = ObjectParts(options).read(statuette.collection.objects.at(0));
     // The body's area is what the head and its neck leave, and the neck is cut somewhere along its length.
-    const double head = one.area([](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; });
+    const double head = statuette.area([](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; });
     EXPECT_NEAR(surface_area(top.mesh) / head, 1, 0.2);
     double of_body = 0;
     for (const Face f : top.mesh.faces())
         if (top.face_labels[f] == static_cast<std::int32_t>(HeadPart::body)) of_body += face_area(top.mesh, f);
     EXPECT_LT(of_body, 0.05 * head);
     // Lying on its side it has no neck.
-    EXPECT_THROW((void)ObjectParts(options).read(one.collection.objects.at(0),
-                                                 std::array<double, 3>{-one.cast.up[0], -one.cast.up[1], -one.cast.up[2]}),
+    EXPECT_THROW((void)ObjectParts(options).read(
+                     statuette.collection.objects.at(0),
+                     std::array<double, 3>{-statuette.cast.up[0], -statuette.cast.up[1], -statuette.cast.up[2]}),
                  Error);
 }
 
 TEST(ObjectParts, TheLargestSegmentIsThatOfTheSegmentation) {
-    const OneStatuette one;
+    const OneStatuette statuette;
     PartOptions options;
     options.proposed = PartOptions::Proposal::segment;
-    const ObjectPart part = ObjectParts(options).read(one.collection.objects.at(0));
-    const Mesh mesh = read_mesh(one.scratch / "one.ply").mesh;
+    const ObjectPart part = ObjectParts(options).read(statuette.collection.objects.at(0));
+    const Mesh mesh = read_mesh(statuette.scratch / "one.ply").mesh;
     const std::vector<Index> numbers = segment(mesh, thickness(mesh), {});
     double area = 0;
     for (const Face f : mesh.faces())
@@ -131,13 +133,13 @@ TEST(ObjectParts, ProposalsAndNamesExcludeEachOther) {
 }
 
 TEST(ObjectParts, StudiesOfAPartAreThoseOfThePartCutOut) {
-    const OneStatuette one;
+    const OneStatuette statuette;
     const test::Scratch cut;
-    const MeshFile file = read_mesh(one.scratch / "one.ply");
-    const AnnotationSet set = read_annotations(one.scratch / "one.ant.json", file.mesh);
+    const MeshFile file = read_mesh(statuette.scratch / "one.ply");
+    const AnnotationSet set = read_annotations(statuette.scratch / "one.ant.json", file.mesh);
     const CutPart part = cut_out_part(file.mesh, set, {1});
     write_mesh(cut / "one.ply", part.mesh, {}, {});
-    const auto on_whole = measure_technique(one.collection, set.up, {}, ResultStore(), ObjectParts(named({"body"})));
+    const auto on_whole = measure_technique(statuette.collection, set.up, {}, ResultStore(), ObjectParts(named({"body"})));
     const auto on_part = measure_technique(read_collection(cut.path()), set.up);
     ASSERT_TRUE(on_whole.at(0).problem.empty()) << on_whole.at(0).problem;
     ASSERT_TRUE(on_part.at(0).problem.empty()) << on_part.at(0).problem;

@@ -52,7 +52,7 @@ TEST(Collection, AFolderGivesItsMeshesByName) {
     for (const auto& object : collection.objects) EXPECT_EQ(object.checksum.size(), 64U) << object.name;
 }
 
-TEST(Collection, AFolderInMemoryIsOne) {
+TEST(Collection, AFolderInMemoryIsACollection) {
     const Path folder = "memory:collection-test";
     const Mesh mesh = build_mesh(test::octahedron_sphere(1));
     for (const char* name : {"b.ply", "a.off", "deeper/c.ply"}) write_mesh(folder / name, mesh);
@@ -93,7 +93,7 @@ TEST(Collection, AStudyFileListsItsObjects) {
     EXPECT_EQ(collection.objects[1].label, "wheel");
 }
 
-TEST(Collection, WhatIsNoneIsRefused) {
+TEST(Collection, InvalidCollectionsAreRefused) {
     const Scratch scratch;
     EXPECT_THROW(read_collection(scratch / "nowhere"), Error);
     EXPECT_THROW(read_collection(scratch.path()), Error);
@@ -143,17 +143,17 @@ TEST(Collection, LabelsNeedTheirColumnsAndAnObject) {
     const Path unnamed = scratch.file("unnamed.csv", "object,label\na,wheel\n"),
                other = scratch.file("o.csv", "name,mould\na,1\n");
     EXPECT_NE(problem([&] { read_labels(unnamed); }).find("no column 'name' among 'object', 'label'"), std::string::npos);
-    EXPECT_NE(problem([&] { read_labels(other); }).find("no column 'label' among 'name', 'mould'"), std::string::npos);
+    EXPECT_NE(problem([&] { read_labels(other); }).find("no column 'label'; the columns are 'name', 'mould'"), std::string::npos);
     EXPECT_EQ(read_labels(other, "mould").at("a"), "1");
     Collection collection = read_collection(scratch.path());
     const std::string none = problem([&] { set_labels(collection, {{"x.ply", "wheel"}, {"y.ply", "hand"}}, "truth.csv"); });
-    for (const char* word : {"truth.csv", "'x.ply', 'y.ply'", "'a', 'b'", "without the ending"})
+    for (const char* word : {"truth.csv", "'x.ply', 'y.ply'", "'a', 'b'", "without their endings"})
         EXPECT_NE(none.find(word), std::string::npos) << none;
     EXPECT_NE(problem([&] { set_labels(collection, {{"a", ""}}); }).find("empty"), std::string::npos);
     EXPECT_EQ(problem([&] { set_labels(collection, {{"a", "x"}}); }), "");
 }
 
-TEST(Collection, NamesThatNoResultCanBeKeptUnderAreLeftOut) {
+TEST(Collection, ObjectsWithInvalidNamesAreLeftOut) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");
     for (const std::string name : {"new\nline", "back\\slash", "escape\x1b[31m", "no utf-8 \xff", "turned \xE2\x80\xAE round"})
@@ -167,10 +167,10 @@ TEST(Collection, NamesThatNoResultCanBeKeptUnderAreLeftOut) {
         EXPECT_NE(why.find("its name"), std::string::npos) << why;
     }
     std::filesystem::remove(scratch / "a.ply");
-    EXPECT_THROW(read_collection(scratch.path()), Error) << "no object is left";
+    EXPECT_THROW(read_collection(scratch.path()), Error) << "no object remains";
 }
 
-TEST(Collection, LinksThatLeadNowhereAreLeftOut) {
+TEST(Collection, BrokenLinksAreLeftOut) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");
     std::filesystem::create_symlink("gone", scratch / "gone.ply");
@@ -222,7 +222,7 @@ TEST(ForEachObject, OneThatFailsDoesNotStopTheOthers) {
     EXPECT_EQ(results[2].result.GetUint64(), 128U);
 }
 
-TEST(ForEachObject, WhatIsDoneIsNotDoneAgain) {
+TEST(ForEachObject, CompletedObjectsAreNotProcessedAgain) {
     const Scratch scratch;
     std::filesystem::create_directory(scratch / "in");
     for (const char* name : {"in/a.ply", "in/b.ply", "in/c.ply"}) sphere_file(scratch, name, 1);
@@ -248,36 +248,36 @@ TEST(ForEachObject, WhatIsDoneIsNotDoneAgain) {
     EXPECT_EQ(calls, 3);
 }
 
-TEST(ForEachObject, SharesAreGatheredWithoutWork) {
+TEST(ForEachObject, ShardsAreGatheredWithoutWork) {
     const Scratch scratch;
     std::filesystem::create_directory(scratch / "in");
     for (const char* name : {"in/a.ply", "in/b.ply", "in/c.ply", "in/d.ply", "in/e.ply"}) sphere_file(scratch, name, 1);
     std::atomic<int> calls = 0;
-    const auto run = [&](const Share& share) {
+    const auto run = [&](const Share& shard) {
         calls = 0;
-        const Collection collection = read_collection(scratch / "in", share);
+        const Collection collection = read_collection(scratch / "in", shard);
         EXPECT_EQ(std::count_if(collection.objects.begin(), collection.objects.end(),
-                                [](const auto& one) { return one.checksum.empty(); }),
-                  share.is_whole()   ? 0
-                  : share.index == 0 ? 2
+                                [](const auto& collection_object) { return collection_object.checksum.empty(); }),
+                  shard.is_whole()   ? 0
+                  : shard.index == 0 ? 2
                                      : 3);
-        return for_each_object(collection, ResultStore(scratch / "out", share), {"faces"}, [&](const CollectionObject& object) {
+        return for_each_object(collection, ResultStore(scratch / "out", shard), {"faces"}, [&](const CollectionObject& object) {
             ++calls;
             return faces_of(object);
         });
     };
-    const auto odd = run({0, 2});
+    const auto second_half = run({0, 2});
     EXPECT_EQ(calls, 3);
-    EXPECT_FALSE(odd[2].elsewhere);
-    EXPECT_TRUE(odd[3].elsewhere);
-    EXPECT_TRUE(odd[3].problem.empty());
+    EXPECT_FALSE(second_half[2].elsewhere);
+    EXPECT_TRUE(second_half[3].elsewhere);
+    EXPECT_TRUE(second_half[3].problem.empty());
     run({1, 2});
     EXPECT_EQ(calls, 2);
-    for (const auto& one : run({})) EXPECT_TRUE(one.resumed);
+    for (const auto& result : run({})) EXPECT_TRUE(result.resumed);
     EXPECT_EQ(calls, 0);
 }
 
-TEST(ResultStore, KeepsAtOnceAndKnowsWhatWasChanged) {
+TEST(ResultStore, StoresAtOnceAndDetectsChanges) {
     const Scratch scratch;
     const ResultStore store(scratch.path());
     const Json result = parse_json(R"({"values": [1, 0.1, -0.0, 1e300, null, true, "x"]})", "test");
@@ -294,7 +294,7 @@ TEST(ResultStore, KeepsAtOnceAndKnowsWhatWasChanged) {
     EXPECT_FALSE(store.find("a", "key"));
 }
 
-TEST(ResultStore, RemovesWhatKilledRunsLeft) {
+TEST(ResultStore, RemovesTemporaryFilesOfKilledRuns) {
     const Scratch scratch;
     const auto now = std::filesystem::file_time_type::clock::now();
     for (const auto& [name, hours] : {std::pair{".ostraka-old000", 30}, {".ostraka-young0", 1}}) {
@@ -306,19 +306,19 @@ TEST(ResultStore, RemovesWhatKilledRunsLeft) {
     EXPECT_TRUE(std::filesystem::exists(scratch / ".ostraka-young0")) << "another process may be writing it";
 }
 
-TEST(ResultStore, PartsKeepOneNameApart) {
+TEST(ResultStore, PartsSeparateResultsOfEqualNames) {
     const Scratch scratch;
     const ResultStore store(scratch.path());
-    const Json one = parse_json("1", "test"), two = parse_json("2", "test");
-    store.keep("a", "key", one);
-    store.part("sizes").keep("a", "other", two);
+    const Json first = parse_json("1", "test"), second = parse_json("2", "test");
+    store.keep("a", "key", first);
+    store.part("sizes").keep("a", "other", second);
     ASSERT_TRUE(store.find("a", "key"));
-    EXPECT_EQ(*store.find("a", "key"), one);
-    EXPECT_EQ(*store.part("sizes").find("a", "other"), two);
+    EXPECT_EQ(*store.find("a", "key"), first);
+    EXPECT_EQ(*store.part("sizes").find("a", "other"), second);
     EXPECT_FALSE(ResultStore().part("sizes").find("a", "other"));
 }
 
-TEST(ForEachObject, FailuresAreTriedAgainAndUsageIsThrown) {
+TEST(ForEachObject, FailuresAreRetriedAndUsageErrorsAreThrown) {
     const Scratch scratch;
     sphere_file(scratch, "a.ply");
     const ResultStore store(scratch / "objects");

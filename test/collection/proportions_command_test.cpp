@@ -34,7 +34,7 @@ void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable&
         std::vector<std::vector<Index>> faces;
         for (Eigen::Index part = 0; part < 3; ++part) {
             const Index base = static_cast<Index>(soup.points.size());
-            std::vector<Index> list;
+            std::vector<Index> part_faces;
             for (const auto& p : unit.points) {
                 std::array<double, 3> q{};
                 for (std::size_t c = 0; c < 3; ++c)
@@ -46,10 +46,10 @@ void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable&
                 soup.points.push_back(q);
             }
             for (const auto& [a, b, c] : unit.triangles) {
-                list.push_back(static_cast<Index>(soup.triangles.size()));
+                part_faces.push_back(static_cast<Index>(soup.triangles.size()));
                 soup.triangles.push_back({a + base, b + base, c + base});
             }
-            faces.push_back(list);
+            faces.push_back(part_faces);
         }
         const Mesh mesh = build_mesh(soup);
         for (int part = 0; part < 3; ++part) {
@@ -62,16 +62,18 @@ void write_boxes(const Scratch& scratch, const Path& folder, const MeasureTable&
         write_mesh(folder / (table.objects[i] + ".ply"), mesh);
         write_annotations(folder / (table.objects[i] + ".ant.json"), set, mesh, table.objects[i] + ".ply", {});
     }
-    std::string list;
+    std::string definitions;
     for (int part = 1; part <= 3; ++part)
         for (int c = 0; c < 3 && 3 * (part - 1) + c < 8; ++c)
-            list += (list.empty() ? "" : ",") + std::string("{\"name\": \"measure ") + std::to_string(3 * (part - 1) + c + 1) +
-                    "\", \"tool\": \"bounding\", \"annotation\": \"part " + std::to_string(part) + "\", \"direction\": [" +
-                    (c == 0   ? "1,0,0"
-                     : c == 1 ? "0,1,0"
-                              : "0,0,1") +
-                    "]}";
-    (void)scratch.file("boxes.measures.json", R"({"format": "ostraka-measures", "version": 1, "measures": [)" + list + "]}");
+            definitions += (definitions.empty() ? "" : ",") + std::string("{\"name\": \"measure ") +
+                           std::to_string(3 * (part - 1) + c + 1) + "\", \"tool\": \"bounding\", \"annotation\": \"part " +
+                           std::to_string(part) + "\", \"direction\": [" +
+                           (c == 0   ? "1,0,0"
+                            : c == 1 ? "0,1,0"
+                                     : "0,0,1") +
+                           "]}";
+    (void)scratch.file("boxes.measures.json",
+                       R"({"format": "ostraka-measures", "version": 1, "measures": [)" + definitions + "]}");
 }
 
 struct Boxes {
@@ -133,7 +135,7 @@ TEST(StudyProportionsCommand, ResumesAndGivesTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(read_file(boxes.scratch / "out" / "proportions.json"), first);
 }
 
-TEST(StudyProportionsCommand, ObjectsThatFailAreToldAndTheRestStands) {
+TEST(StudyProportionsCommand, FailedObjectsAreReportedAndOthersRemain) {
     const Boxes boxes;
     (void)boxes.scratch.file("boxes/broken.ply", "ply\nnonsense");
     write_mesh(boxes.scratch / "boxes" / "bare.ply", build_mesh(test::octahedron_sphere(1)));
@@ -147,7 +149,7 @@ TEST(StudyProportionsCommand, ObjectsThatFailAreToldAndTheRestStands) {
     EXPECT_NE(result.err.find("left out: bare"), std::string::npos);
 }
 
-TEST(StudyProportionsCommand, LeavesItsOwnOutputsOnly) {
+TEST(StudyProportionsCommand, RemovesOnlyItsOwnOutputs) {
     const Boxes boxes;
     ASSERT_EQ(run_command(boxes.command).code, 0);
     (void)boxes.scratch.file("out/remarks.txt", "mine");
@@ -188,7 +190,7 @@ TEST(StudyProportionsCommand, ProposesConstraintsForATemplate) {
     EXPECT_EQ(check.code, 0) << check.err << check.out;
 }
 
-TEST(StudyMakeProportionsCommand, ItsMeasuresAreThoseItDrew) {
+TEST(StudyMakeProportionsCommand, MeasuresMatchTheDrawnValues) {
     const Scratch scratch;
     const std::string make = "study make proportions --objects 3 --vertices 4000 --seed 5 ";
     ASSERT_EQ(run_command(make + quoted(scratch / "made")).code, 0);
@@ -215,9 +217,9 @@ TEST(StudyMakeProportionsCommand, ItsMeasuresAreThoseItDrew) {
 
 TEST(StudyProportionsCommand, SaysNoWhereNothingIsFixed) {
     const Scratch scratch;
-    const Path one = scratch.file("one.csv", "name,arm [cm],height [cm]\na,8,20\n"),
+    const Path single_file = scratch.file("one.csv", "name,arm [cm],height [cm]\na,8,20\n"),
                same = scratch.file("same.csv", "name,arm,height,base\na,8,20,5\nb,8,20,5\nc,8,20,5\nd,8,20,5\ne,8,20,5\n");
-    for (const Path& file : {one, same}) {
+    for (const Path& file : {single_file, same}) {
         const auto result = run_command("study proportions " + quoted(file) + " --output " + quoted(scratch / "out"));
         EXPECT_EQ(result.code, 3) << result.err;
         EXPECT_NE(result.out.find("0 of "), std::string::npos);
@@ -264,7 +266,7 @@ TEST(StudyProportionsCommand, ATableNeedsItsHeadings) {
     const Path bare = scratch.file("bare.csv", "a,8,20\nb,9,21\nc,7,19\n");
     const auto result = run_command("study proportions " + quoted(bare) + " --output " + quoted(scratch / "out"));
     EXPECT_EQ(result.code, 1);
-    EXPECT_NE(result.err.find("line 1: the first line holds the number 8"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("line 1: the first line contains the number 8"), std::string::npos) << result.err;
     EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
     // The folder of the table is not written to: its own values.csv might be the table.
     EXPECT_EQ(run_command("study proportions " + quoted(bare) + " --output " + quoted(scratch.path())).code, 2);
@@ -287,7 +289,7 @@ TEST(StudyProportionsCommand, RefusesWrongUsage) {
         R"({"format": "ostraka-measures", "version": 1, "measures": [{"name": "x", "descriptor": "beauty"}]})");
     const auto none = run_command(folder + " --measures " + quoted(wrong));
     EXPECT_EQ(none.code, 1);
-    EXPECT_NE(none.err.find("not one object could be measured"), std::string::npos) << none.err;
+    EXPECT_NE(none.err.find("no object could be measured"), std::string::npos) << none.err;
 }
 
 }  // namespace

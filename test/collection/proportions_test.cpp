@@ -45,12 +45,12 @@ struct Counts {
     double planted = 0, hit = 0, wrong = 0;
 };
 
-Counts over_seeds(SyntheticMeasuresOptions made, int seeds) {
+Counts over_seeds(SyntheticMeasuresOptions options, int seeds) {
     Counts counts;
     for (int s = 1; s <= seeds; ++s) {
-        made.seed = static_cast<std::uint64_t>(s);
-        const SyntheticMeasures population = make_measures(made);
-        for (const RatioRow& ratio : study_proportions(population.table, quick(made.seed)).ratios) {
+        options.seed = static_cast<std::uint64_t>(s);
+        const SyntheticMeasures population = make_measures(options);
+        for (const RatioRow& ratio : study_proportions(population.table, quick(options.seed)).ratios) {
             const int a = population.groups[ratio.numerator], b = population.groups[ratio.denominator];
             const bool planted = a >= 0 && a == b, called = ratio.fixedness == Fixedness::fixed;
             counts.planted += planted ? 1 : 0;
@@ -93,15 +93,16 @@ TEST(Proportions, AMeasureWithoutAValueHasNoRatios) {
     for (std::size_t r = 0; r < 3; ++r) EXPECT_EQ(with.ratios[r].q, without.ratios[r].q);
 }
 
-TEST(Proportions, FewObjectsAreToldAndTheFailedTestIsNamed) {
-    SyntheticMeasuresOptions made;
-    made.objects = 9;
-    const ProportionStudy few = study_proportions(make_measures(made).table, quick());
-    EXPECT_NE(all_notes(few).find("9 objects: a fixed ratio can hardly be shown"), std::string::npos) << all_notes(few);
-    made.objects = 10;
-    const ProportionStudy enough = study_proportions(make_measures(made).table, quick());
-    EXPECT_EQ(all_notes(enough).find("hardly"), std::string::npos);
-    for (const ProportionStudy& study : {few, enough})
+TEST(Proportions, FewObjectsAndTheFailedTestAreReported) {
+    SyntheticMeasuresOptions options;
+    options.objects = 9;
+    const ProportionStudy few_objects = study_proportions(make_measures(options).table, quick());
+    EXPECT_NE(all_notes(few_objects).find("9 objects: too few to establish fixed ratios"), std::string::npos)
+        << all_notes(few_objects);
+    options.objects = 10;
+    const ProportionStudy enough = study_proportions(make_measures(options).table, quick());
+    EXPECT_EQ(all_notes(enough).find("too few to establish"), std::string::npos);
+    for (const ProportionStudy& study : {few_objects, enough})
         for (const RatioRow& ratio : study.ratios)
             EXPECT_EQ(not_fixed_because(ratio, 0.05).empty(), ratio.fixedness == Fixedness::fixed) << ratio.row.name;
     RatioRow stable;
@@ -111,28 +112,28 @@ TEST(Proportions, FewObjectsAreToldAndTheFailedTestIsNamed) {
 
 TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {
     for (const double size : {0.0, 0.15, 0.4}) {
-        SyntheticMeasuresOptions made;
-        made.size_deviation = size;
-        const Counts counts = over_seeds(made, 10);
+        SyntheticMeasuresOptions options;
+        options.size_deviation = size;
+        const Counts counts = over_seeds(options, 10);
         EXPECT_GE(counts.hit, 0.9 * counts.planted) << size;
         EXPECT_LE(counts.wrong, 0.15 * counts.hit) << size << ": 5 % are allowed on average over many populations";
     }
 }
 
 TEST(Proportions, GroupsOfThreeAreFoundToo) {
-    SyntheticMeasuresOptions made;
-    made.group_size = 3;
-    const Counts counts = over_seeds(made, 6);
+    SyntheticMeasuresOptions options;
+    options.group_size = 3;
+    const Counts counts = over_seeds(options, 6);
     EXPECT_GE(counts.hit, 0.9 * counts.planted);
     EXPECT_LE(counts.wrong, 0.15 * counts.hit);
 }
 
-TEST(Proportions, NearlyNoneWhereNoneIsPlanted) {
+TEST(Proportions, FewFalseDiscoveriesWithoutPlantedRatios) {
     for (const double size : {0.0, 0.15, 0.4}) {
-        SyntheticMeasuresOptions made;
-        made.groups = 0;
-        made.size_deviation = size;
-        EXPECT_LE(over_seeds(made, 10).wrong, 3) << size;
+        SyntheticMeasuresOptions options;
+        options.groups = 0;
+        options.size_deviation = size;
+        EXPECT_LE(over_seeds(options, 10).wrong, 3) << size;
     }
     SyntheticMeasuresOptions unequal;
     unequal.groups = 0;
@@ -141,11 +142,11 @@ TEST(Proportions, NearlyNoneWhereNoneIsPlanted) {
 }
 
 TEST(Proportions, ScaledCopiesGoWithTheSize) {
-    SyntheticMeasuresOptions made;
-    made.groups = 0;
-    made.ratio_deviation = 0.03;
-    made.size_deviation = 0.2;
-    const ProportionStudy study = study_proportions(make_measures(made).table, quick());
+    SyntheticMeasuresOptions options;
+    options.groups = 0;
+    options.ratio_deviation = 0.03;
+    options.size_deviation = 0.2;
+    const ProportionStudy study = study_proportions(make_measures(options).table, quick());
     for (const RatioRow& ratio : study.ratios) {
         EXPECT_EQ(ratio.fixedness, Fixedness::with_size) << ratio.row.name;
         EXPECT_LT(*ratio.row.summary->variation, 0.06);
@@ -155,20 +156,20 @@ TEST(Proportions, ScaledCopiesGoWithTheSize) {
 }
 
 TEST(Proportions, DoNotDependOnUnitsOrderOrThreads) {
-    SyntheticMeasuresOptions made;
-    made.missing = 0.1;
-    const MeasureTable table = make_measures(made).table;
-    const int before = threads();
+    SyntheticMeasuresOptions options;
+    options.missing = 0.1;
+    const MeasureTable table = make_measures(options).table;
+    const int original_threads = threads();
     set_threads(1);
-    const ProportionStudy one = study_proportions(table, quick());
+    const ProportionStudy single_thread = study_proportions(table, quick());
     set_threads(3);
     const ProportionStudy three = study_proportions(table, quick());
-    set_threads(before);
-    for (std::size_t r = 0; r < one.ratios.size(); ++r) {
-        EXPECT_EQ(one.ratios[r].p_others, three.ratios[r].p_others);
-        EXPECT_EQ(one.ratios[r].p_pairing, three.ratios[r].p_pairing);
-        EXPECT_EQ(one.ratios[r].q, three.ratios[r].q);
-        EXPECT_EQ(one.ratios[r].row.variation_interval->high, three.ratios[r].row.variation_interval->high);
+    set_threads(original_threads);
+    for (std::size_t r = 0; r < single_thread.ratios.size(); ++r) {
+        EXPECT_EQ(single_thread.ratios[r].p_others, three.ratios[r].p_others);
+        EXPECT_EQ(single_thread.ratios[r].p_pairing, three.ratios[r].p_pairing);
+        EXPECT_EQ(single_thread.ratios[r].q, three.ratios[r].q);
+        EXPECT_EQ(single_thread.ratios[r].row.variation_interval->high, three.ratios[r].row.variation_interval->high);
     }
     // Each object in a unit of its own changes sizes and nothing else.
     MeasureTable other = table;
@@ -178,21 +179,21 @@ TEST(Proportions, DoNotDependOnUnitsOrderOrThreads) {
         other.units[i].clear();
     }
     const ProportionStudy scaled = study_proportions(other, quick());
-    for (std::size_t r = 0; r < one.ratios.size(); ++r) {
+    for (std::size_t r = 0; r < single_thread.ratios.size(); ++r) {
         std::size_t same = scaled.ratios.size();
         for (std::size_t k = 0; k < scaled.ratios.size(); ++k)
             if (std::set{scaled.ratios[k].numerator, scaled.ratios[k].denominator} ==
-                std::set{one.ratios[r].numerator, one.ratios[r].denominator})
+                std::set{single_thread.ratios[r].numerator, single_thread.ratios[r].denominator})
                 same = k;
         ASSERT_LT(same, scaled.ratios.size());
-        EXPECT_NEAR(scaled.ratios[same].log_deviation, one.ratios[r].log_deviation, 1e-9);
-        EXPECT_EQ(scaled.ratios[same].fixedness == Fixedness::fixed, one.ratios[r].fixedness == Fixedness::fixed);
+        EXPECT_NEAR(scaled.ratios[same].log_deviation, single_thread.ratios[r].log_deviation, 1e-9);
+        EXPECT_EQ(scaled.ratios[same].fixedness == Fixedness::fixed, single_thread.ratios[r].fixedness == Fixedness::fixed);
     }
 }
 
-TEST(Proportions, MissingValuesAreToldInEachRow) {
-    SyntheticMeasuresOptions made;
-    SyntheticMeasures population = make_measures(made);
+TEST(Proportions, MissingValuesAreReportedInEachRow) {
+    SyntheticMeasuresOptions options;
+    SyntheticMeasures population = make_measures(options);
     population.table.values.col(3).head(15).setConstant(none);
     population.table.values.col(5).setConstant(none);
     population.table.values(0, 0) = 0;
@@ -215,18 +216,18 @@ TEST(Proportions, MissingValuesAreToldInEachRow) {
     std::string notes;
     for (const auto& note : study.notes) notes += note + '\n';
     EXPECT_NE(notes.find("55 of 320"), std::string::npos) << notes;
-    EXPECT_NE(notes.find("not above zero: 1;"), std::string::npos) << notes;
+    EXPECT_NE(notes.find("not positive: 1;"), std::string::npos) << notes;
 }
 
 TEST(Proportions, OfOneObjectAndOfIdenticalOnes) {
-    const ProportionStudy one = study_proportions(table_of({"a", "b", "c"}, {{1, 2, 3}}), quick());
-    ASSERT_EQ(one.ratios.size(), 3u);
-    for (const RatioRow& ratio : one.ratios) {
+    const ProportionStudy single_object = study_proportions(table_of({"a", "b", "c"}, {{1, 2, 3}}), quick());
+    ASSERT_EQ(single_object.ratios.size(), 3u);
+    for (const RatioRow& ratio : single_object.ratios) {
         EXPECT_EQ(ratio.fixedness, Fixedness::unknown);
         EXPECT_FALSE(ratio.row.summary->deviation);
         EXPECT_FALSE(ratio.row.variation_interval);
     }
-    EXPECT_FALSE(one.notes.empty());
+    EXPECT_FALSE(single_object.notes.empty());
     const std::vector<std::vector<double>> same(10, {1, 2, 3, 5});
     const ProportionStudy identical = study_proportions(table_of({"a", "b", "c", "d"}, same), quick());
     for (const RatioRow& ratio : identical.ratios) {
@@ -243,7 +244,7 @@ TEST(Proportions, ARatioThatIsTheSameInAllObjectsIsFixed) {
     const ProportionStudy two = study_proportions(table_of({"a", "b"}, {{1, 3}, {1, 3}, {7, 21}, {7, 21}, {1, 3}}), quick());
     EXPECT_EQ(two.ratios.at(0).fixedness, Fixedness::fixed);
     EXPECT_EQ(two.ratios[0].p_others, 1.0 / 1000);
-    EXPECT_NE(all_notes(two).find("the same in all objects, to the last digit: 1"), std::string::npos);
+    EXPECT_NE(all_notes(two).find("exactly equal in all objects: 1"), std::string::npos);
     // Scaled copies: decimal factors, so that quotients are rounded.
     std::vector<std::vector<double>> scaled;
     for (int i = 0; i < 6; ++i) scaled.push_back({0.1 * (i + 1), 0.3 * (i + 1), 0.7 * (i + 1)});
@@ -266,7 +267,7 @@ TEST(Proportions, ValuesBeyondComputingAreLeftOutWithANote) {
     table.units.assign(table.objects.size(), "km");
     table.units[3] = "mm";
     const ProportionStudy study = study_proportions(table, quick());
-    EXPECT_NE(all_notes(study).find("too small to compute with: 3 (the first: 'measure 2' of"), std::string::npos)
+    EXPECT_NE(all_notes(study).find("too small for the computation: 3 (the first: 'measure 2' of"), std::string::npos)
         << all_notes(study);
     EXPECT_EQ(study.measures[1].summary->count, 38U);
     const auto finite = [](const MeasureRow& row) {
@@ -281,10 +282,10 @@ TEST(Proportions, ValuesBeyondComputingAreLeftOutWithANote) {
         EXPECT_TRUE(std::isfinite(ratio.log_deviation) && std::isfinite(ratio.low) && std::isfinite(ratio.high));
     }
     // As far as is computed with, nothing overflows.
-    MeasureTable far = make_measures().table;
-    far.values.col(0) *= 1e33 / far.values.col(0).maxCoeff();
-    far.values.col(1) *= 1e-33 / far.values.col(1).minCoeff();
-    const ProportionStudy wide = study_proportions(far, quick());
+    MeasureTable distant = make_measures().table;
+    distant.values.col(0) *= 1e33 / distant.values.col(0).maxCoeff();
+    distant.values.col(1) *= 1e-33 / distant.values.col(1).minCoeff();
+    const ProportionStudy wide = study_proportions(distant, quick());
     for (const RatioRow& ratio : wide.ratios) EXPECT_TRUE(finite(ratio.row)) << ratio.row.name;
     EXPECT_EQ(all_notes(wide), "");
 }
@@ -313,7 +314,7 @@ TEST(Proportions, RatiosAreTakenWithinAKind) {
         EXPECT_EQ(table.measures[ratio.numerator].power, table.measures[ratio.denominator].power);
 }
 
-TEST(Proportions, RefuseWhatTheyCannotUse) {
+TEST(Proportions, RefuseInvalidInput) {
     EXPECT_THROW(study_proportions(MeasureTable{}), Error);
     EXPECT_THROW(study_proportions(table_of({"a"}, {})), Error);
     EXPECT_THROW(study_proportions(table_of({"a"}, {{std::numeric_limits<double>::infinity()}})), Error);
@@ -324,7 +325,7 @@ TEST(Proportions, RefuseWhatTheyCannotUse) {
     EXPECT_THROW(study_proportions(table_of({"a"}, {{1}}), {.false_discoveries = 2}), Error);
 }
 
-TEST(Units, AreMadeTheCommonestOne) {
+TEST(Units, AreConvertedToTheMostCommonUnit) {
     MeasureTable table = table_of({"length", "area"}, {{10, 100}, {20, 200}, {3, 9}, {5, 7}, {1, 1}});
     table.measures[1].power = 2;
     table.units = {"mm", "millimetres", "cm", "", "ell"};
@@ -341,7 +342,7 @@ TEST(Units, AreMadeTheCommonestOne) {
     for (const bool comparable : unify_units(table).comparable) EXPECT_TRUE(comparable) << "nobody says a unit";
 }
 
-TEST(Units, ThatAreNotKnownStayInTheRatios) {
+TEST(Units, UnknownUnitsAreUsedInRatiosOnly) {
     MeasureTable table = table_of({"a", "b"}, {{1, 2}, {2, 4}, {300, 900}, {4, 8}});
     table.units[2].clear();
     const ProportionStudy study = study_proportions(table, quick());
@@ -351,19 +352,19 @@ TEST(Units, ThatAreNotKnownStayInTheRatios) {
     EXPECT_EQ(study.ratios[0].row.summary->max, 3);
 }
 
-TEST(SyntheticMeasures, VaryAsTheyAreAskedTo) {
+TEST(SyntheticMeasures, VaryAsRequested) {
     SyntheticMeasuresOptions options;
     options.objects = 4000;
-    const SyntheticMeasures made = make_measures(options);
+    const SyntheticMeasures synthetic = make_measures(options);
     const auto deviation = [&](std::size_t a, std::size_t b) {
-        const Eigen::VectorXd logs = (made.table.values.col(static_cast<Eigen::Index>(a)).array() /
-                                      made.table.values.col(static_cast<Eigen::Index>(b)).array())
+        const Eigen::VectorXd logs = (synthetic.table.values.col(static_cast<Eigen::Index>(a)).array() /
+                                      synthetic.table.values.col(static_cast<Eigen::Index>(b)).array())
                                          .log();
         return std::sqrt((logs.array() - logs.mean()).square().sum() / 3999);
     };
     for (std::size_t a = 0; a < 8; ++a)
         for (std::size_t b = 0; b < a; ++b) {
-            const bool planted = made.groups[a] >= 0 && made.groups[a] == made.groups[b];
+            const bool planted = synthetic.groups[a] >= 0 && synthetic.groups[a] == synthetic.groups[b];
             EXPECT_NEAR(deviation(a, b), planted ? 0.03 : 0.15, 0.06 * (planted ? 0.03 : 0.15)) << a << ' ' << b;
         }
     EXPECT_THROW(make_measures({.measures = 3}), Error);

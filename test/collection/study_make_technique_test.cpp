@@ -64,9 +64,9 @@ TEST(MakeTechniqueCommand, RefusesWhatMakesNoSense) {
     EXPECT_EQ(run_command("study make technique " + folder + " --objects 0").code, 2);
     EXPECT_EQ(run_command("study make technique " + folder + " --interior unknown").code, 2);
     const Path file = scratch.file("taken", "x");
-    const auto taken = run_command("study make technique " + file.string() + " --objects 1");
-    EXPECT_EQ(taken.code, 2);
-    EXPECT_NE(taken.err.find("is a file"), std::string::npos) << taken.err;
+    const auto refused = run_command("study make technique " + file.string() + " --objects 1");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("is a file"), std::string::npos) << refused.err;
 }
 
 TEST(MakeCollections, InMemory) {

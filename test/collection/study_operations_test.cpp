@@ -55,9 +55,10 @@ TEST(StudyOperations, ReadAndWriteFoldersInMemory) {
         EXPECT_TRUE(file_exists(*out / name)) << name;
     const auto& inputs = report.provenance().inputs;
     for (const char* name : {"a", "b", "c", "odd"}) {
-        const auto found = std::find_if(inputs.begin(), inputs.end(), [&](const auto& input) { return input.first == name; });
-        ASSERT_NE(found, inputs.end()) << name;
-        EXPECT_EQ(found->second.size(), 64U);
+        const auto input_entry =
+            std::find_if(inputs.begin(), inputs.end(), [&](const auto& input) { return input.first == name; });
+        ASSERT_NE(input_entry, inputs.end()) << name;
+        EXPECT_EQ(input_entry->second.size(), 64U);
     }
 }
 
@@ -71,10 +72,10 @@ TEST(StudyOperations, TheFolderOfTheCollectionIsNoOutput) {
     EXPECT_THROW(call.run(context), Error);
 }
 
-TEST(StudyOperations, PartsAreGatheredToWhatOneRunMakes) {
+TEST(StudyOperations, ShardsAreGatheredToTheResultOfOneRun) {
     const MemoryFolder folder;
     for (int i = 1; i <= 5; ++i) write_file(folder.path / (std::to_string(i) + ".mrk.json"), markups(i));
-    const Path one = folder.path / "one", parts = folder.path / "parts";
+    const Path whole_folder = folder.path / "one", parts = folder.path / "parts";
     const auto run = [&](const Path& output, const std::string& shard) {
         Context context;
         Call call(find_operation("study landmarks"));
@@ -83,12 +84,12 @@ TEST(StudyOperations, PartsAreGatheredToWhatOneRunMakes) {
         if (!shard.empty()) call.set("shard", shard);
         return to_text(call.run(context).result());
     };
-    const std::string expected = run(one, "");
+    const std::string expected = run(whole_folder, "");
     EXPECT_NE(run(parts, "2/2").find("\"objects\": 2"), std::string::npos);
     EXPECT_FALSE(file_exists(parts / "objects.csv"));
     run(parts, "1/2");
     EXPECT_EQ(run(parts, ""), expected);
-    EXPECT_EQ(read_file(parts / "objects.csv"), read_file(one / "objects.csv"));
+    EXPECT_EQ(read_file(parts / "objects.csv"), read_file(whole_folder / "objects.csv"));
     EXPECT_THROW(run(parts, "3/2"), Error);
     EXPECT_THROW(run(parts, "all"), Error);
 }
@@ -124,7 +125,7 @@ std::string skull(int seed, double scale = 1, bool mirrored = false, int count =
            R"(", "controlPoints": [)" + points + "]}]}";
 }
 
-TEST(LandmarkShapes, OddSpecimensAreNamedAndStopNothing) {
+TEST(LandmarkShapes, OutliersAreReportedAndDoNotStopTheStudy) {
     const MemoryFolder folder;
     for (int i = 1; i <= 5; ++i) write_file(folder.path / ("s" + std::to_string(i) + ".mrk.json"), skull(i));
     write_file(folder.path / "large.mrk.json", skull(6, 10));
@@ -143,20 +144,20 @@ TEST(LandmarkShapes, OddSpecimensAreNamedAndStopNothing) {
     EXPECT_EQ(report.result()["failed"].Size(), 1U);
     EXPECT_EQ(report.result()["objects"].GetInt(), 7);
     EXPECT_EQ(report.result()["landmarks"].GetInt(), 8) << "one poor object takes no landmark from the others";
-    std::map<std::string, std::pair<std::string, bool>> odd;
-    for (const auto& one : report.result()["odd"].GetArray())
-        odd[one["name"].GetString()] = {one["why"].GetString(), one["leftOut"].GetBool()};
-    ASSERT_EQ(odd.size(), 4U);
-    EXPECT_NE(odd["poor"].first.find("2 of the 8"), std::string::npos) << odd["poor"].first;
-    EXPECT_NE(odd["inches"].first.find("in in"), std::string::npos) << odd["inches"].first;
-    EXPECT_NE(odd["mirrored"].first.find("mirror"), std::string::npos);
-    EXPECT_NE(odd["large"].first.find("times as large"), std::string::npos);
-    EXPECT_TRUE(odd["poor"].second && odd["inches"].second);
-    EXPECT_FALSE(odd["mirrored"].second || odd["large"].second);
+    std::map<std::string, std::pair<std::string, bool>> outliers;
+    for (const auto& outlier : report.result()["odd"].GetArray())
+        outliers[outlier["name"].GetString()] = {outlier["why"].GetString(), outlier["leftOut"].GetBool()};
+    ASSERT_EQ(outliers.size(), 4U);
+    EXPECT_NE(outliers["poor"].first.find("2 of the 8"), std::string::npos) << outliers["poor"].first;
+    EXPECT_NE(outliers["inches"].first.find("in in"), std::string::npos) << outliers["inches"].first;
+    EXPECT_NE(outliers["mirrored"].first.find("mirror"), std::string::npos);
+    EXPECT_NE(outliers["large"].first.find("times as large"), std::string::npos);
+    EXPECT_TRUE(outliers["poor"].second && outliers["inches"].second);
+    EXPECT_FALSE(outliers["mirrored"].second || outliers["large"].second);
     EXPECT_EQ(report_of("leave-odd-out").result()["objects"].GetInt(), 5);
 }
 
-TEST(TechniqueObjects, SayWhereTheirDirectionIsFrom) {
+TEST(TechniqueObjects, ReportTheSourceOfTheirDirection) {
     const MemoryFolder folder;
     StatuetteParameters parameters;
     parameters.vertices = 4000;

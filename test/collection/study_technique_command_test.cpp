@@ -20,8 +20,9 @@ const Path& population() {
     static const Scratch scratch;
     static const Path folder = [] {
         const Path path = scratch / "population";
-        const auto made = run_command("study make technique " + path.string() + " --objects 8 --vertices 4000 --interior closed");
-        EXPECT_EQ(made.code, 0) << made.err;
+        const auto result =
+            run_command("study make technique " + path.string() + " --objects 8 --vertices 4000 --interior closed");
+        EXPECT_EQ(result.code, 0) << result.err;
         return path;
     }();
     return folder;
@@ -48,7 +49,7 @@ TEST(StudyTechniqueCommand, AnswersWithTablesPlotsAndReasons) {
     EXPECT_EQ(csv_rows(read_file(Path(out) / "answers.csv"), ',', "answers.csv").size(), 9U);
 }
 
-TEST(StudyTechniqueCommand, OneBadObjectStopsNothingAndARunIsResumed) {
+TEST(StudyTechniqueCommand, AnInvalidObjectDoesNotStopTheRunWhichCanBeResumed) {
     Scratch scratch;
     const Path folder = scratch / "mixed", out = scratch / "out";
     std::filesystem::copy(population(), folder);
@@ -64,12 +65,12 @@ TEST(StudyTechniqueCommand, OneBadObjectStopsNothingAndARunIsResumed) {
     const std::string report = read_file(out / "technique.json");
     std::filesystem::remove(out / "objects" / "statuette-3.json");
     std::filesystem::remove(out / "technique.json");
-    const auto again = run_command(words + "2");
-    EXPECT_EQ(again.code, 0) << again.err;
+    const auto resumed = run_command(words + "2");
+    EXPECT_EQ(resumed.code, 0) << resumed.err;
     EXPECT_EQ(read_file(out / "technique.json"), report);
 }
 
-TEST(StudyTechniqueCommand, WithoutTruthItSaysWhetherThereAreTwoGroups) {
+TEST(StudyTechniqueCommand, WithoutTruthReportsWhetherThereAreTwoGroups) {
     Scratch scratch;
     const auto result = run_command("study technique " + population().string() + " --output " + (scratch / "out").string());
     EXPECT_TRUE(result.code == 0 || result.code == 3) << result.err;
@@ -77,7 +78,7 @@ TEST(StudyTechniqueCommand, WithoutTruthItSaysWhetherThereAreTwoGroups) {
     EXPECT_EQ(result.out.find("there are no two groups") != std::string::npos, result.code == 3);
 }
 
-TEST(StudyTechniqueCommand, SaysOfHowManyAnswersAreKnown) {
+TEST(StudyTechniqueCommand, ReportsTheNumberOfKnownAnswers) {
     Scratch scratch;
     const std::string start =
         "study technique " + population().string() + " --output " + (scratch / "out").string() + " --json --truth ";
@@ -90,14 +91,14 @@ TEST(StudyTechniqueCommand, SaysOfHowManyAnswersAreKnown) {
     };
     const auto scored = [](const Json& document) {
         bool any = false;
-        for (const char* list : {"classifiers", "divisions"})
-            for (const auto& each : document["result"][list].GetArray()) any = any || each.HasMember("f1");
+        for (const char* member : {"classifiers", "divisions"})
+            for (const auto& each : document["result"][member].GetArray()) any = any || each.HasMember("f1");
         return any;
     };
-    const Json one = report("statuette-1,wheel\nstatuette-3,wheel\nstatuette-5,wheel\n");
-    EXPECT_EQ(one["result"]["truth"]["labelled"].GetInt(), 3);
-    EXPECT_EQ(one["result"]["truth"]["objects"].GetInt(), 8);
-    EXPECT_FALSE(scored(one)) << "answers of one kind";
+    const Json one_label = report("statuette-1,wheel\nstatuette-3,wheel\nstatuette-5,wheel\n");
+    EXPECT_EQ(one_label["result"]["truth"]["labelled"].GetInt(), 3);
+    EXPECT_EQ(one_label["result"]["truth"]["objects"].GetInt(), 8);
+    EXPECT_FALSE(scored(one_label)) << "answers of one kind";
     EXPECT_TRUE(scored(report("statuette-1,wheel\nstatuette-2,hand\nstatuette-3,wheel\nstatuette-4,hand\n")));
     const auto text = run_command("study technique " + population().string() + " --output " + (scratch / "out").string() +
                                   " --truth " + scratch.file("two.csv", "name,label\nstatuette-1,wheel\n").string());
@@ -119,7 +120,7 @@ TEST(StudyTechniqueCommand, RefusesWhatMakesNoSense) {
     EXPECT_EQ(run_command(start + " --min-slices 101").code, 1);
 }
 
-TEST(StudyTechniqueCommand, SaysWhereAClassifierTellsNothing) {
+TEST(StudyTechniqueCommand, ReportsClassifiersThatDoNotDistinguish) {
     Scratch scratch;
     const std::string folder = (scratch / "alike").string();
     ASSERT_EQ(run_command("study make technique " + folder + " --objects 16 --level 5 --vertices 4000 --seed 7").code, 0);
@@ -131,7 +132,7 @@ TEST(StudyTechniqueCommand, SaysWhereAClassifierTellsNothing) {
     EXPECT_EQ(result.out.find("clear"), std::string::npos) << result.out;
 }
 
-TEST(StudyTechniqueCommand, ForeignObjectsGetNoAnswer) {
+TEST(StudyTechniqueCommand, OutOfClassObjectsGetNoAnswer) {
     Scratch scratch;
     const Path folder = scratch / "mixed", out = scratch / "out";
     std::filesystem::copy(population(), folder);
@@ -152,11 +153,11 @@ TEST(StudyTechniqueCommand, SaysWhereTheOptionOverridesTheAnnotations) {
     Scratch scratch;
     const std::string start = "study technique " + population().string() + " --output ";
     const auto same = run_command(start + (scratch / "same").string() + " --up 0,0,2");
-    EXPECT_EQ(same.err.find("--up is taken"), std::string::npos) << same.err;
+    EXPECT_EQ(same.err.find("--up is used"), std::string::npos) << same.err;
     EXPECT_EQ(same.err.find("is known"), std::string::npos) << same.err;
     for (int run = 0; run < 2; ++run) {  // also where the results are kept from an earlier run
         const auto other = run_command(start + (scratch / "other").string() + " --up 0,0.2,1");
-        EXPECT_NE(other.err.find("--up is taken, though the annotations have another"), std::string::npos) << other.err;
+        EXPECT_NE(other.err.find("--up is used, although the annotations have a different"), std::string::npos) << other.err;
     }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 const Vector up(0, 0, 1);
 
-StatuetteParameters fine(std::uint64_t seed = 1) {
+StatuetteParameters fine_parameters(std::uint64_t seed = 1) {
     StatuetteParameters p;
     p.seed = seed;
     p.wall = 0;
@@ -25,7 +25,7 @@ StatuetteParameters fine(std::uint64_t seed = 1) {
 }
 
 TEST(Technique, ARoundBodyIsRoundAndStraight) {
-    const TechniqueMeasures m = measure_technique(generate_statuette(fine()).mesh, up);
+    const TechniqueMeasures m = measure_technique(generate_statuette(fine_parameters()).mesh, up);
     EXPECT_EQ(m.slices.size(), 100U);
     EXPECT_LT(m.value("roundness mean"), 0.002);
     EXPECT_LT(m.value("ovality"), 0.0005);
@@ -35,7 +35,7 @@ TEST(Technique, ARoundBodyIsRoundAndStraight) {
 }
 
 TEST(Technique, DescriptorsOfAnOvalBodyAreThoseOfTheFormula) {
-    StatuetteParameters p = fine();
+    StatuetteParameters p = fine_parameters();
     p.ovality = 0.05;
     const TechniqueMeasures m = measure_technique(generate_statuette(p).mesh, up);
     // r (1 + e cos 2a): the mean distance from the mean circle is 2 e / pi, the sides are 1 +- e.
@@ -44,15 +44,15 @@ TEST(Technique, DescriptorsOfAnOvalBodyAreThoseOfTheFormula) {
     EXPECT_NEAR(m.value("eccentricity mean"), 0.95 / 1.05, 0.005);
     EXPECT_NEAR(m.value("coherence"), 1, 0.001);
     p.ovality_drift = 180;
-    const TechniqueMeasures turned = measure_technique(generate_statuette(p).mesh, up);
-    EXPECT_NEAR(turned.value("ovality"), 0.05, 0.001);
+    const TechniqueMeasures rotated = measure_technique(generate_statuette(p).mesh, up);
+    EXPECT_NEAR(rotated.value("ovality"), 0.05, 0.001);
     // Slices from 2 to 40 % of 200 mm: the second harmonic turns by twice 180 degrees over the height of the joint.
     const double joint = 200 - 44 * std::sqrt(1 - 0.04), half = 2 * std::numbers::pi * 0.38 * 200 / joint / 2;
-    EXPECT_NEAR(turned.value("coherence"), std::sin(half) / half, 0.01);
+    EXPECT_NEAR(rotated.value("coherence"), std::sin(half) / half, 0.01);
 }
 
 TEST(Technique, AnOffCentreCavityHasTheVariationOfTheFormula) {
-    StatuetteParameters p = fine();
+    StatuetteParameters p = fine_parameters();
     p.wall = 5;
     p.off_centre = 0.3;
     const TechniqueMeasures m = measure_technique(generate_statuette(p).mesh, up);
@@ -60,8 +60,8 @@ TEST(Technique, AnOffCentreCavityHasTheVariationOfTheFormula) {
     EXPECT_NEAR(m.value("wall variation"), 0.3 / std::sqrt(2), 0.02);
 }
 
-TEST(Technique, NothingChangesWithScalePlaceAndTurn) {
-    StatuetteParameters p = fine();
+TEST(Technique, IsInvariantUnderSimilarityTransforms) {
+    StatuetteParameters p = fine_parameters();
     p.technique = StatuetteParameters::Technique::hand;
     p.wall = 5;
     p.ovality = 0.03;
@@ -69,25 +69,25 @@ TEST(Technique, NothingChangesWithScalePlaceAndTurn) {
     p.finger_marks = 0.01;
     p.vertices = 6000;
     Mesh mesh = generate_statuette(p).mesh;
-    const TechniqueMeasures before = measure_technique(mesh, up);
+    const TechniqueMeasures original = measure_technique(mesh, up);
     // z goes to x, x to y, y to z; then to metres, far from the origin.
     for (const Vertex v : mesh.vertices()) {
         const Point q = mesh.point(v);
         mesh.point(v) = Point(q.z() * 0.001 + 50, q.x() * 0.001 - 20, q.y() * 0.001);
     }
-    const TechniqueMeasures after = measure_technique(mesh, Vector(3, 0, 0));
-    for (const TechniqueDescriptor& each : before.descriptors) {
-        EXPECT_NEAR(after.value(each.name), each.value, 1e-6 * std::max(each.value, 1e-3)) << each.name;
+    const TechniqueMeasures rotated = measure_technique(mesh, Vector(3, 0, 0));
+    for (const TechniqueDescriptor& each : original.descriptors) {
+        EXPECT_NEAR(rotated.value(each.name), each.value, 1e-6 * std::max(each.value, 1e-3)) << each.name;
         EXPECT_EQ(each.slices > 0, std::isfinite(each.value)) << each.name;
     }
 }
 
-TEST(Technique, OpenAndHoledBodiesAreMeasuredAsFarAsTheyGo) {
-    StatuetteParameters p = fine();
+TEST(Technique, OpenAndHoledBodiesAreMeasuredWherePossible) {
+    StatuetteParameters p = fine_parameters();
     p.wall = 5;
     p.ovality = 0.04;
     p.vertices = 8000;
-    const double whole = measure_technique(generate_statuette(p).mesh, up).value("roundness mean");
+    const double closed_roundness = measure_technique(generate_statuette(p).mesh, up).value("roundness mean");
     p.interior = StatuetteParameters::Interior::open;
     p.cavity_seen = 0.3;
     p.holes = 6;
@@ -96,7 +96,7 @@ TEST(Technique, OpenAndHoledBodiesAreMeasuredAsFarAsTheyGo) {
     const TechniqueMeasures m = measure_technique(torn.mesh, up);
     EXPECT_GT(m.open_used, 0U);
     EXPECT_EQ(m.slices.size() + m.too_open + m.empty, m.asked);
-    EXPECT_NEAR(m.value("roundness mean"), whole, 0.1 * whole);
+    EXPECT_NEAR(m.value("roundness mean"), closed_roundness, 0.1 * closed_roundness);
     TechniqueOptions strict;
     strict.min_turn = 1;
     const TechniqueMeasures closed = measure_technique(torn.mesh, up, strict);
@@ -113,7 +113,7 @@ TEST(Technique, OpenAndHoledBodiesAreMeasuredAsFarAsTheyGo) {
 }
 
 TEST(Technique, ArmsBesideTheBodyAreLeftOut) {
-    StatuetteParameters p = fine();
+    StatuetteParameters p = fine_parameters();
     p.pose = StatuetteParameters::Pose::down;
     p.arm_length = 120;  // hands reach far down into the lower two fifths
     const TechniqueMeasures m = measure_technique(generate_statuette(p).mesh, up);
@@ -121,20 +121,20 @@ TEST(Technique, ArmsBesideTheBodyAreLeftOut) {
 }
 
 TEST(Technique, KeptMeasuresAreTheSame) {
-    StatuetteParameters p = fine();
+    StatuetteParameters p = fine_parameters();
     p.vertices = 5000;
     p.wall = 5;
     const TechniqueMeasures m = measure_technique(generate_statuette(p).mesh, up);
-    const TechniqueMeasures back = technique_from_json(parse_json(to_text(technique_to_json(m)), "kept"));
-    ASSERT_EQ(back.descriptors.size(), m.descriptors.size());
+    const TechniqueMeasures reread = technique_from_json(parse_json(to_text(technique_to_json(m)), "kept"));
+    ASSERT_EQ(reread.descriptors.size(), m.descriptors.size());
     for (const TechniqueDescriptor& each : m.descriptors) {
-        if (std::isnan(each.value)) EXPECT_TRUE(std::isnan(back.value(each.name)));
-        else EXPECT_EQ(back.value(each.name), each.value) << each.name;
+        if (std::isnan(each.value)) EXPECT_TRUE(std::isnan(reread.value(each.name)));
+        else EXPECT_EQ(reread.value(each.name), each.value) << each.name;
     }
 }
 
 TEST(Technique, NonsenseIsRefused) {
-    const Mesh mesh = generate_statuette(fine()).mesh;
+    const Mesh mesh = generate_statuette(fine_parameters()).mesh;
     TechniqueOptions options;
     options.from = 0.5;
     EXPECT_THROW(measure_technique(mesh, up, options), Error);
@@ -160,7 +160,7 @@ std::vector<TechniqueObject> drawn(int count, double apart, bool labelled, std::
     return objects;
 }
 
-TEST(TechniqueStudy, WhatIsFarApartIsAnsweredRight) {
+TEST(TechniqueStudy, DistinctPopulationsAreClassifiedCorrectly) {
     const auto objects = drawn(60, 8, true);
     const TechniqueStudy study = study_technique(objects);
     EXPECT_EQ(study.positive, "wheel");
@@ -178,7 +178,7 @@ TEST(TechniqueStudy, WhatIsFarApartIsAnsweredRight) {
     }
 }
 
-TEST(TechniqueStudy, ChanceIsNotTakenForKnowledge) {
+TEST(TechniqueStudy, RandomLabelsGiveNoAnswers) {
     const TechniqueStudy study = study_technique(drawn(200, 0, true));
     for (const ClassifierResult& each : study.classifiers) {
         EXPECT_LT(each.validation.mean_f1, 0.72) << each.classifier.name;  // all called positive: 2/3
@@ -191,7 +191,7 @@ TEST(TechniqueStudy, ChanceIsNotTakenForKnowledge) {
     EXPECT_GT(doubtful, 60);
 }
 
-TEST(TechniqueStudy, WhatTellsNothingApartGivesNoAnswers) {
+TEST(TechniqueStudy, UninformativeClassifiersGiveNoAnswers) {
     int reported = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const TechniqueStudy study = study_technique(drawn(24, 0, true, seed));
@@ -210,12 +210,12 @@ TEST(TechniqueStudy, WhatTellsNothingApartGivesNoAnswers) {
     EXPECT_LE(reported, 1);
 }
 
-TEST(TechniqueStudy, NoAnswerIsSurerThanTheClassifier) {
+TEST(TechniqueStudy, NoAnswerIsMoreCertainThanTheClassifier) {
     const TechniqueStudy study = study_technique(drawn(100, 1.6, true));
-    const auto both = std::find_if(study.classifiers.begin(), study.classifiers.end(),
-                                   [](const ClassifierResult& each) { return each.classifier.name == "both"; });
+    const auto classifier = std::find_if(study.classifiers.begin(), study.classifiers.end(),
+                                         [](const ClassifierResult& each) { return each.classifier.name == "both"; });
     ASSERT_TRUE(study.separated);
-    ASSERT_GT(both->error, 0.05);
+    ASSERT_GT(classifier->error, 0.05);
     int stable = 0;
     for (const TechniqueAnswer& each : study.answers) {
         EXPECT_NE(each.certainty, "clear");
@@ -226,11 +226,11 @@ TEST(TechniqueStudy, NoAnswerIsSurerThanTheClassifier) {
     EXPECT_GT(stable, 50);
     // Of 60 that are told without an error one in 62 may be wrong; of 4 one in 6.
     EXPECT_NEAR(study_technique(drawn(60, 8, true)).classifiers.front().error, 1.0 / 62, 1e-12);
-    const TechniqueStudy few = study_technique(drawn(4, 30, true));
-    for (const TechniqueAnswer& each : few.answers) EXPECT_NE(each.certainty, "clear");
+    const TechniqueStudy few_objects = study_technique(drawn(4, 30, true));
+    for (const TechniqueAnswer& each : few_objects.answers) EXPECT_NE(each.certainty, "clear");
 }
 
-TEST(TechniqueStudy, WhatIsUnlikeTheLabelledIsNotAnswered) {
+TEST(TechniqueStudy, OutOfClassObjectsAreNotAnswered) {
     auto objects = drawn(40, 6, true);
     TechniqueObject between = objects[0], far = objects[0];
     between.name = "between", far.name = "far";
@@ -250,12 +250,12 @@ TEST(TechniqueStudy, WhatIsUnlikeTheLabelledIsNotAnswered) {
     EXPECT_TRUE(study.answers[41].answer.empty());
     EXPECT_NE(study.answers[41].words.find("unlike the labelled objects"), std::string::npos) << study.answers[41].words;
     EXPECT_NE(study.answers[41].words.find("marks"), std::string::npos);
-    TechniqueStudyOptions all;
-    all.unlike_from = 1e6;
-    EXPECT_FALSE(study_technique(objects, all).answers[41].unlike);
+    TechniqueStudyOptions lenient;
+    lenient.unlike_from = 1e6;
+    EXPECT_FALSE(study_technique(objects, lenient).answers[41].unlike);
 }
 
-TEST(TechniqueStudy, FewOfOnePopulationAreTakenForUnlike) {
+TEST(TechniqueStudy, FewInClassObjectsAreCalledOutOfClass) {
     int unlike = 0, asked = 0;
     for (const int count : {8, 16, 40, 100})
         for (std::uint64_t seed = 1; seed <= 5; ++seed)
@@ -274,7 +274,7 @@ TEST(TechniqueStudy, ReasonsGiveDeviationsInPerCentOfTheRadius) {
     }
 }
 
-TEST(TechniqueStudy, TogetherDescriptorsTellMoreThanOne) {
+TEST(TechniqueStudy, CombinedDescriptorsAreBetterThanOne) {
     const TechniqueStudy study = study_technique(drawn(300, 1.2, true));
     std::map<std::string, double> f1;
     for (const ClassifierResult& each : study.classifiers) f1[each.classifier.name] = each.validation.mean_f1;
@@ -286,34 +286,34 @@ TEST(TechniqueStudy, TogetherDescriptorsTellMoreThanOne) {
     EXPECT_NEAR(f1.at("outside and wall"), best, 0.06);
 }
 
-TEST(TechniqueStudy, WithoutLabelsGroupsAreFoundOnlyWhereTheyAre) {
+TEST(TechniqueStudy, WithoutLabelsOnlyRealGroupsAreFound) {
     const TechniqueStudy apart = study_technique(drawn(60, 6, false));
     EXPECT_FALSE(apart.learned);
     EXPECT_TRUE(apart.separated);
     for (std::size_t i = 0; i < apart.answers.size(); ++i)
         EXPECT_EQ(apart.answers[i].answer, i % 2 == 0 ? "rounder" : "less round") << i;
-    int found = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) found += study_technique(drawn(60, 0, false, seed)).separated ? 1 : 0;
-    EXPECT_LE(found, 4);  // one is expected
+    int significant = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) significant += study_technique(drawn(60, 0, false, seed)).separated ? 1 : 0;
+    EXPECT_LE(significant, 4);  // one is expected
 }
 
 TEST(TechniqueStudy, SameForAnyOrderAndNumberOfThreads) {
     auto objects = drawn(40, 1.5, true);
     set_threads(1);
-    const TechniqueStudy one = study_technique(objects);
+    const TechniqueStudy first = study_technique(objects);
     set_threads(3);
     const TechniqueStudy three = study_technique(objects);
     set_threads(0);
-    for (std::size_t i = 0; i < one.answers.size(); ++i) {
-        EXPECT_EQ(one.answers[i].score, three.answers[i].score);
-        EXPECT_EQ(one.answers[i].agreement, three.answers[i].agreement);
-        EXPECT_EQ(one.answers[i].words, three.answers[i].words);
+    for (std::size_t i = 0; i < first.answers.size(); ++i) {
+        EXPECT_EQ(first.answers[i].score, three.answers[i].score);
+        EXPECT_EQ(first.answers[i].agreement, three.answers[i].agreement);
+        EXPECT_EQ(first.answers[i].words, three.answers[i].words);
     }
-    for (std::size_t i = 0; i < one.classifiers.size(); ++i)
-        EXPECT_EQ(one.classifiers[i].validation.f1, three.classifiers[i].validation.f1);
+    for (std::size_t i = 0; i < first.classifiers.size(); ++i)
+        EXPECT_EQ(first.classifiers[i].validation.f1, three.classifiers[i].validation.f1);
 }
 
-TEST(TechniqueStudy, FewAndLikeObjectsAreNoFailure) {
+TEST(TechniqueStudy, FewOrEqualObjectsAreNoFailure) {
     auto objects = drawn(2, 5, true);
     const TechniqueStudy two = study_technique(objects);
     for (const ClassifierResult& each : two.classifiers) EXPECT_FALSE(each.validated);
@@ -354,7 +354,7 @@ TEST(TechniqueStudy, NonsenseIsRefused) {
     EXPECT_THROW(study_technique({}), Error);
 }
 
-TEST(TechniqueStudy, TwoGroupsAreThoseOfTheLeastVariance) {
+TEST(TechniqueStudy, TwoGroupsMinimiseTheVariance) {
     const TwoGroups groups = divide_in_two({1, 2, 11, 12, 0});
     EXPECT_DOUBLE_EQ(groups.threshold, 6.5);
     // Means 1 and 11.5, 5.2 in all: 3 * 4.2^2 + 2 * 6.3^2 of 134.8.

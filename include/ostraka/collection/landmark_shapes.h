@@ -38,6 +38,6 @@ LandmarkShapes common_landmarks(const Collection& collection, const std::vector<
 std::vector<OddSpecimen> odd_specimens(const LandmarkShapes& shapes);
 
 /// The shapes without the objects listed in `odd`.
-LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<OddSpecimen>& odd);
+LandmarkShapes without(const LandmarkShapes& shapes, const std::vector<OddSpecimen>& outliers);
 
 }  // namespace ostraka

@@ -83,7 +83,7 @@ std::vector<ObjectResult> take_measures(const Collection& collection, const Meas
                                         const std::string& words_checksum = {});
 /// Table of the measures in `taken`. A note that applies to several objects is reported once. Throws Error (input) if no object
 /// could be measured; `where` names the source of the collection in error messages.
-MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& taken,
+MeasureTable measure_table(const Collection& collection, const std::vector<ObjectResult>& results,
                            const MeasureDefinitions& definitions, std::vector<std::string>& notes, const std::string& where);
 
 /// Reads a table from a CSV file. The first column holds the names of the objects; every other column holds a measure and is

@@ -89,7 +89,7 @@ struct ObjectResult {
 /// are not stored. Objects outside the store's share are looked up but not worked on. Objects without a checksum (unreadable)
 /// are worked on, so that the error gives the reason.
 std::vector<ObjectResult> for_each_object(const Collection& collection, const ResultStore& store,
-                                          const std::vector<std::string>& what,
+                                          const std::vector<std::string>& key_parts,
                                           const std::function<Json(const CollectionObject&)>& work);
 
 }  // namespace ostraka
