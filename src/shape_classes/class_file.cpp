@@ -5,6 +5,8 @@
 #include "ostraka/core/npy.h"
 #include "ostraka/core/safe_path.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -53,9 +55,9 @@ JsonValue range_to_json(const LearntRange& range, JsonAllocator& allocator) {
 }
 
 std::vector<std::string> texts_in(const JsonValue& object, const char* name) {
-    std::vector<std::string> list;
-    for (const auto& item : list_in(object, name)) list.push_back(text_of(item));
-    return list;
+    std::vector<std::string> texts;
+    for (const auto& item : list_in(object, name)) texts.push_back(text_of(item));
+    return texts;
 }
 
 std::vector<std::optional<double>> values_in(const JsonValue& object, const char* name) {
@@ -82,16 +84,14 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
     range.high = number_in(object, "high");
     if (range.low && range.high && *range.low > *range.high)
         fail_input(where,
-                   "of " + range.quantity.text() + " accepts at least " + std::to_string(*range.low) + " and at most " +
-                       std::to_string(*range.high),
-                   "correct it, or learn the class again");
+                   fmt::format("of {} accepts at least {} and at most {}", range.quantity.text(), std::to_string(*range.low),
+                               std::to_string(*range.high)),
+                   "correct the range, or learn the class again");
     range.recognised = number_in(object, "recognised");
-    const auto check = [&](const std::vector<std::optional<double>>& values, std::size_t count, const char* whose) {
+    const auto check = [&](const std::vector<std::optional<double>>& values, std::size_t count, const char* objects) {
         if (values.size() != count)
-            fail_input(where,
-                       "has " + std::to_string(values.size()) + " values of " + range.quantity.text() + " for " +
-                           std::to_string(count) + " " + whose,
-                       "learn the class anew");
+            fail_input(where, fmt::format("has {} values of {} for {} {}", values.size(), range.quantity.text(), count, objects),
+                       "learn the class again");
     };
     range.values = values_in(object, "values");
     check(range.values, members, "members");
@@ -100,38 +100,38 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
     return range;
 }
 
-Path beside(const Path& file, const std::string& name, const std::string& where) {
+Path file_of_class(const Path& file, const std::string& name, const std::string& where) {
     if (name.empty() || Path(name).filename() != Path(name) || name == "..")
-        fail_input(where, "names '" + name + "', which does not stand beside it", "learn the class anew");
+        fail_input(where, fmt::format("names '{}', which is not in the same folder", name), "learn the class again");
     return file_inside(name, file.parent_path(), file.string(), "a name of another file", "the folder of the class",
-                       "learn the class anew");
+                       "learn the class again");
 }
 
 /// Checks properties that learning guarantees and other files lack: a mean of the members' size, unit modes, and coefficients
 /// with the variances of the modes.
 void check_shape(const ShapeModes& modes, const std::string& where) {
-    const auto refuse = [&](const std::string& what) { fail_input(where, what, "learn the class anew"); };
+    const auto refuse = [&](const std::string& problem) { fail_input(where, problem, "learn the class again"); };
     const double size = centroid_size(modes.mean);
     if (!std::isfinite(size) || !(size > 0.05 * modes.mean_size) || !(size < 1.1 * modes.mean_size))
-        refuse("has a mean shape of another size than its members");
+        refuse("has a mean shape whose size differs from that of its members");
     double sum = 0;
     for (std::size_t k = 0; k < modes.variances.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
-        if (!(std::abs(modes.modes.row(row).norm() - 1) < 1e-6)) refuse("has modes that are not of length one");
+        if (!(std::abs(modes.modes.row(row).norm() - 1) < 1e-6)) refuse("has modes whose length is not one");
         const double squares = modes.coefficients.col(row).squaredNorm(),
                      expected = static_cast<double>(modes.coefficients.rows() - 1) * modes.variances[k];
         if (!(modes.variances[k] > 0) || !(std::abs(squares - expected) <= 1e-6 * expected))
-            refuse("has coefficients of mode " + std::to_string(k + 1) + " that do not have its variance");
+            refuse(fmt::format("has coefficients of mode {} whose variance differs from that of the mode", k + 1));
         sum += modes.variances[k];
     }
-    if (!(sum <= (1 + 1e-6) * modes.total)) refuse("has modes with more variance than all together");
+    if (!(sum <= (1 + 1e-6) * modes.total)) refuse("has modes whose variances exceed the total variance");
 }
 
 }  // namespace
 
 void check_class_name(const std::string& name) {
     if (name.empty() || Path(name).filename() != Path(name) || name == "." || name == "..")
-        fail_usage("the class is called '" + name + "', which no file can be", "give --name a plain word");
+        fail_usage(fmt::format("the name '{}' of the class is not a valid file name", name), "give a plain word as --name");
 }
 
 void write_class(const Path& folder, const ShapeClass& learnt, const Provenance& provenance) {
@@ -185,7 +185,7 @@ ShapeClass read_class(const Path& file) {
     validate(document, "class", where);
     ShapeClass learnt;
     learnt.name = document["name"].GetString();
-    learnt.template_file = beside(file, document["template"].GetString(), where).string();
+    learnt.template_file = file_of_class(file, document["template"].GetString(), where).string();
     learnt.topology = document["topology"].GetString();
     learnt.sizes = document["sizes"].GetBool();
     learnt.reject = document["falseReject"].GetDouble();
@@ -203,15 +203,14 @@ ShapeClass read_class(const Path& file) {
     modes.total = shape["totalVariance"].GetDouble();
     for (const auto& value : shape["variances"].GetArray()) modes.variances.push_back(value.GetDouble());
     const auto array = [&](const char* name, std::size_t rows, std::size_t columns) {
-        const Path place = beside(file, shape[name].GetString(), where);
+        const Path place = file_of_class(file, shape[name].GetString(), where);
         NpyArray<double> values = read_npy(place);
         if (values.columns() != columns || (rows > 0 && values.rows() != rows))
             fail_input(place.string(),
-                       "has " + std::to_string(values.rows()) + " rows and " + std::to_string(values.columns()) +
-                           " columns, not those of " + where,
-                       "learn the class anew");
+                       fmt::format("has {} rows and {} columns, which does not match {}", values.rows(), values.columns(), where),
+                       "learn the class again");
         if (std::any_of(values.values.begin(), values.values.end(), [](double x) { return !std::isfinite(x); }))
-            fail_input(place.string(), "holds numbers that are not finite", "learn the class anew");
+            fail_input(place.string(), "contains numbers that are not finite", "learn the class again");
         return values;
     };
     const NpyArray<double> mean = array("mean", 0, 3);
@@ -220,7 +219,7 @@ ShapeClass read_class(const Path& file) {
     const std::size_t count = modes.variances.size();
     modes.modes.resize(static_cast<Eigen::Index>(count), 3 * modes.mean.rows());
     if (count > 0) {
-        if (!shape.HasMember("modes")) fail_input(where, "has variances of modes and no modes", "learn the class anew");
+        if (!shape.HasMember("modes")) fail_input(where, "has variances of modes but no modes", "learn the class again");
         const NpyArray<double> rows = array("modes", count, 3 * mean.rows());
         modes.modes = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
             rows.values.data(), modes.modes.rows(), modes.modes.cols());
@@ -234,8 +233,10 @@ ShapeClass read_class(const Path& file) {
         modes.centroid_sizes.push_back(member["centroidSize"].GetDouble());
         modes.distances.push_back(member["fromMean"].GetDouble());
         if (member["coefficients"].Size() != count)
-            fail_input(where, "has another number of coefficients of '" + learnt.members.back().name + "' than modes",
-                       "learn the class anew");
+            fail_input(
+                where,
+                fmt::format("the number of coefficients of '{}' differs from the number of modes", learnt.members.back().name),
+                "learn the class again");
         for (rapidjson::SizeType k = 0; k < count; ++k)
             modes.coefficients(i, static_cast<Eigen::Index>(k)) = member["coefficients"][k].GetDouble();
         if (learnt.members.back().name == document["archetype"].GetString()) modes.archetype = i;
@@ -243,13 +244,14 @@ ShapeClass read_class(const Path& file) {
     check_shape(modes, where);
     const std::string archetype = document["archetype"].GetString();
     if (learnt.members[modes.archetype].name != archetype)
-        fail_input(where, "has the archetype '" + archetype + "', which is none of its members", "learn the class anew");
-    std::set<std::tuple<int, int, std::string, std::string>> known;
+        fail_input(where, fmt::format("has the archetype '{}', which is not one of its members", archetype),
+                   "learn the class again");
+    std::set<std::tuple<int, int, std::string, std::string>> quantities_found;
     for (const auto& value : document["ranges"].GetArray()) {
         LearntRange range = range_from(value, learnt.members.size(), learnt.strangers.size(), where);
-        const ClassQuantity& of = range.quantity;
-        if (!known.emplace(static_cast<int>(of.kind), of.id, of.name, of.of).second)
-            fail_input(where, "has two ranges of " + of.text(), "keep one of them, or learn the class anew");
+        const ClassQuantity& quantity = range.quantity;
+        if (!quantities_found.emplace(static_cast<int>(quantity.kind), quantity.id, quantity.name, quantity.of).second)
+            fail_input(where, "has two ranges of " + quantity.text(), "keep one of them, or learn the class anew");
         learnt.ranges.push_back(std::move(range));
     }
     for (const auto& range : document["fragments"].GetArray())
@@ -257,7 +259,7 @@ ShapeClass read_class(const Path& file) {
     return learnt;
 }
 
-JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator) {
+JsonValue classification_to_json(const Classification& classification, JsonAllocator& allocator) {
     const auto of_check = [&](const QuantityCheck& check) {
         JsonValue item(rapidjson::kObjectType);
         add_quantity(item, check.quantity, allocator);
@@ -276,30 +278,34 @@ JsonValue classification_to_json(const Classification& answer, JsonAllocator& al
         if (!region.part.empty()) add_members(item, allocator, "part", region.part);
         return item;
     };
-    const auto explained = [&](const ClassAnswer& one) {
-        const FitResiduals& residuals = *one.fit.residuals;
+    const auto explained = [&](const ClassAnswer& class_answer) {
+        const FitResiduals& residuals = *class_answer.fit.residuals;
         return json_object(allocator, "object", 1 - residuals.unexplained, "template", 1 - residuals.unmatched, "within",
-                           one.fit.near, "liesOn", one.off.empty(), "mostOff", one.most_off, "foreign",
-                           json_list(one.fit.foreign, allocator, of_region), "missing",
-                           json_list(one.fit.missing, allocator, of_region));
+                           class_answer.fit.near, "liesOn", class_answer.off.empty(), "mostOff", class_answer.most_off, "foreign",
+                           json_list(class_answer.fit.foreign, allocator, of_region), "missing",
+                           json_list(class_answer.fit.missing, allocator, of_region));
     };
-    const auto of_class = [&](const ClassAnswer& one) {
-        JsonValue object = json_object(allocator, "class", one.name, "verdict", to_string(one.verdict));
-        if (!one.undecided.empty()) add_members(object, allocator, "undecided", one.undecided);
-        if (one.fit.problem.empty())
-            add_members(object, allocator, "score", one.score, "placedBy", one.fit.placed_by, "scale", one.fit.scale,
-                        "coefficients", one.coordinates.coefficients, "mahalanobis", one.coordinates.mahalanobis);
-        add_given(object, allocator, "odd", one.odd, "notes", one.fit.notes);
-        if (one.fit.problem.empty() && one.fit.residuals) add_members(object, allocator, "explained", explained(one));
-        add_members(object, allocator, "against", one.reasons(), "checks", json_list(one.checks, allocator, of_check));
+    const auto of_class = [&](const ClassAnswer& class_answer) {
+        JsonValue object = json_object(allocator, "class", class_answer.name, "verdict", to_string(class_answer.verdict));
+        if (!class_answer.undecided.empty()) add_members(object, allocator, "undecided", class_answer.undecided);
+        if (class_answer.fit.problem.empty())
+            add_members(object, allocator, "score", class_answer.score, "placedBy", class_answer.fit.placed_by, "scale",
+                        class_answer.fit.scale, "coefficients", class_answer.coordinates.coefficients, "mahalanobis",
+                        class_answer.coordinates.mahalanobis);
+        add_given(object, allocator, "odd", class_answer.odd, "notes", class_answer.fit.notes);
+        if (class_answer.fit.problem.empty() && class_answer.fit.residuals)
+            add_members(object, allocator, "explained", explained(class_answer));
+        add_members(object, allocator, "against", class_answer.reasons(), "checks",
+                    json_list(class_answer.checks, allocator, of_check));
         return object;
     };
-    JsonValue report = json_object(allocator, "object", answer.object, "verdict", to_string(answer.verdict), "text", answer.text);
-    if (!answer.problem.empty()) add_members(report, allocator, "problem", answer.problem);
-    const auto name = [&](int k) { return answer.answers[static_cast<std::size_t>(k)].name; };
-    if (answer.best >= 0) add_members(report, allocator, "class", name(answer.best));
-    if (answer.nearest >= 0) add_members(report, allocator, "nearest", name(answer.nearest));
-    add_members(report, allocator, "answers", json_list(answer.answers, allocator, of_class));
+    JsonValue report = json_object(allocator, "object", classification.object, "verdict", to_string(classification.verdict),
+                                   "text", classification.text);
+    if (!classification.problem.empty()) add_members(report, allocator, "problem", classification.problem);
+    const auto name = [&](int k) { return classification.answers[static_cast<std::size_t>(k)].name; };
+    if (classification.best >= 0) add_members(report, allocator, "class", name(classification.best));
+    if (classification.nearest >= 0) add_members(report, allocator, "nearest", name(classification.nearest));
+    add_members(report, allocator, "answers", json_list(classification.answers, allocator, of_class));
     return report;
 }
 

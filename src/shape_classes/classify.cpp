@@ -5,6 +5,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/shape_classes/unlikeness.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,33 +38,35 @@ QuantityCheck check_of(const LearntRange& range, const std::optional<double>& va
     return check;
 }
 
-std::string words(const QuantityCheck& check) {
+std::string check_text(const QuantityCheck& check) {
     const ClassQuantity& quantity = check.quantity;
     const std::string unit = quantity.unit.empty() ? "" : " " + quantity.unit;
-    std::string text = quantity.text() + ": " + digits(quantity.value.value_or(0), 4) + unit;
+    std::string text = fmt::format("{}: {}{}", quantity.text(), digits(quantity.value.value_or(0), 4), unit);
     const bool above = check.high && *quantity.value > *check.high;
     text += above ? ", at most " + digits(*check.high, 4) : ", at least " + digits(check.low.value_or(0), 4);
-    return text + unit + " is accepted: " + digits(check.off, 3) + unit + (above ? " too much" : " too little") +
-           (check.worst.empty() ? "" : "; most of all " + check.worst);
+    return fmt::format("{}{} is accepted: {}{}{}{}", text, unit, digits(check.off, 3), unit, above ? " too much" : " too little",
+                       check.worst.empty() ? "" : "; the largest deviation is " + check.worst);
 }
 
 /// The value of the quantity with this key, if any.
 std::optional<double> value_of(const std::vector<ClassQuantity>& quantities, const std::string& key) {
-    const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& one) { return one.key() == key; });
-    return found == quantities.end() ? std::nullopt : found->value;
+    const auto quantity =
+        std::find_if(quantities.begin(), quantities.end(), [&](const auto& candidate) { return candidate.key() == key; });
+    return quantity == quantities.end() ? std::nullopt : quantity->value;
 }
 
 /// Adds the combined quantities of the parts; `worst` gets, by key, the part that is farthest off.
 void add_parts(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
     for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
-    for (PartsTogether& one : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
-        if (one.quantity.value) {
-            const double value = *values[one.worst];
-            worst[one.quantity.key()] = learnt.ranges[one.worst].quantity.text() + ": " + digits(value, 4) + ", " +
-                                        digits(value / one.expected, 3) + " times the members' mean";
+    for (PartsTogether& combined : parts_together(learnt.ranges, values, expected_parts(learnt.ranges))) {
+        if (combined.quantity.value) {
+            const double value = *values[combined.worst];
+            worst[combined.quantity.key()] =
+                fmt::format("{}: {}, {} times the members' mean", learnt.ranges[combined.worst].quantity.text(), digits(value, 4),
+                            digits(value / combined.expected, 3));
         }
-        quantities.push_back(std::move(one.quantity));
+        quantities.push_back(std::move(combined.quantity));
     }
 }
 
@@ -76,9 +80,9 @@ double score_of(const ShapeClass& learnt, const LearntMember& object, const Shap
     for (const char* name : {"compactness", "geodesic mean", "geodesic most", "geodesic variation"}) {
         const std::string key = "geometry " + std::string(name);
         const LearntRange* range = learnt.find(key);
-        const std::optional<double> own = value_of(object.quantities, key);
-        if (range != nullptr && range->count > 0 && range->mean > 0 && own && *own > 0)
-            score += 2 * std::abs(std::log(*own / range->mean));
+        const std::optional<double> object_value = value_of(object.quantities, key);
+        if (range != nullptr && range->count > 0 && range->mean > 0 && object_value && *object_value > 0)
+            score += 2 * std::abs(std::log(*object_value / range->mean));
     }
     return score;
 }
@@ -92,19 +96,20 @@ double score_of_parts(const std::vector<ClassQuantity>& quantities) {
 }
 
 /// Adds the dissimilarity to the members; `worst` gets the quantity that is farthest off.
-void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, ClassAnswer& answer,
+void add_unlikeness(const ShapeClass& learnt, std::vector<ClassQuantity>& quantities, ClassAnswer& class_answer,
                     std::map<std::string, std::string>& worst) {
     std::vector<std::optional<double>> values;
     for (const LearntRange& range : learnt.ranges) values.push_back(value_of(quantities, range.quantity.key()));
-    const auto found = unlikeness(learnt, values);
-    if (!found) return;
-    answer.unlike = found->value;
+    const auto dissimilarity_found = unlikeness(learnt, values);
+    if (!dissimilarity_found) return;
+    class_answer.unlike = dissimilarity_found->value;
     ClassQuantity& quantity = quantities.emplace_back();
     quantity.name = unlike_the_members;
-    quantity.value = found->value;
-    worst[quantity.key()] = learnt.ranges[found->worst].quantity.text() + ": " + digits(*values[found->worst], 4) + ", " +
-                            digits(std::abs(found->off), 3) + " deviations " + (found->off > 0 ? "above" : "below") +
-                            " the members' mean";
+    quantity.value = dissimilarity_found->value;
+    worst[quantity.key()] =
+        fmt::format("{}: {}, {} deviations {} the members' mean", learnt.ranges[dissimilarity_found->worst].quantity.text(),
+                    digits(*values[dissimilarity_found->worst], 4), digits(std::abs(dissimilarity_found->off), 3),
+                    dissimilarity_found->off > 0 ? "above" : "below");
 }
 
 /// Whether the object is fitted but all members are in correspondence: these do not show the error of a fit, which slides along
@@ -122,26 +127,28 @@ bool only_shape(const ClassAnswer& answer) {
     });
 }
 
-std::vector<std::string> odd_of(const ShapeClass& learnt, const LearntMember& object, const ShapeCoordinates& coordinates) {
+std::vector<std::string> unit_and_mirror_warnings(const ShapeClass& learnt, const LearntMember& object,
+                                                  const ShapeCoordinates& coordinates) {
     constexpr double times = 3, nearer = 0.5;
-    std::vector<std::string> odd;
+    std::vector<std::string> warnings;
     const auto& sizes = learnt.modes.centroid_sizes;
     const double largest = *std::max_element(sizes.begin(), sizes.end()),
                  smallest = *std::min_element(sizes.begin(), sizes.end());
     if (coordinates.centroid_size > times * largest || times * coordinates.centroid_size < smallest)
-        odd.push_back("it is " + digits(coordinates.centroid_size / learnt.modes.mean_size, 3) +
-                      " times as large as members are on average: is it in another unit?");
-    if (object.fit.residuals) return odd;
-    const Landmarks own = landmarks_of(object.fit.points);
-    Landmarks mirror = own;
+        warnings.push_back(fmt::format("it is {} times as large as members are on average: is it in another unit?",
+                                       digits(coordinates.centroid_size / learnt.modes.mean_size, 3)));
+    if (object.fit.residuals) return warnings;
+    const Landmarks object_points = landmarks_of(object.fit.points);
+    Landmarks mirror = object_points;
     mirror.col(0) *= -1;
     ProcrustesOptions scaled;
     scaled.scaling = true;
-    const double off = procrustes(own, learnt.modes.mean, scaled).sum_of_squares,
+    const double residual = procrustes(object_points, learnt.modes.mean, scaled).sum_of_squares,
                  mirrored = procrustes(mirror, learnt.modes.mean, scaled).sum_of_squares;
-    if (mirrored < nearer * nearer * off && off > 1e-6 * learnt.modes.mean.squaredNorm())
-        odd.emplace_back("its mirror image is nearer the members than itself: is it mirrored, or are left and right exchanged?");
-    return odd;
+    if (mirrored < nearer * nearer * residual && residual > 1e-6 * learnt.modes.mean.squaredNorm())
+        warnings.emplace_back(
+            "its mirror image is nearer the members than itself: is it mirrored, or are left and right exchanged?");
+    return warnings;
 }
 
 /// The first quantity that is neither rejected nor recognised; null if there is none.
@@ -153,19 +160,21 @@ const QuantityCheck* not_recognised(const ClassAnswer& answer) {
 
 std::string unsure_text(const ShapeClass& learnt, const QuantityCheck& check) {
     const std::string number = std::to_string(learnt.strangers.size());
-    return "it is as unlike the members as strangers may be: " + digits(*check.quantity.value, 3) +
-           " deviations on average, and up to " + digits(*check.recognised, 3) + " is recognised, by what " +
-           (learnt.strangers.size() < ShapeClass::min_members ? "members are" : number + " strangers are") + ", up to " +
-           digits(*check.high, 3) + " not refused" + (check.worst.empty() ? "" : "; most of all " + check.worst);
+    return fmt::format(
+        "its dissimilarity to the members, {} deviations on average, also occurs for out-of-class objects: up to {} is "
+        "recognised, estimated from {}, and up to {} is not rejected{}",
+        digits(*check.quantity.value, 3), digits(*check.recognised, 3),
+        learnt.strangers.size() < ShapeClass::min_members ? "the members" : number + " out-of-class objects",
+        digits(*check.high, 3), check.worst.empty() ? "" : "; the largest deviation is " + check.worst);
 }
 
 }  // namespace
 
 std::vector<std::string> ClassAnswer::reasons() const {
-    std::vector<std::string> list;
-    if (hopeless) list.push_back(off);
-    for (const std::size_t i : against) list.push_back(words(checks[i]));
-    return list;
+    std::vector<std::string> texts;
+    if (hopeless) texts.push_back(off);
+    for (const std::size_t i : against) texts.push_back(check_text(checks[i]));
+    return texts;
 }
 
 ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, const ClassifyOptions& options) {
@@ -174,7 +183,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     answer.name = learnt.name;
     answer.fit = object.fit;
     if (!object.fit.problem.empty()) {
-        answer.undecided = "the template could not be laid onto it: " + object.fit.problem;
+        answer.undecided = "the template could not be registered to it: " + object.fit.problem;
         answer.score = std::numeric_limits<double>::max();
         return answer;
     }
@@ -182,7 +191,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     answer.off = fit_is_off(object.fit, answer.most_off);
     answer.hopeless = !fit_is_off(object.fit, std::max(hopeless_fit, answer.most_off)).empty();
     answer.coordinates = coordinates_in(learnt.modes, landmarks_of(object.fit.points));
-    answer.odd = odd_of(learnt, object, answer.coordinates);
+    answer.odd = unit_and_mirror_warnings(learnt, object, answer.coordinates);
     std::vector<ClassQuantity> quantities = object.quantities;
     const auto add = [&](const char* name, double value) {
         quantities.emplace_back().name = name;
@@ -196,12 +205,12 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     add_unlikeness(learnt, quantities, answer, worst);
     answer.parts = score_of_parts(quantities);
     answer.score = score_of(learnt, object, answer.coordinates) + answer.parts;
-    bool any = false;
+    bool any_decides = false;
     for (const LearntRange& range : learnt.ranges) {
         answer.checks.push_back(check_of(range, value_of(quantities, range.quantity.key()), options.attributes));
         QuantityCheck& check = answer.checks.back();
         check.worst = worst[range.quantity.key()];
-        any = any || check.decides;
+        any_decides = any_decides || check.decides;
         if (check.decides && check.off > 0) answer.against.push_back(answer.checks.size() - 1);
     }
     std::stable_sort(answer.against.begin(), answer.against.end(), [&](std::size_t a, std::size_t b) {
@@ -213,13 +222,15 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     });
     if (answer.hopeless) {
         answer.verdict = Membership::other;
-    } else if (!any) {
-        answer.undecided = learnt.has_thresholds()      ? "nothing of what was learnt can be measured on it"
-                           : learnt.members.size() == 1 ? "the class has one member, of which no threshold can be learnt"
-                                                        : "the class has two members, of which no threshold can be learnt";
+    } else if (!any_decides) {
+        answer.undecided = learnt.has_thresholds()      ? "none of the learnt quantities can be measured on it"
+                           : learnt.members.size() == 1 ? "the class has one member, from which no thresholds can be learnt"
+                                                        : "the class has two members, from which no thresholds can be learnt";
     } else if (fitted_to_given(learnt, object) && only_shape(answer)) {
-        answer.undecided = "the class was learnt from objects in correspondence and this one was fitted: " +
-                           words(answer.checks[answer.against.front()]) + ", which may be the fit's own error";
+        answer.undecided = fmt::format(
+            "the class was learnt from objects in correspondence, but this object was fitted: {}, which may be an error of the "
+            "fit",
+            check_text(answer.checks[answer.against.front()]));
         answer.against.clear();
     } else if (answer.against.empty() && !answer.off.empty()) {
         answer.undecided = answer.off;
@@ -232,46 +243,49 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
 }
 
 Classification decide(std::string object, std::vector<ClassAnswer> answers, const ClassifyOptions& options) {
-    if (answers.empty()) fail_usage("there is no class to ask", "give one or more");
+    if (answers.empty()) fail_usage("there is no class to compare with", "give at least one class");
     Classification result;
     result.object = std::move(object);
     result.answers = std::move(answers);
     if (std::all_of(result.answers.begin(), result.answers.end(),
-                    [](const ClassAnswer& answer) { return answer.unlike || !answer.fit.problem.empty(); }))
-        for (ClassAnswer& answer : result.answers)
-            if (answer.unlike) answer.score = *answer.unlike + answer.parts;
+                    [](const ClassAnswer& class_answer) { return class_answer.unlike || !class_answer.fit.problem.empty(); }))
+        for (ClassAnswer& class_answer : result.answers)
+            if (class_answer.unlike) class_answer.score = *class_answer.unlike + class_answer.parts;
     int second = -1;
-    std::size_t silent = 0;
+    std::size_t undecided_count = 0;
     for (std::size_t i = 0; i < result.answers.size(); ++i) {
-        const ClassAnswer& answer = result.answers[i];
+        const ClassAnswer& class_answer = result.answers[i];
         const int k = static_cast<int>(i);
         const auto better = [&](int other) {
-            return other < 0 || answer.score < result.answers[static_cast<std::size_t>(other)].score;
+            return other < 0 || class_answer.score < result.answers[static_cast<std::size_t>(other)].score;
         };
-        if (answer.fit.problem.empty() && better(result.nearest)) result.nearest = k;
-        if (answer.verdict == Membership::undecided) ++silent;
-        if (answer.verdict != Membership::member) continue;
+        if (class_answer.fit.problem.empty() && better(result.nearest)) result.nearest = k;
+        if (class_answer.verdict == Membership::undecided) ++undecided_count;
+        if (class_answer.verdict != Membership::member) continue;
         if (better(result.best)) second = result.best, result.best = k;
         else if (better(second)) second = k;
     }
-    const auto name = [&](int k) { return "'" + result.answers[static_cast<std::size_t>(k)].name + "'"; };
+    const auto name = [&](int k) { return fmt::format("'{}'", result.answers[static_cast<std::size_t>(k)].name); };
     const auto score = [&](int k) { return result.answers[static_cast<std::size_t>(k)].score; };
     if (result.best >= 0 && second >= 0 && score(second) - score(result.best) <= options.close * score(second)) {
-        result.text = "cannot decide, because it may belong to " + name(result.best) + " as well as to " + name(second);
+        result.text = fmt::format("cannot decide, because it may belong to {} as well as to {}", name(result.best), name(second));
         result.best = -1;
     } else if (result.best >= 0) {
         result.verdict = Membership::member;
         result.text = "belongs to " + name(result.best);
-    } else if (const ClassAnswer* near = result.nearest < 0 ? nullptr : &result.answers[static_cast<std::size_t>(result.nearest)];
-               near != nullptr && near->verdict == Membership::undecided && silent < result.answers.size()) {
-        result.text = "cannot decide: nearest to " + name(result.nearest) + ", which cannot tell: " + near->undecided;
-    } else if (silent == result.answers.size()) {
+    } else if (const ClassAnswer* nearest_answer =
+                   result.nearest < 0 ? nullptr : &result.answers[static_cast<std::size_t>(result.nearest)];
+               nearest_answer != nullptr && nearest_answer->verdict == Membership::undecided &&
+               undecided_count < result.answers.size()) {
+        result.text =
+            fmt::format("cannot decide: nearest to {}, which is undecided: {}", name(result.nearest), nearest_answer->undecided);
+    } else if (undecided_count == result.answers.size()) {
         result.text = "cannot decide, because " + result.answers.front().undecided;
         if (result.nearest >= 0 && result.answers.size() > 1) result.text += "; nearest to " + name(result.nearest);
     } else {
         result.verdict = Membership::other;
         result.text = result.answers.size() == 1 ? "does not belong to " + name(0) : "belongs to none";
-        if (silent > 0) result.text += " of those that can tell";
+        if (undecided_count > 0) result.text += " of the classes that are decided";
         if (result.answers.size() > 1 && result.nearest >= 0) result.text += "; nearest to " + name(result.nearest);
     }
     return result;
@@ -280,11 +294,12 @@ Classification decide(std::string object, std::vector<ClassAnswer> answers, cons
 void ClassifyOptions::describe(OptionList& visit) {
     fit.describe(visit);
     visit("correspondence", correspondence,
-          "an object whose triangles are the template's is taken as it is (auto, given); the template is fitted to it (fitted)",
+          "an object with the template's triangles is used as given (auto, given); the template is fitted to it (fitted)",
           Choices{"auto", "given", "fitted"});
-    visit("strict", strict,
-          "the template lies on an object by --max-off alone; else as well where it lies as it does on the class's members",
-          Anything{});
+    visit(
+        "strict", strict,
+        "whether the template lies on an object is decided by --max-off alone; otherwise also by how well it lies on the members",
+        Anything{});
     visit("attributes", attributes, "also reject objects by attribute values out of range", Anything{});
     visit("close", close, "classes are not distinguished if their scores differ by less than this share of the better one",
           Range{0, 1});

@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/shape_classes/fragment_thresholds.h"
 
+#include <fmt/core.h>
+
 #include <set>
 
 namespace ostraka {
@@ -14,10 +16,10 @@ std::string object_name(const Path& file) {
 }
 
 void check_object_names(const std::vector<std::string>& files) {
-    std::set<std::string> taken;
+    std::set<std::string> names_found;
     for (const std::string& file : files)
-        if (!taken.insert(object_name(file)).second)
-            fail_usage("two objects are called '" + object_name(file) + "'", "rename one of the files");
+        if (!names_found.insert(object_name(file)).second)
+            fail_usage(fmt::format("two objects are called '{}'", object_name(file)), "rename one of the files");
 }
 
 WholeObject read_member(const Path& file) {
@@ -40,14 +42,14 @@ ClassTemplate class_template(const Template& package) {
 ClassWithTemplate read_class_with_template(const Path& file) {
     ClassWithTemplate result;
     result.learnt = read_class(file);
-    const std::string& known = result.learnt.template_file;
-    if (is_landmark_file(known)) {
-        result.landmarks = read_landmark_template(known);
+    const std::string& template_file = result.learnt.template_file;
+    if (is_landmark_file(template_file)) {
+        result.landmarks = read_landmark_template(template_file);
     } else {
-        result.package = load_template(read_template(known));
-        check_usable(result.package, known);
+        result.package = load_template(read_template(template_file));
+        check_usable(result.package, template_file);
     }
-    check_topology(result.learnt, file.string(), result.known().mesh, known);
+    check_topology(result.learnt, file.string(), result.known().mesh, template_file);
     return result;
 }
 

@@ -8,6 +8,8 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/geom/with_points.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -23,36 +25,39 @@ using Eigen::Vector3d;
 
 std::string fit_is_off(const MemberFit& fit, double maximum) {
     if (!fit.residuals || !(fit.residuals->off() > maximum)) return {};
-    const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
-    return "the template does not lie on it: " + per_cent(fit.residuals->unmatched) + " of the template and " +
-           per_cent(fit.residuals->unexplained) + " of the object are off the other, " + per_cent(maximum) +
-           " on average is the most";
+    const auto per_cent = [](double fraction) { return digits(100 * fraction, 3) + " %"; };
+    return fmt::format(
+        "the template does not lie on it: {} of the template and {} of the object are off the other surface; their mean may be "
+        "at most {}",
+        per_cent(fit.residuals->unmatched), per_cent(fit.residuals->unexplained), per_cent(maximum));
 }
 
 std::vector<std::string> explained_text(const MemberFit& fit) {
     std::vector<std::string> lines;
     if (!fit.residuals) return lines;
-    const auto per_cent = [](double share) { return digits(100 * share, 3) + " %"; };
+    const auto per_cent = [](double fraction) { return digits(100 * fraction, 3) + " %"; };
     const auto place = [](const Point& p) {
-        return "(" + digits(p.x(), 4) + ", " + digits(p.y(), 4) + ", " + digits(p.z(), 4) + ")";
+        return fmt::format("({}, {}, {})", digits(p.x(), 4), digits(p.y(), 4), digits(p.z(), 4));
     };
-    lines.push_back("the template explains " + per_cent(1 - fit.residuals->unexplained) + " of its surface within " +
-                    digits(fit.near, 3) + "; " + per_cent(1 - fit.residuals->unmatched) + " of the template lies on it");
+    lines.push_back(fmt::format("the template explains {} of its surface within {}; {} of the template lies on it",
+                                per_cent(1 - fit.residuals->unexplained), digits(fit.near, 3),
+                                per_cent(1 - fit.residuals->unmatched)));
     if (fit.cavity > 0)
-        lines.push_back("it is hollow: " + per_cent(fit.cavity) +
-                        " of its surface is the inside of walls whose outside lies on the template, and does not count");
+        lines.push_back(fmt::format(
+            "it is hollow: {} of its surface is the inside of walls whose outside lies on the template, and is ignored",
+            per_cent(fit.cavity)));
     constexpr std::size_t maximum = 3;
     for (std::size_t i = 0; i < std::min(maximum, fit.foreign.size()); ++i) {
         const OffRegion& region = fit.foreign[i];
-        lines.push_back("foreign: " + per_cent(region.share) + " of its surface about " + place(region.middle) +
-                        ", farthest at " + place(region.at) + " by " + digits(region.farthest, 3) +
-                        (region.part.empty() ? "" : "; the nearest part of the template is " + region.part));
+        lines.push_back(fmt::format("foreign: {} of its surface about {}, farthest at {} by {}{}", per_cent(region.share),
+                                    place(region.middle), place(region.at), digits(region.farthest, 3),
+                                    region.part.empty() ? "" : "; the nearest part of the template is " + region.part));
     }
     for (std::size_t i = 0; i < std::min(maximum, fit.missing.size()); ++i) {
         const OffRegion& region = fit.missing[i];
-        lines.push_back("missing: " + per_cent(region.share) + " of the template" +
-                        (region.part.empty() ? "" : ", of its part " + region.part) + ", which came to lie about " +
-                        place(region.middle) + ", farthest by " + digits(region.farthest, 3));
+        lines.push_back(fmt::format("missing: {} of the template{}, located about {} after the fit, farthest by {}",
+                                    per_cent(region.share), region.part.empty() ? "" : ", of its part " + region.part,
+                                    place(region.middle), digits(region.farthest, 3)));
     }
     return lines;
 }
@@ -68,11 +73,11 @@ MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member) 
     if (!in_correspondence(mesh, member.mesh))
         fail_input(
             member.name,
-            "is not in correspondence with the template: it has " + std::to_string(member.mesh.number_of_vertices()) +
-                " vertices and " + std::to_string(member.mesh.number_of_faces()) + " faces, the template " +
-                std::to_string(mesh.number_of_vertices()) + " and " + std::to_string(mesh.number_of_faces()) +
-                (mesh.number_of_vertices() == member.mesh.number_of_vertices() ? ", or the faces join other vertices" : ""),
-            "leave out --correspondence: the template is then fitted to it");
+            fmt::format("is not in correspondence with the template: it has {} vertices and {} faces, the template {} and {}{}",
+                        member.mesh.number_of_vertices(), member.mesh.number_of_faces(), mesh.number_of_vertices(),
+                        mesh.number_of_faces(),
+                        mesh.number_of_vertices() == member.mesh.number_of_vertices() ? ", or the faces differ" : ""),
+            "omit --correspondence, so that the template is fitted to it");
     MemberFit fit;
     fit.placed_by = "correspondence";
     fit.points.assign(member.mesh.points().begin(), member.mesh.points().end());
@@ -84,7 +89,7 @@ MemberFit member_in_correspondence(const Mesh& mesh, const WholeObject& member) 
 namespace {
 
 /// The edge vectors of a triangle as two columns, in a frame of its plane.
-Matrix2d flat(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+Matrix2d edge_matrix(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     const Vector3d u = b - a, v = c - a;
     const double length = u.norm(), along = length > 0 ? u.dot(v) / length : 0;
     Matrix2d m;
@@ -105,37 +110,37 @@ struct Residuals {
     std::vector<OffRegion> foreign, missing;
 };
 
-Residuals residuals_of(const Mesh& rest, const Mesh& fitted, const Mesh& object, double scale, double observed) {
+Residuals residuals_of(const Mesh& undeformed, const Mesh& fitted, const Mesh& object, double scale, double observed) {
     Residuals residuals;
-    const double diagonal = scale * box_diagonal(rest);
-    SurfaceOff there = surface_off(fitted, SurfaceSearch(object), observed * diagonal),
-               back = surface_off(object, SurfaceSearch(fitted), observed * diagonal);
-    residuals.numbers.distance = there.distance / diagonal;
-    residuals.numbers.unmatched = there.share;
-    residuals.numbers.back = back.distance / diagonal;
-    residuals.numbers.unexplained = back.share;
-    residuals.missing = std::move(there.regions);
-    residuals.foreign = std::move(back.regions);
+    const double diagonal = scale * box_diagonal(undeformed);
+    SurfaceOff template_to_object = surface_off(fitted, SurfaceSearch(object), observed * diagonal),
+               object_to_template = surface_off(object, SurfaceSearch(fitted), observed * diagonal);
+    residuals.numbers.distance = template_to_object.distance / diagonal;
+    residuals.numbers.unmatched = template_to_object.share;
+    residuals.numbers.back = object_to_template.distance / diagonal;
+    residuals.numbers.unexplained = object_to_template.share;
+    residuals.missing = std::move(template_to_object.regions);
+    residuals.foreign = std::move(object_to_template.regions);
     std::vector<Point> points(fitted.points().begin(), fitted.points().end());
-    measure_distortion(rest, points, scale, residuals.numbers);
+    measure_distortion(undeformed, points, scale, residuals.numbers);
     return residuals;
 }
 
 /// The object without the insides of its walls, closed where these are cut off, and their share of its surface. None if there
 /// are no such insides, or if nothing else is left.
-std::optional<std::pair<Mesh, double>> without_insides(const Mesh& fitted, const Mesh& object, double near) {
-    std::vector<bool> keep = insides_of_walls(object, SurfaceSearch(fitted), near);
-    double share = 0;
+std::optional<std::pair<Mesh, double>> without_inner_walls(const Mesh& fitted, const Mesh& object, double max_distance) {
+    std::vector<bool> keep = insides_of_walls(object, SurfaceSearch(fitted), max_distance);
+    double inner_fraction = 0;
     const double area = surface_area(object);
     for (const Face f : object.faces())
-        if (keep[f]) share += face_area(object, f) / area;
-    if (!(share > 0) || !(share < 0.9)) return {};
+        if (keep[f]) inner_fraction += face_area(object, f) / area;
+    if (!(inner_fraction > 0) || !(inner_fraction < 0.9)) return {};
     keep.flip();
     Mesh outer = keep_faces(object, keep).mesh;
     if (holes_of(object).empty())
         for (const Halfedge border : holes_of(outer))
             if (outer.is_border(border)) close_hole(outer, border);
-    return std::pair(std::move(outer), share);
+    return std::pair(std::move(outer), inner_fraction);
 }
 
 /// The regions transformed by a motion.
@@ -157,8 +162,8 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
     const AlignSurface object(member.mesh, options.alignment.samples), rest(mesh, options.alignment.samples);
     const double ratio = object.size() / rest.size();
     const Mesh scaled = scaled_by(mesh, ratio);
-    const AlignSurface whole(scaled, options.alignment.samples);
-    std::vector<Motion> starts = principal_starts(whole, object);
+    const AlignSurface scaled_surface(scaled, options.alignment.samples);
+    std::vector<Motion> initial_motions = principal_starts(scaled_surface, object);
     // The given pose, centroid on centroid.
     const auto middle = [](const Mesh& surface) {
         Vector3d sum = Vector3d::Zero();
@@ -170,24 +175,25 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
         }
         return Vector3d(sum / area);
     };
-    Motion same;
-    same.translation = middle(member.mesh) - middle(scaled);
-    starts.push_back(same);
-    std::vector<Alignment> found;
-    for (const Motion& start : starts) found.push_back(align(whole, object, {start}, options.alignment));
-    std::stable_sort(found.begin(), found.end(), [](const Alignment& a, const Alignment& b) { return a.distance < b.distance; });
+    Motion given_pose;
+    given_pose.translation = middle(member.mesh) - middle(scaled);
+    initial_motions.push_back(given_pose);
+    std::vector<Alignment> alignments;
+    for (const Motion& start : initial_motions) alignments.push_back(align(scaled_surface, object, {start}, options.alignment));
+    std::stable_sort(alignments.begin(), alignments.end(),
+                     [](const Alignment& a, const Alignment& b) { return a.distance < b.distance; });
     std::vector<Place> places;
-    for (const Alignment& alignment : found) {
+    for (const Alignment& alignment : alignments) {
         // x = s R (ratio p) + t for a point p of the template: the inverse of R and t is applied to the object, the scale to
         // the template.
         Place place;
         place.scale = ratio * alignment.motion.scale;
         place.pose.rotation = alignment.motion.rotation.transpose();
         place.pose.translation = -(place.pose.rotation * alignment.motion.translation);
-        const bool known = std::any_of(places.begin(), places.end(), [&](const Place& other) {
+        const bool is_known = std::any_of(places.begin(), places.end(), [&](const Place& other) {
             return (other.pose.rotation - place.pose.rotation).norm() < 0.2;
         });
-        if (!known) places.push_back(place);
+        if (!is_known) places.push_back(place);
         if (places.size() == static_cast<std::size_t>(options.tries)) break;
     }
     return places;
@@ -196,19 +202,20 @@ std::vector<Place> places_by_surface(const Mesh& mesh, const WholeObject& member
 }  // namespace
 
 void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, double scale, FitResiduals& residuals) {
-    std::vector<Vector3d> rest, now;
+    std::vector<Vector3d> rest_points, current_points;
     for (const Vertex v : mesh.vertices()) {
-        rest.push_back(scale * eigen(mesh.point(v)));
-        now.push_back(eigen(points[v]));
+        rest_points.push_back(scale * eigen(mesh.point(v)));
+        current_points.push_back(eigen(points[v]));
     }
     double area = 0, squares = 0;
     constexpr double maximum = 3;  // of a logarithm: limits the weight of triangles that collapse
     for (const Face face : mesh.faces()) {
         const auto c = corners(mesh, face);
         const double weight = face_area(mesh, face);
-        const Matrix2d before = flat(rest[c[0]], rest[c[1]], rest[c[2]]), after = flat(now[c[0]], now[c[1]], now[c[2]]);
-        if (!(weight > 0) || !(std::abs(before.determinant()) > 0)) continue;
-        const Vector2d s = singular_values(after * before.inverse());
+        const Matrix2d rest_edges = edge_matrix(rest_points[c[0]], rest_points[c[1]], rest_points[c[2]]),
+                       current_edges = edge_matrix(current_points[c[0]], current_points[c[1]], current_points[c[2]]);
+        if (!(weight > 0) || !(std::abs(rest_edges.determinant()) > 0)) continue;
+        const Vector2d s = singular_values(current_edges * rest_edges.inverse());
         double sum = 0;
         for (int k = 0; k < 2; ++k) {
             const double log = s[k] > 0 ? std::clamp(std::log(s[k]), -maximum, maximum) : -maximum;
@@ -221,10 +228,11 @@ void measure_distortion(const Mesh& mesh, const std::vector<Point>& points, doub
     double length = 0, turned = 0;
     for (const Edge edge : mesh.edges()) {
         if (mesh.is_border(edge)) continue;
-        const double weight = (rest[mesh.vertex(edge, 0)] - rest[mesh.vertex(edge, 1)]).norm();
-        const double turn = std::remainder(angle_at(mesh, edge, now) - angle_at(mesh, edge, rest), 2 * std::acos(-1.0));
+        const double weight = (rest_points[mesh.vertex(edge, 0)] - rest_points[mesh.vertex(edge, 1)]).norm();
+        const double angle_change =
+            std::remainder(angle_at(mesh, edge, current_points) - angle_at(mesh, edge, rest_points), 2 * std::acos(-1.0));
         length += weight;
-        turned += weight * turn * turn;
+        turned += weight * angle_change * angle_change;
     }
     residuals.bend = length > 0 ? std::sqrt(turned / length) : 0;
 }
@@ -243,43 +251,44 @@ std::string without_number(const std::string& tag) {
 /// Gives regions with numbered tags ("part 0", "part 1") a common tag in both sets, so that they are matched by position and
 /// shape: the two numberings need not agree. Landmarks keep their names. Returns the common tags.
 std::set<std::string> forget_numbers(AnnotationSet& a, AnnotationSet& b) {
-    std::set<std::string> counted;
+    std::set<std::string> numbered_stems;
     for (const AnnotationSet* set : {&a, &b}) {
         std::map<std::string, std::set<std::string>> tags;
-        for (const Annotation& one : set->annotations)
-            if (one.type == AnnotationType::region && without_number(one.tag) != one.tag)
-                tags[without_number(one.tag)].insert(one.tag);
-        for (const auto& [stem, list] : tags)
-            if (list.size() > 1) counted.insert(stem);
+        for (const Annotation& annotation : set->annotations)
+            if (annotation.type == AnnotationType::region && without_number(annotation.tag) != annotation.tag)
+                tags[without_number(annotation.tag)].insert(annotation.tag);
+        for (const auto& [stem, numbered_tags] : tags)
+            if (numbered_tags.size() > 1) numbered_stems.insert(stem);
     }
     for (AnnotationSet* set : {&a, &b})
-        for (Annotation& one : set->annotations)
-            if (one.type == AnnotationType::region && counted.count(without_number(one.tag)) > 0)
-                one.tag = without_number(one.tag);
-    return counted;
+        for (Annotation& annotation : set->annotations)
+            if (annotation.type == AnnotationType::region && numbered_stems.count(without_number(annotation.tag)) > 0)
+                annotation.tag = without_number(annotation.tag);
+    return numbered_stems;
 }
 
 }  // namespace
 
 MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObject& member, const MemberFitOptions& options) {
     check_options(options, "fit");
-    if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "is it the right file?");
-    if (!(surface_area(member.mesh) > 0)) fail_input(member.name, "has no area", "is it the right file?");
+    if (!(surface_area(mesh) > 0)) fail_input("template", "has no area", "check that it is the right file");
+    if (!(surface_area(member.mesh) > 0)) fail_input(member.name, "has no area", "check that it is the right file");
     MemberFit best;
     std::vector<Place> places;
     if (!options.ignore_landmarks) {
         const auto pairs = common_landmarks(mesh, set, member.mesh, member.annotations, &best.notes);
         if (pairs.size() >= 3) {
             const CommonPlacement placement = place_by_landmarks({pairs}, options.placement);
-            const FragmentPlacement& one = placement.fragments.front();
-            if (one.problem.empty()) {
-                places.push_back({placement.scale, one.pose});
+            const FragmentPlacement& fragment_placement = placement.fragments.front();
+            if (fragment_placement.problem.empty()) {
+                places.push_back({placement.scale, fragment_placement.pose});
                 best.placed_by = "landmarks";
-            } else if (one.mirrored) {
-                best.problem = one.problem;
+            } else if (fragment_placement.mirrored) {
+                best.problem = fragment_placement.problem;
                 return best;
             } else {
-                best.notes.push_back("landmarks do not place it: " + one.problem + "; placed by its surface");
+                best.notes.push_back(
+                    fmt::format("it cannot be placed by landmarks: {}; it is placed by its surface", fragment_placement.problem));
             }
         }
     }
@@ -287,26 +296,28 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         places = places_by_surface(mesh, member, options);
         best.placed_by = "surface";
     }
-    AnnotationSet ours, theirs;  // with common tags instead of numbered ones
+    AnnotationSet template_annotations, member_annotations;  // with common tags instead of numbered ones
     if (!set.annotations.empty() && !member.annotations.annotations.empty()) {
-        ours = set;
-        theirs = member.annotations;
-        for (const std::string& tag : forget_numbers(ours, theirs))
-            best.notes.push_back("the regions '" + tag +
-                                 "' are counted up: they are matched by place and shape, not by their numbers");
+        template_annotations = set;
+        member_annotations = member.annotations;
+        for (const std::string& tag : forget_numbers(template_annotations, member_annotations))
+            best.notes.push_back(
+                fmt::format("the regions '{}' are numbered: they are matched by position and shape, not by their numbers", tag));
     }
     double minimum = std::numeric_limits<double>::infinity();
     for (const Place& place : places) {
         const Mesh scaled = scaled_by(mesh, place.scale);
         PlacedFragment placed{moved(member.mesh, place.pose), &member.annotations, {}, {}};
-        placed.matches = match_annotations(scaled, ours, member.mesh, theirs, place.pose, {}, options.annotations);
-        std::vector<PlacedFragment> list;
-        list.push_back(std::move(placed));
-        const NonRigidFit fit = fit_template(scaled, set, list, options.fit);
+        placed.matches =
+            match_annotations(scaled, template_annotations, member.mesh, member_annotations, place.pose, {}, options.annotations);
+        std::vector<PlacedFragment> placed_fragments;
+        placed_fragments.push_back(std::move(placed));
+        const NonRigidFit fit = fit_template(scaled, set, placed_fragments, options.fit);
         const Mesh fitted = with_points(mesh, fit.points);
-        const auto outer = without_insides(fitted, list.front().mesh, options.observed * place.scale * box_diagonal(mesh));
+        const auto outer =
+            without_inner_walls(fitted, placed_fragments.front().mesh, options.observed * place.scale * box_diagonal(mesh));
         const Residuals residuals =
-            residuals_of(mesh, fitted, outer ? outer->first : list.front().mesh, place.scale, options.observed);
+            residuals_of(mesh, fitted, outer ? outer->first : placed_fragments.front().mesh, place.scale, options.observed);
         const double cost = std::hypot(residuals.numbers.distance, residuals.numbers.back);
         if (!(cost < minimum)) continue;
         minimum = cost;
@@ -316,12 +327,12 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         best.points.clear();
         best.cavity = outer ? outer->second : 0;
         best.outer = outer ? std::make_shared<const Mesh>(outer->first) : nullptr;
-        const Motion back = place.pose.inverse();
-        best.foreign = moved_regions(residuals.foreign, back);
-        best.missing = moved_regions(residuals.missing, back);
-        for (const Point& p : fit.points) best.points.push_back(point_of(back(eigen(p))));
+        const Motion to_object = place.pose.inverse();
+        best.foreign = moved_regions(residuals.foreign, to_object);
+        best.missing = moved_regions(residuals.missing, to_object);
+        for (const Point& p : fit.points) best.points.push_back(point_of(to_object(eigen(p))));
     }
-    if (best.points.empty()) best.problem = "the fit has no usable result: look at the mesh with 'mesh info'";
+    if (best.points.empty()) best.problem = "the fit has no usable result: check the mesh with 'mesh info'";
     return best;
 }
 

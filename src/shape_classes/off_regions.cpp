@@ -11,14 +11,14 @@ namespace ostraka {
 namespace {
 
 /// Points sampled evenly over a surface: the given number, or the centroid of each face if there are fewer faces.
-struct Spread {
+struct SurfaceSamples {
     std::vector<Index> faces;
     std::vector<Point> points;
     std::vector<Vector> normals;
 };
 
-Spread spread_over(const Mesh& mesh, std::size_t count) {
-    Spread spread;
+SurfaceSamples sample_surface(const Mesh& mesh, std::size_t count) {
+    SurfaceSamples surface_samples;
     const double area = surface_area(mesh);
     double sum = 0, next = 0.5 * area / static_cast<double>(count);
     for (const Face face : mesh.faces()) {
@@ -27,12 +27,12 @@ Spread spread_over(const Mesh& mesh, std::size_t count) {
         const Vector normal = area_vector(mesh, face);
         const double length = std::sqrt(normal.squared_length());
         for (; next < sum; next += area / static_cast<double>(count)) {
-            spread.faces.push_back(face.idx());
-            spread.points.push_back(centroid(mesh, face));
-            spread.normals.push_back(length > 0 ? normal / length : normal);
+            surface_samples.faces.push_back(face.idx());
+            surface_samples.points.push_back(centroid(mesh, face));
+            surface_samples.normals.push_back(length > 0 ? normal / length : normal);
         }
     }
-    return spread;
+    return surface_samples;
 }
 
 struct SampleOff {
@@ -42,61 +42,63 @@ struct SampleOff {
 };
 
 constexpr std::size_t max_samples = 5000;
-constexpr double like_normals = 0.5;  ///< cosine of 60 degrees
-constexpr double least_share = 0.01;  ///< minimum area of a reported region
+constexpr double min_normal_cosine = 0.5;  ///< cosine of 60 degrees
+constexpr double min_region_share = 0.01;  ///< minimum area of a reported region
 
 /// For each face, a sample on it, or on the nearest face that has one.
-std::vector<std::size_t> samples_of_faces(const Mesh& mesh, const Spread& spread) {
-    constexpr auto none = static_cast<std::size_t>(-1);
-    std::vector<std::size_t> sample(mesh.number_of_faces(), none);
+std::vector<std::size_t> samples_of_faces(const Mesh& mesh, const SurfaceSamples& surface_samples) {
+    constexpr auto no_sample = static_cast<std::size_t>(-1);
+    std::vector<std::size_t> sample(mesh.number_of_faces(), no_sample);
     std::vector<Index> front;
-    for (std::size_t i = 0; i < spread.faces.size(); ++i)
-        if (sample[spread.faces[i]] == none) sample[spread.faces[i]] = i, front.push_back(spread.faces[i]);
+    for (std::size_t i = 0; i < surface_samples.faces.size(); ++i)
+        if (sample[surface_samples.faces[i]] == no_sample)
+            sample[surface_samples.faces[i]] = i, front.push_back(surface_samples.faces[i]);
     for (std::size_t i = 0; i < front.size(); ++i)
         for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(front[i])))) {
             const Halfedge o = mesh.opposite(h);
             if (mesh.is_border(o)) continue;
             const Index next = mesh.face(o).idx();
-            if (sample[next] == none) sample[next] = sample[front[i]], front.push_back(next);
+            if (sample[next] == no_sample) sample[next] = sample[front[i]], front.push_back(next);
         }
     return sample;
 }
 
-std::vector<OffRegion> regions_of(const Mesh& mesh, const Spread& spread, const std::vector<SampleOff>& samples) {
+std::vector<OffRegion> regions_of(const Mesh& mesh, const SurfaceSamples& surface_samples,
+                                  const std::vector<SampleOff>& samples) {
     std::vector<OffRegion> regions;
-    const std::vector<std::size_t> sample = samples_of_faces(mesh, spread);
+    const std::vector<std::size_t> sample = samples_of_faces(mesh, surface_samples);
     const double area = surface_area(mesh);
-    std::vector<bool> seen(mesh.number_of_faces());
+    std::vector<bool> is_visited(mesh.number_of_faces());
     const auto is_off = [&](Index face) { return sample[face] < samples.size() && samples[sample[face]].off; };
     for (const Face seed : mesh.faces()) {
-        if (seen[seed] || !is_off(seed.idx())) continue;
+        if (is_visited[seed] || !is_off(seed.idx())) continue;
         OffRegion region;
         std::vector<Index> front{seed.idx()};
-        seen[seed] = true;
+        is_visited[seed] = true;
         Vector sum(0, 0, 0);
-        double own = 0;
+        double region_area = 0;
         for (std::size_t i = 0; i < front.size(); ++i) {
             const Face face(front[i]);
             const double a = face_area(mesh, face);
-            own += a;
+            region_area += a;
             sum += a * (centroid(mesh, face) - CGAL::ORIGIN);
-            const SampleOff& here = samples[sample[face]];
-            if (region.nearest_face == no_index || here.distance > region.farthest) {
-                region.farthest = here.distance;
-                region.at = spread.points[sample[face]];
-                region.face = spread.faces[sample[face]];
-                region.nearest_face = here.nearest;
+            const SampleOff& sample_off = samples[sample[face]];
+            if (region.nearest_face == no_index || sample_off.distance > region.farthest) {
+                region.farthest = sample_off.distance;
+                region.at = surface_samples.points[sample[face]];
+                region.face = surface_samples.faces[sample[face]];
+                region.nearest_face = sample_off.nearest;
             }
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
                 const Halfedge o = mesh.opposite(h);
                 if (mesh.is_border(o)) continue;
                 const Index next = mesh.face(o).idx();
-                if (!seen[next] && is_off(next)) seen[next] = true, front.push_back(next);
+                if (!is_visited[next] && is_off(next)) is_visited[next] = true, front.push_back(next);
             }
         }
-        region.share = own / area;
-        if (region.share < least_share) continue;
-        region.middle = CGAL::ORIGIN + sum / own;
+        region.share = region_area / area;
+        if (region.share < min_region_share) continue;
+        region.middle = CGAL::ORIGIN + sum / region_area;
         regions.push_back(region);
     }
     std::stable_sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
@@ -105,18 +107,20 @@ std::vector<OffRegion> regions_of(const Mesh& mesh, const Spread& spread, const 
 
 }  // namespace
 
-std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& other, double near) {
-    const Spread spread = spread_over(object, max_samples);
-    const SurfaceSearch own(object);
-    std::vector<char> inside(spread.points.size(), 0);
+std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& other, double max_distance) {
+    const SurfaceSamples surface_samples = sample_surface(object, max_samples);
+    const SurfaceSearch object_search(object);
+    std::vector<char> inside(surface_samples.points.size(), 0);
     parallel_for(inside.size(), [&](std::size_t i) {
-        const SurfaceHit hit = other.closest(spread.points[i]);
+        const SurfaceHit hit = other.closest(surface_samples.points[i]);
         const Vector normal = other.normal(hit.face);
-        if (!(normal * spread.normals[i] < 0) || !(normal * (spread.points[i] - hit.point) < 0)) return;
-        if (hit.distance <= near && other.closest_compatible(spread.points[i], spread.normals[i], like_normals, near)) return;
-        inside[i] = own.closest_compatible(hit.point, normal, like_normals, near).has_value();
+        if (!(normal * surface_samples.normals[i] < 0) || !(normal * (surface_samples.points[i] - hit.point) < 0)) return;
+        if (hit.distance <= max_distance &&
+            other.closest_compatible(surface_samples.points[i], surface_samples.normals[i], min_normal_cosine, max_distance))
+            return;
+        inside[i] = object_search.closest_compatible(hit.point, normal, min_normal_cosine, max_distance).has_value();
     });
-    const std::vector<std::size_t> sample = samples_of_faces(object, spread);
+    const std::vector<std::size_t> sample = samples_of_faces(object, surface_samples);
     std::vector<bool> flags(object.number_of_faces(), false);
     for (const Face f : object.faces()) flags[f] = sample[f] < inside.size() && inside[sample[f]] != 0;
     const FacePieces pieces = face_pieces(
@@ -124,27 +128,29 @@ std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& othe
     std::vector<double> area(pieces.count, 0);
     for (const Face f : object.faces())
         if (flags[f]) area[pieces.of_face[f]] += face_area(object, f);
-    const double least = least_share * surface_area(object);
-    for (const Face f : object.faces()) flags[f] = flags[f] && area[pieces.of_face[f]] >= least;
+    const double min_area = min_region_share * surface_area(object);
+    for (const Face f : object.faces()) flags[f] = flags[f] && area[pieces.of_face[f]] >= min_area;
     return flags;
 }
 
-SurfaceOff surface_off(const Mesh& mesh, const SurfaceSearch& other, double near) {
-    const Spread spread = spread_over(mesh, max_samples);
-    std::vector<SampleOff> samples(spread.points.size());
+SurfaceOff surface_off(const Mesh& mesh, const SurfaceSearch& other, double max_distance) {
+    const SurfaceSamples surface_samples = sample_surface(mesh, max_samples);
+    std::vector<SampleOff> samples(surface_samples.points.size());
     parallel_for(samples.size(), [&](std::size_t i) {
-        const SurfaceHit hit = other.closest(spread.points[i]);
-        samples[i] = {hit.distance, hit.face,
-                      hit.distance > near || !other.closest_compatible(spread.points[i], spread.normals[i], like_normals, near)};
+        const SurfaceHit hit = other.closest(surface_samples.points[i]);
+        samples[i] = {
+            hit.distance, hit.face,
+            hit.distance > max_distance || !other.closest_compatible(surface_samples.points[i], surface_samples.normals[i],
+                                                                     min_normal_cosine, max_distance)};
     });
     SurfaceOff result;
     const auto n = static_cast<double>(std::max<std::size_t>(1, samples.size()));
-    for (const SampleOff& one : samples) {
-        result.distance += one.distance * one.distance / n;
-        result.share += one.off ? 1 / n : 0;
+    for (const SampleOff& sample : samples) {
+        result.distance += sample.distance * sample.distance / n;
+        result.share += sample.off ? 1 / n : 0;
     }
     result.distance = std::sqrt(result.distance);
-    result.regions = regions_of(mesh, spread, samples);
+    result.regions = regions_of(mesh, surface_samples, samples);
     return result;
 }
 

@@ -3,6 +3,8 @@
 #include "ostraka/geom/with_points.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -21,20 +23,20 @@ AnnotationSet copy_of(const AnnotationSet& set) {
 
 }  // namespace
 
-Propagated propagate(const ClassTemplate& known, const WholeObject& member, const PropagateOptions& options) {
+Propagated propagate(const ClassTemplate& class_template, const WholeObject& member, const PropagateOptions& options) {
     Propagated result;
-    result.fit = fit_by_method(known, member, options.correspondence, options.fit);
+    result.fit = fit_by_method(class_template, member, options.correspondence, options.fit);
     if (!result.fit.problem.empty()) {
-        result.lost = known.set.annotations.size();
+        result.lost = class_template.set.annotations.size();
         return result;
     }
-    if (std::string off = fit_is_off(result.fit, options.fit.max_off); !off.empty()) {
+    if (std::string off_message = fit_is_off(result.fit, options.fit.max_off); !off_message.empty()) {
         result.lies_on = false;
-        result.notes.push_back(std::move(off));
+        result.notes.push_back(std::move(off_message));
     }
-    const Mesh fitted = with_points(known.mesh, result.fit.points);
-    result.on_template = copy_of(known.set);
-    move_extents(known.mesh, known.set, fitted, result.on_template);
+    const Mesh fitted = with_points(class_template.mesh, result.fit.points);
+    result.on_template = copy_of(class_template.set);
+    move_extents(class_template.mesh, class_template.set, fitted, result.on_template);
     for (std::string& note : refresh_measures(fitted, result.on_template).notes) result.notes.push_back(std::move(note));
     if (result.fit.placed_by == "correspondence") {
         result.on_member = copy_of(result.on_template);
@@ -43,10 +45,11 @@ Propagated propagate(const ClassTemplate& known, const WholeObject& member, cons
     TransferResult carried = transfer(fitted, result.on_template, SurfaceSearch(member.mesh), options.transfer);
     for (const TransferScore& score : carried.scores)
         if (score.outcome != TransferOutcome::kept || !score.note.empty())
-            result.notes.push_back("annotation " + std::to_string(score.id) + " (" + score.tag + ") " + to_string(score.outcome) +
-                                   (score.note.empty() ? "" : ": " + score.note));
+            result.notes.push_back(fmt::format("annotation {} ({}) {}{}", score.id, score.tag, to_string(score.outcome),
+                                               score.note.empty() ? "" : ": " + score.note));
     result.on_member = std::move(carried.annotations);
-    result.lost = known.set.annotations.size() - std::min(known.set.annotations.size(), result.on_member->annotations.size());
+    result.lost = class_template.set.annotations.size() -
+                  std::min(class_template.set.annotations.size(), result.on_member->annotations.size());
     move_extents(fitted, result.on_template, member.mesh, *result.on_member);
     static_cast<void>(refresh_measures(member.mesh, *result.on_member));
     return result;

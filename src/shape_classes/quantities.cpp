@@ -7,6 +7,8 @@
 #include "ostraka/relation/check.h"
 #include "ostraka/semantic/measure_constraints.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <map>
 #include <set>
@@ -21,7 +23,8 @@ QuantityKind quantity_kind(const std::string& word) {
     for (const QuantityKind kind : {QuantityKind::proportion, QuantityKind::constraint, QuantityKind::relation,
                                     QuantityKind::part, QuantityKind::attribute, QuantityKind::geometry})
         if (to_string(kind) == word) return kind;
-    fail_usage("'" + word + "' is no kind of quantity", "use proportion, constraint, relation, part, attribute or geometry");
+    fail_usage(fmt::format("'{}' is not a kind of quantity", word),
+               "use proportion, constraint, relation, part, attribute or geometry");
 }
 
 std::string ClassQuantity::key() const {
@@ -33,13 +36,13 @@ std::string ClassQuantity::text() const {
         case QuantityKind::geometry:
             return name;
         case QuantityKind::part:
-            return id < 0 ? name : name + " of part " + std::to_string(id) + (of.empty() ? "" : " (" + of + ")");
+            return id < 0 ? name : fmt::format("{} of part {}{}", name, id, of.empty() ? "" : fmt::format(" ({})", of));
         case QuantityKind::attribute:
-            return name + " of " + of;
+            return fmt::format("{} of {}", name, of);
         case QuantityKind::proportion:
-            return "proportion " + std::to_string(id) + ", " + name;
+            return fmt::format("proportion {}, {}", id, name);
         default:
-            return to_string(kind) + " " + std::to_string(id) + " (" + of + "), " + name;
+            return fmt::format("{} {} ({}), {}", to_string(kind), id, of, name);
     }
 }
 
@@ -58,13 +61,13 @@ std::vector<Point> points_of(const Landmarks& landmarks) {
 
 std::vector<Point> in_template_frame(const Mesh& mesh, const std::vector<Point>& points, bool sizes) {
     const Landmarks goal = landmarks_of({mesh.points().begin(), mesh.points().end()});
-    Landmarks own = landmarks_of(points);
+    Landmarks landmarks = landmarks_of(points);
     if (!sizes) {
-        const double size = centroid_size(own);
-        if (!(size > 0)) fail_input("shape", "all its vertices are in one place", "is it the right file?");
-        own *= centroid_size(goal) / size;
+        const double size = centroid_size(landmarks);
+        if (!(size > 0)) fail_input("shape", "all its vertices coincide", "check that it is the right file");
+        landmarks *= centroid_size(goal) / size;
     }
-    return points_of(procrustes(own, goal).apply(own));
+    return points_of(procrustes(landmarks, goal).apply(landmarks));
 }
 
 namespace {
@@ -90,13 +93,13 @@ std::optional<ClassQuantity> ratio_of(const Mesh& shape, const AnnotationSet& se
     const Attribute *first = named(parameters, "measure1", *a), *second = named(parameters, "measure2", *b);
     if (first == nullptr || second == nullptr) return {};
     ClassQuantity quantity{QuantityKind::proportion, relationship.id,
-                           first->name + " of " + a->tag + " / " + second->name + " of " + b->tag, relationship.type};
+                           fmt::format("{} of {} / {} of {}", first->name, a->tag, second->name, b->tag), relationship.type};
     const double below = evaluate(shape, *b, second->measure);
     if (below > 0) quantity.value = evaluate(shape, *a, first->measure) / below;
     return quantity;
 }
 
-void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<ClassQuantity>& list) {
+void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<ClassQuantity>& quantities) {
     for (const Annotation& annotation : set.annotations)
         for (const Attribute& attribute : annotation.attributes) {
             ClassQuantity quantity{QuantityKind::attribute, annotation.id, attribute.name, annotation.tag};
@@ -112,32 +115,32 @@ void add_attributes(const Mesh& shape, const AnnotationSet& set, std::vector<Cla
                 continue;
             }
             if (!std::isfinite(*quantity.value)) quantity.value.reset();
-            list.push_back(std::move(quantity));
+            quantities.push_back(std::move(quantity));
         }
 }
 
 }  // namespace
 
-std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes) {
-    std::vector<ClassQuantity> list;
-    const std::vector<Point> normal = in_template_frame(known.mesh, points, sizes);
+std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_template, const std::vector<Point>& points, bool sizes) {
+    std::vector<ClassQuantity> quantities;
+    const std::vector<Point> normal = in_template_frame(class_template.mesh, points, sizes);
     // Attributes are measured at the object's own size but in the pose of the template, because measures have directions.
-    const Mesh framed = with_points(known.mesh, normal),
-               shape = with_points(known.mesh, in_template_frame(known.mesh, points, true));
+    const Mesh framed = with_points(class_template.mesh, normal),
+               shape = with_points(class_template.mesh, in_template_frame(class_template.mesh, points, true));
     std::map<int, ConstraintReport> constraints;
-    for (ConstraintReport& report : measure_constraints(known.mesh, known.set, known.graph, normal)) {
+    for (ConstraintReport& report : measure_constraints(class_template.mesh, class_template.set, class_template.graph, normal)) {
         const int id = report.id;
         constraints.emplace(id, std::move(report));
     }
-    const auto relations = check_relations(framed, known.set, known.graph);
-    for (std::size_t i = 0; i < known.graph.relationships.size(); ++i) {
-        const Relationship& relationship = known.graph.relationships[i];
+    const auto relations = check_relations(framed, class_template.set, class_template.graph);
+    for (std::size_t i = 0; i < class_template.graph.relationships.size(); ++i) {
+        const Relationship& relationship = class_template.graph.relationships[i];
         const auto add = [&](QuantityKind kind, const std::vector<Deviation>& deviations) {
             for (const Deviation& deviation : deviations) {
                 ClassQuantity quantity{kind, relationship.id, deviation.quantity, relationship.type, deviation.unit};
                 quantity.one_sided = deviation.tolerance.has_value();  // a residual: it is satisfied up to its tolerance
                 if (deviation.value && std::isfinite(*deviation.value)) quantity.value = deviation.value;
-                list.push_back(std::move(quantity));
+                quantities.push_back(std::move(quantity));
             }
         };
         const auto constraint = constraints.find(relationship.id);
@@ -145,12 +148,12 @@ std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const 
             add(QuantityKind::relation, relations[i].parameters.deviations);
         } else if (constraint != constraints.end() && constraint->second.used) {
             if (find_relation_type(relationship.type) != nullptr && relationship.type == "proportion")
-                if (auto ratio = ratio_of(framed, known.set, relationship)) list.push_back(std::move(*ratio));
+                if (auto ratio = ratio_of(framed, class_template.set, relationship)) quantities.push_back(std::move(*ratio));
             add(QuantityKind::constraint, constraint->second.deviations);
         }
     }
-    add_attributes(shape, known.set, list);
-    return list;
+    add_attributes(shape, class_template.set, quantities);
+    return quantities;
 }
 
 bool is_share_of_surface(const ClassQuantity& quantity) {
@@ -159,13 +162,13 @@ bool is_share_of_surface(const ClassQuantity& quantity) {
 }
 
 std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>& residuals) {
-    std::vector<ClassQuantity> list;
+    std::vector<ClassQuantity> quantities;
     const auto add = [&](const char* name, double FitResiduals::*value) {
         ClassQuantity quantity;
         quantity.name = name;
         quantity.one_sided = true;
         if (residuals) quantity.value = (*residuals).*value;
-        list.push_back(std::move(quantity));
+        quantities.push_back(std::move(quantity));
     };
     add("distance", &FitResiduals::distance);
     add("distance back", &FitResiduals::back);
@@ -173,14 +176,14 @@ std::vector<ClassQuantity> geometry_quantities(const std::optional<FitResiduals>
     add("unexplained", &FitResiduals::unexplained);
     add("stretch", &FitResiduals::stretch);
     add("bend", &FitResiduals::bend);
-    return list;
+    return quantities;
 }
 
 std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
-    std::vector<ClassQuantity> list;
+    std::vector<ClassQuantity> quantities;
     const auto add = [&](const std::string& name, const std::optional<double>& value) {
-        list.emplace_back().name = name;
-        list.back().value = value;
+        quantities.emplace_back().name = name;
+        quantities.back().value = value;
     };
     add("compactness", shape.compactness);
     add("geodesic mean", shape.geodesic_mean);
@@ -199,7 +202,7 @@ std::vector<ClassQuantity> geometry_quantities(const WholeShape& shape) {
     add("saddles and peaks", shape.saddles);
     for (std::size_t k = 0; k < WholeShape::spectrum_size; ++k)
         add("tone " + std::to_string(k + 1), k < shape.spectrum.size() ? std::optional(shape.spectrum[k]) : std::nullopt);
-    return list;
+    return quantities;
 }
 
 }  // namespace ostraka

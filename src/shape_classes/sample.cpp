@@ -9,6 +9,8 @@
 #include "ostraka/shape_classes/parts.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -26,11 +28,11 @@ using Pairs = std::vector<std::pair<Index, Index>>;
 Pairs crossings(const Mesh& mesh) { return self_intersections(to_soup(mesh)).pairs; }
 
 /// 1 at the given vertices, decreasing smoothly to 0 at distance `fading_length` along edges.
-std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, double fading_length) {
+std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& start_vertices, double fading_length) {
     std::vector<double> distance(mesh.number_of_vertices(), std::numeric_limits<double>::infinity());
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (const Index v : from) distance[v] = 0, queue.emplace(0, v);
+    for (const Index v : start_vertices) distance[v] = 0, queue.emplace(0, v);
     while (!queue.empty()) {
         const auto [d, v] = queue.top();
         queue.pop();
@@ -50,17 +52,21 @@ std::vector<double> fading(const Mesh& mesh, const std::vector<Index>& from, dou
 
 class Sampler {
 public:
-    Sampler(const ShapeClass& learnt, const ClassTemplate& known, const SampleOptions& options)
-        : learnt_(learnt), known_(known), options_(options), diagonal_(box_diagonal(known.mesh)), own_(crossings(known.mesh)) {
-        frame_ = landmarks_of({known.mesh.points().begin(), known.mesh.points().end()});
-        for (const Relationship& one : known.graph.relationships) constrained_ = constrained_ || one.is_constraint;
-        for (const Annotation& annotation : known.set.annotations)
-            if (is_part(known.mesh, annotation)) parts_.push_back(&annotation);
+    Sampler(const ShapeClass& learnt, const ClassTemplate& class_template, const SampleOptions& options)
+        : learnt_(learnt),
+          class_template_(class_template),
+          options_(options),
+          diagonal_(box_diagonal(class_template.mesh)),
+          template_crossings_(crossings(class_template.mesh)) {
+        frame_ = landmarks_of({class_template.mesh.points().begin(), class_template.mesh.points().end()});
+        for (const Relationship& relationship : class_template.graph.relationships)
+            constrained_ = constrained_ || relationship.is_constraint;
+        for (const Annotation& annotation : class_template.set.annotations)
+            if (is_part(class_template.mesh, annotation)) parts_.push_back(&annotation);
         if (options.by == SampleOptions::Way::modes && learnt.modes.variances.empty())
-            fail_input("class", "has no modes of variation", "learn it from two or more members that differ, or draw --by edits");
+            fail_input("class", "has no modes of variation", "learn it from at least two different members, or use --by edits");
         if (options.by == SampleOptions::Way::edits && parts_.empty())
-            fail_input("template", "has no region that is a part of it, which could be edited",
-                       "annotate parts, or draw --by modes");
+            fail_input("template", "has no region that could be edited as a part", "annotate parts, or use --by modes");
     }
 
     Sampling run() {
@@ -112,7 +118,7 @@ private:
         const std::size_t edits = 1 + random.below(3);
         for (std::size_t e = 0; e < edits; ++e) {
             const Annotation& part = *parts_[random.below(parts_.size())];
-            const std::vector<Index> vertices = touched_vertices(known_.mesh, part);
+            const std::vector<Index> vertices = touched_vertices(class_template_.mesh, part);
             const double factor = std::exp(random.normal(0, options_.edit));
             Vector3d axis(random.normal(), random.normal(), random.normal());
             const bool scale = random.uniform() < 0.5;
@@ -120,10 +126,10 @@ private:
             Vector3d middle = Vector3d::Zero();
             for (const Index v : vertices)
                 middle += shape.row(static_cast<Eigen::Index>(v)).transpose() / static_cast<double>(vertices.size());
-            const auto weights = fading(known_.mesh, vertices, 0.1 * diagonal_);
+            const auto weights = fading(class_template_.mesh, vertices, 0.1 * diagonal_);
             for (Eigen::Index i = 0; i < shape.rows(); ++i) {
-                const Vector3d arm = shape.row(i).transpose() - middle;
-                const Vector3d move = (factor - 1) * (scale ? arm : Vector3d(axis.dot(arm) * axis));
+                const Vector3d lever = shape.row(i).transpose() - middle;
+                const Vector3d move = (factor - 1) * (scale ? lever : Vector3d(axis.dot(lever) * axis));
                 shape.row(i) += weights[static_cast<std::size_t>(i)] * move.transpose();
             }
             sample.edits.push_back(part.tag + (scale ? " scaled by " : " stretched by ") + digits(factor, 4));
@@ -141,39 +147,38 @@ private:
         if (constrained_) {
             // Solved in the frame of the template, at its size unless sizes count.
             const double factor = learnt_.sizes ? 1 : centroid_size(frame_) / centroid_size(shape);
-            const SimilarityMap there = procrustes(factor * shape, frame_);
-            const std::vector<Point> start = points_of(there.apply(factor * shape));
-            DeformOptions how;
-            how.conflicts = 0;
-            const DeformResult restored =
-                restore_constraints(known_.mesh, known_.set, known_.graph, start, std::vector<bool>(start.size(), false), how);
+            const SimilarityMap to_frame = procrustes(factor * shape, frame_);
+            const std::vector<Point> start = points_of(to_frame.apply(factor * shape));
+            DeformOptions deform_options;
+            deform_options.conflicts = 0;
+            const DeformResult restored = restore_constraints(class_template_.mesh, class_template_.set, class_template_.graph,
+                                                              start, std::vector<bool>(start.size(), false), deform_options);
             for (std::size_t i = 0; i < start.size(); ++i)
                 sample.moved = std::max(sample.moved, (eigen(restored.points[i]) - eigen(start[i])).norm() / diagonal_);
             for (const ConstraintReport& report : restored.constraints)
                 if (report.used && report.verdict != Verdict::holds)
-                    return reject(result.by_constraints, "constraint " + std::to_string(report.id) + " (" + report.type +
-                                                             ") does not hold" + (report.text.empty() ? "" : ": " + report.text));
-            const Landmarks back = landmarks_of(restored.points).rowwise() - there.translation.transpose();
-            sample.points = points_of(back * there.rotation / factor);
+                    return reject(result.by_constraints, fmt::format("constraint {} ({}) does not hold{}", report.id, report.type,
+                                                                     report.text.empty() ? "" : ": " + report.text));
+            const Landmarks restored_landmarks = landmarks_of(restored.points).rowwise() - to_frame.translation.transpose();
+            sample.points = points_of(restored_landmarks * to_frame.rotation / factor);
         }
         LearntMember member;
         member.fit.points = sample.points;
-        member.quantities = measure_quantities(known_, sample.points, learnt_.sizes);
-        const ClassAnswer answer = compare_with(learnt_, member);
-        if (!answer.against.empty()) return reject(result.by_ranges, answer.reasons().front());
-        const Mesh mesh = with_points(known_.mesh, sample.points);
+        member.quantities = measure_quantities(class_template_, sample.points, learnt_.sizes);
+        const ClassAnswer class_answer = compare_with(learnt_, member);
+        if (!class_answer.against.empty()) return reject(result.by_ranges, class_answer.reasons().front());
+        const Mesh mesh = with_points(class_template_.mesh, sample.points);
         for (const auto& pair : crossings(mesh))
-            if (!std::binary_search(own_.begin(), own_.end(), pair))
-                return reject(result.by_intersections,
-                              "faces " + std::to_string(pair.first) + " and " + std::to_string(pair.second) + " cross");
+            if (!std::binary_search(template_crossings_.begin(), template_crossings_.end(), pair))
+                return reject(result.by_intersections, fmt::format("faces {} and {} cross", pair.first, pair.second));
         return true;
     }
 
     const ShapeClass& learnt_;
-    const ClassTemplate& known_;
+    const ClassTemplate& class_template_;
     const SampleOptions& options_;
     double diagonal_;
-    Pairs own_;
+    Pairs template_crossings_;
     Landmarks frame_;
     bool constrained_ = false;
     std::vector<const Annotation*> parts_;
@@ -181,14 +186,14 @@ private:
 
 }  // namespace
 
-Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& known, const SampleOptions& options) {
+Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& class_template, const SampleOptions& options) {
     check_options(options, "sample");
-    if (static_cast<std::size_t>(learnt.modes.mean.rows()) != known.mesh.number_of_vertices())
+    if (static_cast<std::size_t>(learnt.modes.mean.rows()) != class_template.mesh.number_of_vertices())
         fail_input("class",
-                   "was learnt with a template of " + std::to_string(learnt.modes.mean.rows()) + " vertices, this one has " +
-                       std::to_string(known.mesh.number_of_vertices()),
-                   "use the template that stands beside the class");
-    return Sampler(learnt, known, options).run();
+                   fmt::format("was learnt with a template of {} vertices, but this template has {}", learnt.modes.mean.rows(),
+                               class_template.mesh.number_of_vertices()),
+                   "use the template of the class");
+    return Sampler(learnt, class_template, options).run();
 }
 
 void SampleOptions::describe(OptionList& visit) {

@@ -7,6 +7,8 @@
 #include "ostraka/shape_classes/unlikeness.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,65 +22,66 @@ const LearntRange* ShapeClass::find(const std::string& key) const {
     return nullptr;
 }
 
-MemberFit fit_by_method(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
+MemberFit fit_by_method(const ClassTemplate& class_template, const WholeObject& member, CorrespondenceChoice correspondence,
                         const MemberFitOptions& options) {
     if (correspondence == CorrespondenceChoice::given ||
-        (correspondence == CorrespondenceChoice::automatic && in_correspondence(known.mesh, member.mesh)))
-        return member_in_correspondence(known.mesh, member);
-    return fit_member(known.mesh, known.set, member, options);
+        (correspondence == CorrespondenceChoice::automatic && in_correspondence(class_template.mesh, member.mesh)))
+        return member_in_correspondence(class_template.mesh, member);
+    return fit_member(class_template.mesh, class_template.set, member, options);
 }
 
-LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options,
-                          const WholeShape* whole) {
+LearntMember learn_member(const ClassTemplate& class_template, const WholeObject& member, const LearnOptions& options,
+                          const WholeShape* whole_shape) {
     check_options(options, "learn");
-    return measure_member(known, member, fit_by_method(known, member, options.correspondence, options.fit), options, whole);
+    return measure_member(class_template, member, fit_by_method(class_template, member, options.correspondence, options.fit),
+                          options, whole_shape);
 }
 
 namespace {
 
 /// Names of the template's regions that contain a face, the smallest first.
-std::string parts_at(const ClassTemplate& known, Index face) {
+std::string parts_at(const ClassTemplate& class_template, Index face) {
     std::vector<const Annotation*> list;
-    for (const Annotation& annotation : known.set.annotations)
-        if (is_part(known.mesh, annotation) &&
+    for (const Annotation& annotation : class_template.set.annotations)
+        if (is_part(class_template.mesh, annotation) &&
             std::find(annotation.faces.begin(), annotation.faces.end(), face) != annotation.faces.end())
             list.push_back(&annotation);
     std::stable_sort(list.begin(), list.end(), [](const auto* a, const auto* b) { return a->faces.size() < b->faces.size(); });
     std::string text;
     for (const Annotation* annotation : list)
-        text += (text.empty() ? "" : ", in ") + std::to_string(annotation->id) + " (" + annotation->tag + ")";
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", in ", annotation->id, annotation->tag);
     return text;
 }
 
-void name_regions(const ClassTemplate& known, MemberFit& fit) {
-    for (OffRegion& region : fit.foreign) region.part = parts_at(known, region.nearest_face);
-    for (OffRegion& region : fit.missing) region.part = parts_at(known, region.face);
+void name_regions(const ClassTemplate& class_template, MemberFit& fit) {
+    for (OffRegion& region : fit.foreign) region.part = parts_at(class_template, region.nearest_face);
+    for (OffRegion& region : fit.missing) region.part = parts_at(class_template, region.face);
 }
 
 }  // namespace
 
-LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit, const LearnOptions& options,
-                            const WholeShape* whole) {
+LearntMember measure_member(const ClassTemplate& class_template, const WholeObject& member, MemberFit fit,
+                            const LearnOptions& options, const WholeShape* whole_shape) {
     LearntMember learnt;
     learnt.name = member.name;
     learnt.fit = std::move(fit);
     if (!learnt.fit.problem.empty()) return learnt;
-    name_regions(known, learnt.fit);
-    learnt.quantities = measure_quantities(known, learnt.fit.points, options.modes.sizes);
-    for (ClassQuantity& quantity : part_quantities(known, learnt.fit.points, &member))
+    name_regions(class_template, learnt.fit);
+    learnt.quantities = measure_quantities(class_template, learnt.fit.points, options.modes.sizes);
+    for (ClassQuantity& quantity : part_quantities(class_template, learnt.fit.points, &member))
         learnt.quantities.push_back(std::move(quantity));
-    if (const auto disagreement = own_disagreement(known, learnt.fit.points, member)) {
+    if (const auto disagreement = own_disagreement(class_template, learnt.fit.points, member)) {
         ClassQuantity& quantity = learnt.quantities.emplace_back();
         quantity.kind = QuantityKind::part;
         quantity.name = "own annotations elsewhere";
         quantity.one_sided = true;
         quantity.value = disagreement;
     }
-    learnt.fragments = fragment_quantities(known, learnt.fit.points, learnt.quantities);
+    learnt.fragments = fragment_quantities(class_template, learnt.fit.points, learnt.quantities);
     for (ClassQuantity& quantity : geometry_quantities(learnt.fit.residuals)) learnt.quantities.push_back(std::move(quantity));
-    const bool is_given = whole != nullptr && learnt.fit.outer == nullptr;
+    const bool is_given = whole_shape != nullptr && learnt.fit.outer == nullptr;
     const Mesh& surface = learnt.fit.outer ? *learnt.fit.outer : member.mesh;
-    for (ClassQuantity& quantity : geometry_quantities(is_given ? *whole : measure_whole_shape(surface)))
+    for (ClassQuantity& quantity : geometry_quantities(is_given ? *whole_shape : measure_whole_shape(surface)))
         learnt.quantities.push_back(std::move(quantity));
     return learnt;
 }
@@ -86,10 +89,10 @@ LearntMember measure_member(const ClassTemplate& known, const WholeObject& membe
 namespace {
 
 std::vector<double> known_of(const LearntRange& range) {
-    std::vector<double> known;
+    std::vector<double> known_values;
     for (const auto& value : range.values)
-        if (value) known.push_back(*value);
-    return known;
+        if (value) known_values.push_back(*value);
+    return known_values;
 }
 
 /// Whether the quantity is a distance of a member from the others: the root of a sum of squares of deviations that scatter
@@ -109,19 +112,19 @@ bool is_never_negative(const ClassQuantity& quantity) {
 }
 
 void summarise_range(LearntRange& range) {
-    const std::vector<double> known = known_of(range);
-    range.count = known.size();
-    if (known.empty()) return;
-    const Summary summary = summarise(known, range.quantity.key());
+    const std::vector<double> known_values = known_of(range);
+    range.count = known_values.size();
+    if (known_values.empty()) return;
+    const Summary summary = summarise(known_values, range.quantity.key());
     range.min = summary.min;
     range.max = summary.max;
     range.mean = summary.mean;
     range.median = summary.median;
     range.deviation = summary.deviation;
-    range.percentile_5 = sample_quantile(known, 0.05);
-    range.percentile_25 = sample_quantile(known, 0.25);
-    range.percentile_75 = sample_quantile(known, 0.75);
-    range.percentile_95 = sample_quantile(known, 0.95);
+    range.percentile_5 = sample_quantile(known_values, 0.05);
+    range.percentile_25 = sample_quantile(known_values, 0.25);
+    range.percentile_75 = sample_quantile(known_values, 0.75);
+    range.percentile_95 = sample_quantile(known_values, 0.95);
     const QuantityKind kind = range.quantity.kind;
     range.logarithm =
         range.min > 0 && kind != QuantityKind::constraint && kind != QuantityKind::relation && !is_distance(range.quantity);
@@ -131,32 +134,32 @@ bool single_part(const LearntRange& range) { return range.quantity.kind == Quant
 
 /// Moments of the values on the scale that is taken as normal.
 SampleMoments range_moments(const LearntRange& range) {
-    std::vector<double> known = known_of(range);
+    std::vector<double> known_values = known_of(range);
     if (is_distance(range.quantity)) {
         // The leave-one-out distance of a member is n / (n - 1) times its distance from the mean of all: this is the variance
         // about that mean.
-        SampleMoments about;
-        about.count = known.size();
-        const auto n = static_cast<double>(about.count);
-        for (const double x : known) about.variance += (n - 1) / (n * n) * x * x;
-        about.freedom = n - 1;
-        return about;
+        SampleMoments moments_about_mean;
+        moments_about_mean.count = known_values.size();
+        const auto n = static_cast<double>(moments_about_mean.count);
+        for (const double x : known_values) moments_about_mean.variance += (n - 1) / (n * n) * x * x;
+        moments_about_mean.freedom = n - 1;
+        return moments_about_mean;
     }
     if (range.logarithm)
-        for (double& x : known) x = std::log(x);
-    return moments_of(std::span<const double>(known));
+        for (double& x : known_values) x = std::log(x);
+    return moments_of(std::span<const double>(known_values));
 }
 
-void set_bounds(LearntRange& range, const SampleMoments& known, double resolution) {
+void set_bounds(LearntRange& range, const SampleMoments& moments, double resolution) {
     const double largest = std::max(std::abs(range.min), std::abs(range.max));
     // A distance has no side. In one dimension the two-sided t is exact; in more dimensions the bound is conservative.
-    const PredictionInterval interval = predict(known, range.quantity.one_sided && !is_distance(range.quantity), range.reject,
+    const PredictionInterval interval = predict(moments, range.quantity.one_sided && !is_distance(range.quantity), range.reject,
                                                 range.logarithm ? resolution : resolution * largest);
     // Does not reject for rounding, nor within the tolerance of a range in per cent (solver: a tenth).
     const bool per_cent = range.quantity.kind == QuantityKind::constraint && range.quantity.unit == "%";
-    const double more = per_cent ? 0.1 : 1e-6;
-    const double low = (range.logarithm ? std::exp(interval.low) : interval.low) - more,
-                 high = (range.logarithm ? std::exp(interval.high) : interval.high) + more;
+    const double margin = per_cent ? 0.1 : 1e-6;
+    const double low = (range.logarithm ? std::exp(interval.low) : interval.low) - margin,
+                 high = (range.logarithm ? std::exp(interval.high) : interval.high) + margin;
     if (!std::isfinite(low) || !std::isfinite(high)) return;
     // If members differ so much that the bound is at chance level, it rejects nothing.
     if (range.quantity.name == "own annotations elsewhere" && high >= 1) {
@@ -186,15 +189,15 @@ std::vector<double> unlikeness_logs(const LearntRange& range) {
 /// A dissimilarity below one deviation never rejects; half a deviation is recognised unless out-of-class objects indicate
 /// otherwise.
 void set_unlikeness_bounds(ShapeClass& learnt, LearntRange& range, const SampleMoments& members, const SampleMoments& strangers,
-                           std::size_t asked) {
+                           std::size_t class_count) {
     range.high = std::max(1.0, std::exp(predict(members, true, range.reject).high));
-    set_recognised(range, members, strangers, learnt.accept / static_cast<double>(asked), learnt.unsure);
+    set_recognised(range, members, strangers, learnt.accept / static_cast<double>(class_count), learnt.unsure);
 }
 
 /// `strangers`: the moments of the out-of-class objects over all classes that are queried together, instead of those of this
 /// class.
 void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::optional<SampleMoments>& strangers = {},
-                    std::size_t asked = 1) {
+                    std::size_t class_count = 1) {
     std::map<QuantityKind, std::size_t> counts;
     for (const LearntRange& range : learnt.ranges)
         if (!only_together(range) && range.count >= ShapeClass::min_members) ++counts[range.quantity.kind];
@@ -206,12 +209,13 @@ void set_thresholds(ShapeClass& learnt, const Moments& moderated, const std::opt
         range.reject = 0;
         if (only_together(range) || range.count < ShapeClass::min_members) continue;
         range.reject = learnt.reject / static_cast<double>(kinds * counts.at(range.quantity.kind));
-        const auto found = moderated.find(range.quantity.key());
-        const bool own = found == moderated.end();
+        const auto moderated_moments = moderated.find(range.quantity.key());
+        const bool uses_own_moments = moderated_moments == moderated.end();
         if (is_unlikeness(range.quantity))
-            set_unlikeness_bounds(learnt, range, own ? moments_of(unlikeness_logs(range)) : found->second,
-                                  strangers ? *strangers : moments_of(stranger_logs(range)), asked);
-        else set_bounds(range, own ? range_moments(range) : found->second, learnt.resolution);
+            set_unlikeness_bounds(learnt, range,
+                                  uses_own_moments ? moments_of(unlikeness_logs(range)) : moderated_moments->second,
+                                  strangers ? *strangers : moments_of(stranger_logs(range)), class_count);
+        else set_bounds(range, uses_own_moments ? range_moments(range) : moderated_moments->second, learnt.resolution);
     }
 }
 
@@ -226,52 +230,53 @@ void learn_thresholds(ShapeClass& learnt) {
 
 void moderate_thresholds(std::vector<ShapeClass>& classes) {
     std::map<std::string, std::vector<SampleMoments>> samples;
-    const auto shared = [](const LearntRange& range) {
+    const auto is_shared = [](const LearntRange& range) {
         return !only_together(range) && !is_unlikeness(range.quantity) && (range.logarithm || is_distance(range.quantity)) &&
                range.count >= ShapeClass::min_members && range.quantity.id < 0 &&
                (range.quantity.kind == QuantityKind::geometry || range.quantity.kind == QuantityKind::part);
     };
-    for (const ShapeClass& one : classes)
-        for (const LearntRange& range : one.ranges) {
-            if (shared(range)) samples[range.quantity.key()].push_back(range_moments(range));
+    for (const ShapeClass& shape_class : classes)
+        for (const LearntRange& range : shape_class.ranges) {
+            if (is_shared(range)) samples[range.quantity.key()].push_back(range_moments(range));
             else if (counts_for_unlikeness(range.quantity) && range.count >= ShapeClass::min_members) {
                 samples[range.quantity.key()].push_back(unlikeness_moments(range));
-                samples[range.quantity.key()].back().variance += one.resolution * one.resolution;
+                samples[range.quantity.key()].back().variance += shape_class.resolution * shape_class.resolution;
             }
         }
     std::map<std::string, VariancePrior> priors;
-    for (const auto& [key, list] : samples)
-        if (const auto prior = variance_prior(list)) priors.emplace(key, *prior);
+    for (const auto& [key, class_moments] : samples)
+        if (const auto prior = variance_prior(class_moments)) priors.emplace(key, *prior);
     // Dissimilarities are in units of deviations: members of all classes form one sample, and so do out-of-class objects.
-    std::vector<double> unlike, strange;
-    std::size_t several = 0;
+    std::vector<double> member_dissimilarities, out_of_class_values;
+    std::size_t classes_with_thresholds = 0;
     std::optional<Dependence> dependence;
     if (!priors.empty()) dependence = dependence_of(classes);
-    for (ShapeClass& one : classes) {
-        one.variances = priors;
-        one.dependence = dependence;
-        measure_unlikeness(one);
-        for (LearntRange& range : one.ranges) {
+    for (ShapeClass& shape_class : classes) {
+        shape_class.variances = priors;
+        shape_class.dependence = dependence;
+        measure_unlikeness(shape_class);
+        for (LearntRange& range : shape_class.ranges) {
             if (!is_unlikeness(range.quantity)) continue;
             summarise_range(range);
-            const std::vector<double> own = unlikeness_logs(range);
-            unlike.insert(unlike.end(), own.begin(), own.end());
-            const std::vector<double> theirs = stranger_logs(range);
-            strange.insert(strange.end(), theirs.begin(), theirs.end());
-            several += own.size() >= ShapeClass::min_members ? 1 : 0;
+            const std::vector<double> member_logs = unlikeness_logs(range);
+            member_dissimilarities.insert(member_dissimilarities.end(), member_logs.begin(), member_logs.end());
+            const std::vector<double> stranger_values = stranger_logs(range);
+            out_of_class_values.insert(out_of_class_values.end(), stranger_values.begin(), stranger_values.end());
+            classes_with_thresholds += member_logs.size() >= ShapeClass::min_members ? 1 : 0;
         }
     }
-    for (ShapeClass& one : classes) {
+    for (ShapeClass& shape_class : classes) {
         Moments moderated;
-        for (const LearntRange& range : one.ranges) {
+        for (const LearntRange& range : shape_class.ranges) {
             if (is_unlikeness(range.quantity)) {
-                if (several >= 3) moderated[range.quantity.key()] = moments_of(unlike);
-            } else if (const auto prior = priors.find(range.quantity.key()); shared(range) && prior != priors.end()) {
+                if (classes_with_thresholds >= 3) moderated[range.quantity.key()] = moments_of(member_dissimilarities);
+            } else if (const auto prior = priors.find(range.quantity.key()); is_shared(range) && prior != priors.end()) {
                 moderated[range.quantity.key()] = prior->second.moderate(range_moments(range));
             }
         }
-        const bool strangers_shared = several >= 3 && one.strangers.size() >= ShapeClass::min_members;
-        set_thresholds(one, moderated, strangers_shared ? std::optional(moments_of(strange)) : std::nullopt, classes.size());
+        const bool strangers_shared = classes_with_thresholds >= 3 && shape_class.strangers.size() >= ShapeClass::min_members;
+        set_thresholds(shape_class, moderated, strangers_shared ? std::optional(moments_of(out_of_class_values)) : std::nullopt,
+                       classes.size());
     }
 }
 
@@ -291,28 +296,28 @@ std::vector<std::optional<double>> expected_parts(const std::vector<LearntRange>
 std::vector<PartsTogether> parts_together(const std::vector<LearntRange>& ranges,
                                           const std::vector<std::optional<double>>& values,
                                           const std::vector<std::optional<double>>& expected) {
-    std::vector<PartsTogether> list;
+    std::vector<PartsTogether> combined_quantities;
     for (const bool sizes : {true, false}) {
         std::vector<std::size_t> places;
-        std::vector<std::optional<double>> own, usual;
+        std::vector<std::optional<double>> part_values, expected_values;
         for (std::size_t k = 0; k < ranges.size(); ++k) {
             if (!single_part(ranges[k]) || is_size_of_part(ranges[k].quantity) != sizes) continue;
             places.push_back(k);
-            own.push_back(values[k]);
-            usual.push_back(expected[k]);
+            part_values.push_back(values[k]);
+            expected_values.push_back(expected[k]);
         }
         if (places.empty()) continue;
-        PartsTogether& one = list.emplace_back();
-        one.quantity.kind = QuantityKind::part;
-        one.quantity.name = sizes ? "sizes of the parts" : "places of the parts";
-        one.quantity.one_sided = true;
-        const PartsOff off = parts_off(own, usual);
-        if (off.count == 0) continue;
-        one.quantity.value = off.off;
-        one.worst = places[off.worst];
-        one.expected = *usual[off.worst];
+        PartsTogether& combined = combined_quantities.emplace_back();
+        combined.quantity.kind = QuantityKind::part;
+        combined.quantity.name = sizes ? "sizes of the parts" : "places of the parts";
+        combined.quantity.one_sided = true;
+        const PartsOff deviation = parts_off(part_values, expected_values);
+        if (deviation.count == 0) continue;
+        combined.quantity.value = deviation.off;
+        combined.worst = places[deviation.worst];
+        combined.expected = *expected_values[deviation.worst];
     }
-    return list;
+    return combined_quantities;
 }
 
 double mean_distance(const ShapeModes& modes, const std::vector<Landmarks>& shapes) {
@@ -330,13 +335,13 @@ namespace {
 using Quantities = std::vector<ClassQuantity> LearntMember::*;
 
 /// The values of each quantity on the members.
-std::vector<LearntRange> collected(const std::vector<const LearntMember*>& members, Quantities which) {
+std::vector<LearntRange> collected(const std::vector<const LearntMember*>& members, Quantities quantities) {
     std::vector<LearntRange> ranges;
-    std::map<std::string, std::size_t> known;
+    std::map<std::string, std::size_t> range_indices;
     for (std::size_t i = 0; i < members.size(); ++i)
-        for (const ClassQuantity& quantity : members[i]->*which) {
-            const auto [entry, fresh] = known.try_emplace(quantity.key(), ranges.size());
-            if (fresh) {
+        for (const ClassQuantity& quantity : members[i]->*quantities) {
+            const auto [entry, is_new] = range_indices.try_emplace(quantity.key(), ranges.size());
+            if (is_new) {
                 ranges.emplace_back().quantity = quantity;
                 ranges.back().quantity.value.reset();
                 ranges.back().values.resize(members.size());
@@ -361,15 +366,16 @@ void add_fragment_ranges(ShapeClass& learnt, const std::vector<const LearntMembe
 void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& strangers) {
     for (const LearntMember& stranger : strangers) {
         if (!stranger.fit.problem.empty()) {
-            learnt.notes.push_back("the stranger " + stranger.name + " is left out: " + stranger.fit.problem);
+            learnt.notes.push_back(
+                fmt::format("the out-of-class object {} is left out: {}", stranger.name, stranger.fit.problem));
             continue;
         }
         learnt.strangers.push_back(stranger.name);
         std::map<std::string, std::optional<double>> values;
         for (const ClassQuantity& quantity : stranger.quantities) values[quantity.key()] = quantity.value;
         for (LearntRange& range : learnt.ranges) {
-            const auto found = values.find(range.quantity.key());
-            range.strangers.push_back(found == values.end() ? std::nullopt : found->second);
+            const auto entry = values.find(range.quantity.key());
+            range.strangers.push_back(entry == values.end() ? std::nullopt : entry->second);
         }
     }
 }
@@ -377,12 +383,12 @@ void add_strangers(ShapeClass& learnt, const std::vector<LearntMember>& stranger
 /// Bound on how far the template is off on one more member: the prediction bound of the logits. More than half of both surfaces
 /// is never accepted.
 void learn_most_off(ShapeClass& learnt, const std::vector<const LearntMember*>& members) {
-    constexpr double least = 0.01;
+    constexpr double min_off = 0.01;
     std::vector<double> logits;
     for (const LearntMember* member : members)
         if (member->fit.residuals) {
-            const double off = std::clamp(member->fit.residuals->off(), least, 1 - least);
-            logits.push_back(std::log(off / (1 - off)));
+            const double off_fraction = std::clamp(member->fit.residuals->off(), min_off, 1 - min_off);
+            logits.push_back(std::log(off_fraction / (1 - off_fraction)));
         }
     if (logits.size() < ShapeClass::min_members) return;
     learnt.most_off = std::min(hopeless_fit, 1 / (1 + std::exp(-predict(moments_of(logits), true, learnt.reject).high)));
@@ -400,17 +406,17 @@ void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& memb
     };
     const std::size_t n = members.size();
     // Each member compared with the others.
-    std::vector<std::vector<PartsTogether>> together;
+    std::vector<std::vector<PartsTogether>> combined_by_member;
     for (std::size_t i = 0; n > 1 && i < n; ++i) {
-        std::vector<std::optional<double>> own;
-        for (const LearntRange& range : learnt.ranges) own.push_back(range.values[i]);
-        together.push_back(parts_together(learnt.ranges, own, expected_parts(learnt.ranges, i)));
+        std::vector<std::optional<double>> member_values;
+        for (const LearntRange& range : learnt.ranges) member_values.push_back(range.values[i]);
+        combined_by_member.push_back(parts_together(learnt.ranges, member_values, expected_parts(learnt.ranges, i)));
     }
-    for (std::size_t k = 0; n > 1 && k < together.front().size(); ++k) {
+    for (std::size_t k = 0; n > 1 && k < combined_by_member.front().size(); ++k) {
         LearntRange& range = learnt.ranges.emplace_back();
-        range.quantity = together.front()[k].quantity;
+        range.quantity = combined_by_member.front()[k].quantity;
         range.quantity.value.reset();
-        for (std::size_t i = 0; i < n; ++i) range.values.push_back(together[i][k].quantity.value);
+        for (std::size_t i = 0; i < n; ++i) range.values.push_back(combined_by_member[i][k].quantity.value);
     }
     add("from the mean shape", learnt.modes.left_out_distances);
     add("outside the modes", learnt.modes.left_out_outside);
@@ -422,18 +428,18 @@ void add_ranges(ShapeClass& learnt, const std::vector<const LearntMember*>& memb
     learn_thresholds(learnt);
 }
 
-/// Selects the member nearest to the mean, excluding those in `poor` if there are others.
-void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& poor) {
-    if (poor.size() >= modes.distances.size()) return;
+/// Selects the member nearest to the mean, excluding those in `ineligible` if there are others.
+void choose_archetype(ShapeModes& modes, const std::set<std::size_t>& ineligible) {
+    if (ineligible.size() >= modes.distances.size()) return;
     std::size_t best = modes.distances.size();
     for (std::size_t i = 0; i < modes.distances.size(); ++i)
-        if (poor.count(i) == 0 && (best == modes.distances.size() || modes.distances[i] < modes.distances[best])) best = i;
+        if (ineligible.count(i) == 0 && (best == modes.distances.size() || modes.distances[i] < modes.distances[best])) best = i;
     modes.archetype = best;
 }
 
 }  // namespace
 
-ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options,
+ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<LearntMember>& members, const LearnOptions& options,
                        const std::vector<LearntMember>& strangers) {
     check_options(options, "learn");
     ShapeClass learnt;
@@ -444,28 +450,29 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     learnt.accept = options.accept;
     std::vector<const LearntMember*> used;
     std::vector<Landmarks> shapes;
-    std::set<std::size_t> poor;  // members not eligible as archetype
+    std::set<std::size_t> ineligible;  // members not eligible as archetype
     for (const LearntMember& member : members) {
         if (!member.fit.problem.empty()) {
-            learnt.notes.push_back(member.name + " is left out: " + member.fit.problem);
+            learnt.notes.push_back(fmt::format("{} is left out: {}", member.name, member.fit.problem));
             continue;
         }
-        if (std::string off = fit_is_off(member.fit, hopeless_fit); !off.empty()) {
-            learnt.notes.push_back(member.name + " is left out: " + off);
+        if (std::string off_message = fit_is_off(member.fit, hopeless_fit); !off_message.empty()) {
+            learnt.notes.push_back(fmt::format("{} is left out: {}", member.name, off_message));
             continue;
         }
-        if (std::string off = fit_is_off(member.fit, options.fit.max_off); !off.empty()) {
-            learnt.notes.push_back(member.name + " counts, but is no archetype: " + off);
-            poor.insert(used.size());
+        if (std::string off_message = fit_is_off(member.fit, options.fit.max_off); !off_message.empty()) {
+            learnt.notes.push_back(fmt::format("{} is used, but cannot be the archetype: {}", member.name, off_message));
+            ineligible.insert(used.size());
         }
         used.push_back(&member);
         shapes.push_back(landmarks_of(member.fit.points));
         learnt.members.push_back({member.name, member.fit.placed_by, member.fit.scale, member.fit.notes});
     }
     if (used.empty())
-        fail_input("class", members.empty() ? "has no member" : "has no member that the template could be laid onto",
-                   "give one or more whole objects");
-    learnt.modes = learn_modes(shapes, landmarks_of({known.mesh.points().begin(), known.mesh.points().end()}), options.modes);
+        fail_input("class", members.empty() ? "has no member" : "has no member to which the template could be registered",
+                   "give at least one whole object");
+    learnt.modes = learn_modes(shapes, landmarks_of({class_template.mesh.points().begin(), class_template.mesh.points().end()}),
+                               options.modes);
     learnt.diversity = mean_distance(learnt.modes, shapes);
     add_ranges(learnt, used, strangers);
     learn_most_off(learnt, used);
@@ -473,23 +480,25 @@ ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMembe
     if (const LearntRange* range = learnt.find("geometry compactness"); range != nullptr && range->count > 0)
         for (std::size_t i = 0; i < range->values.size(); ++i)
             if (!range->values[i]) {
-                poor.insert(i);
-                learnt.notes.push_back(learnt.members[i].name +
-                                       " counts, but is no archetype: its surface is open or encloses no volume, and others' do");
+                ineligible.insert(i);
+                learnt.notes.push_back(
+                    learnt.members[i].name +
+                    " is used, but cannot be the archetype: its surface encloses no volume, unlike that of other members");
             }
-    choose_archetype(learnt.modes, poor);
-    learnt.topology = topology_checksum(known.mesh);
+    choose_archetype(learnt.modes, ineligible);
+    learnt.topology = topology_checksum(class_template.mesh);
     if (used.size() == 1)
-        learnt.notes.push_back("there is one member: neither modes nor thresholds can be learnt; give three or more");
+        learnt.notes.push_back("there is one member: neither modes nor thresholds can be learnt; give at least three");
     else if (!learnt.has_thresholds())
-        learnt.notes.push_back("there are two members: thresholds cannot be learnt; give three or more");
+        learnt.notes.push_back("there are two members: thresholds cannot be learnt; give at least three");
     else if (used.size() < 5)
-        learnt.notes.push_back("there are only " + std::to_string(used.size()) +
-                               " members: to refuse few members, the thresholds have to be wide");
+        learnt.notes.push_back(
+            fmt::format("there are only {} members: the thresholds have to be wide in order to reject few members", used.size()));
     if (used.size() > 1 && learnt.modes.variances.empty())
-        learnt.notes.push_back("the members have all one shape: thresholds know the resolution of what is measured, no more");
-    const bool constrained = std::any_of(known.graph.relationships.begin(), known.graph.relationships.end(),
-                                         [](const Relationship& one) { return one.is_constraint && one.weight > 0; });
+        learnt.notes.push_back("all members have the same shape: the thresholds reflect only the resolution of the measurements");
+    const bool constrained =
+        std::any_of(class_template.graph.relationships.begin(), class_template.graph.relationships.end(),
+                    [](const Relationship& relationship) { return relationship.is_constraint && relationship.weight > 0; });
     if (!constrained) learnt.notes.push_back("the template has no constraint: relations and geometry alone decide");
     return learnt;
 }
@@ -506,21 +515,20 @@ void LearnOptions::describe(OptionList& visit) {
     fit.describe(visit);
     modes.describe(visit);
     visit("correspondence", correspondence,
-          "members whose triangles are the template's are taken as they are, the template is fitted to others (auto); all have "
+          "members with the template's triangles are used as given, the template is fitted to others (auto); all have "
           "to be in correspondence (given); it is fitted to all (fitted)",
           Choices{"auto", "given", "fitted"});
     visit("false-reject", reject,
-          "share of members that are refused, at most, where what is measured of them is normal or log-normal: all thresholds "
+          "maximum share of members that are rejected if their quantities are normal or log-normal, over all thresholds "
           "together",
           Range{1e-6, 0.5});
     visit("unsure", unsure,
-          "share of members that are not recognised, at most, by how unlike the others they are; above that, and below what "
-          "refuses "
-          "them, nothing is decided. Strangers say it instead, where there are three or more",
+          "maximum share of members whose dissimilarity to the others is too large for them to be recognised; between this bound "
+          "and the rejection bound nothing is decided. With three or more out-of-class objects these determine the bound instead",
           Range{1e-6, 0.5});
-    visit("accept", accept, "share of strangers that are accepted, at most, by all classes that are asked together",
+    visit("accept", accept, "maximum share of out-of-class objects that are accepted by all classes that are queried together",
           Range{1e-6, 0.5});
-    visit("resolution", resolution, "standard deviation of what is measured of one member", Range{0, 1}, "share of its value");
+    visit("resolution", resolution, "standard deviation of the measurements of one member", Range{0, 1}, "share of its value");
 }
 
 }  // namespace ostraka

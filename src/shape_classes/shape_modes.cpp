@@ -3,6 +3,7 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double nothing = 1e-10;  ///< eigenvalues below this fraction of the largest are rounding errors
+constexpr double rounding = 1e-10;  ///< eigenvalues below this fraction of the largest are rounding errors
 
 RowVectorXd row_of(const Landmarks& shape) {
     RowVectorXd row(3 * shape.rows());
@@ -34,37 +35,37 @@ Landmarks shape_from(const RowVectorXd& row) {
 std::pair<double, double> left_out(const MatrixXd& inner, Eigen::Index i) {
     const Eigen::Index n = inner.rows(), m = n - 1;
     // Columns of A are members in terms of all members: the others minus their mean, and member i minus that mean.
-    MatrixXd others = MatrixXd::Zero(n, m);
-    VectorXd own = VectorXd::Zero(n);
+    MatrixXd other_members = MatrixXd::Zero(n, m);
+    VectorXd tested_member = VectorXd::Zero(n);
     for (Eigen::Index k = 0, column = 0; k < n; ++k) {
         if (k == i) continue;
-        own[k] = -1.0 / static_cast<double>(m);
-        for (Eigen::Index j = 0; j < m; ++j) others(k, j) = -1.0 / static_cast<double>(m);
-        others(k, column++) += 1;
+        tested_member[k] = -1.0 / static_cast<double>(m);
+        for (Eigen::Index j = 0; j < m; ++j) other_members(k, j) = -1.0 / static_cast<double>(m);
+        other_members(k, column++) += 1;
     }
-    own[i] = 1;
-    const double whole = std::max(0.0, own.dot(inner * own));
-    const MatrixXd gram = others.transpose() * inner * others;
-    const VectorXd towards = others.transpose() * (inner * own);
+    tested_member[i] = 1;
+    const double squared_distance = std::max(0.0, tested_member.dot(inner * tested_member));
+    const MatrixXd gram = other_members.transpose() * inner * other_members;
+    const VectorXd projections = other_members.transpose() * (inner * tested_member);
     const SymmetricEigenX eigen(gram);
     double within = 0;
     const double largest = std::max(0.0, eigen.eigenvalues()[m - 1]);
     for (Eigen::Index k = 0; k < m; ++k) {
-        if (eigen.eigenvalues()[k] <= nothing * std::max(largest, inner.trace())) continue;
-        const double part = eigen.eigenvectors().col(k).dot(towards);
+        if (eigen.eigenvalues()[k] <= rounding * std::max(largest, inner.trace())) continue;
+        const double part = eigen.eigenvectors().col(k).dot(projections);
         within += part * part / eigen.eigenvalues()[k];
     }
-    return {whole, std::max(0.0, whole - within)};
+    return {squared_distance, std::max(0.0, squared_distance - within)};
 }
 
 }  // namespace
 
 ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& frame, const ModeOptions& options) {
     check_options(options, "modes");
-    if (members.empty()) fail_input("class", "has no member", "give one or more");
-    ProcrustesOptions how;
-    how.scaling = !options.sizes;
-    const GeneralisedProcrustes aligned = generalised_procrustes(members, how);
+    if (members.empty()) fail_input("class", "has no member", "give at least one member");
+    ProcrustesOptions options_used;
+    options_used.scaling = !options.sizes;
+    const GeneralisedProcrustes aligned = generalised_procrustes(members, options_used);
     ShapeModes result;
     result.sizes = options.sizes;
     result.centroid_sizes = aligned.centroid_sizes;
@@ -86,8 +87,8 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
         static_cast<std::size_t>(std::min_element(result.distances.begin(), result.distances.end()) - result.distances.begin());
     if (n > 1)
         for (Eigen::Index i = 0; i < n; ++i) {
-            const auto [whole, outside] = left_out(inner, i);
-            result.left_out_distances.push_back(std::sqrt(whole) / result.mean_size);
+            const auto [squared_distance, outside] = left_out(inner, i);
+            result.left_out_distances.push_back(std::sqrt(squared_distance) / result.mean_size);
             result.left_out_outside.push_back(std::sqrt(outside) / result.mean_size);
         }
 
@@ -95,7 +96,7 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
     std::vector<Eigen::Index> kept;
     const double floor = 1e-20 * result.mean_size * result.mean_size;
     for (Eigen::Index k = n - 1; k >= 0; --k)
-        if (eigen.eigenvalues()[k] > std::max(floor, nothing * eigen.eigenvalues()[n - 1])) kept.push_back(k);
+        if (eigen.eigenvalues()[k] > std::max(floor, rounding * eigen.eigenvalues()[n - 1])) kept.push_back(k);
     for (const Eigen::Index k : kept) result.total += eigen.eigenvalues()[k] / static_cast<double>(n - 1);
     double sum = 0;
     std::size_t count = 0;
@@ -119,47 +120,45 @@ ShapeModes learn_modes(const std::vector<Landmarks>& members, const Landmarks& f
 
 ShapeCoordinates coordinates_in(const ShapeModes& modes, const Landmarks& shape) {
     if (shape.rows() != modes.mean.rows())
-        fail_usage(
-            "the shape has " + std::to_string(shape.rows()) + " vertices and the class " + std::to_string(modes.mean.rows()),
-            "fit the template to it");
+        fail_usage(fmt::format("the shape has {} vertices, but the class {}", shape.rows(), modes.mean.rows()),
+                   "fit the template to it");
     ShapeCoordinates result;
     result.centroid_size = centroid_size(shape);
     Landmarks sized = shape;
     double scale = 1;
     if (!modes.sizes) {
-        if (!(result.centroid_size > 0)) fail_input("shape", "all its vertices are in one place", "is it the right file?");
+        if (!(result.centroid_size > 0)) fail_input("shape", "all its vertices coincide", "check that it is the right file");
         scale = modes.mean_size / result.centroid_size;
         sized *= scale;
     }
     result.map = procrustes(sized, modes.mean);
-    const RowVectorXd off = row_of(result.map.apply(sized)) - row_of(modes.mean);
+    const RowVectorXd deviation = row_of(result.map.apply(sized)) - row_of(modes.mean);
     result.map.scale *= scale;
-    RowVectorXd left = off;
+    RowVectorXd unexplained = deviation;
     for (Eigen::Index k = 0; k < modes.modes.rows(); ++k) {
-        const double b = modes.modes.row(k).dot(off);
+        const double b = modes.modes.row(k).dot(deviation);
         result.coefficients.push_back(b);
-        left -= b * modes.modes.row(k);
+        unexplained -= b * modes.modes.row(k);
         const double variance = modes.variances[static_cast<std::size_t>(k)];
         if (variance > 0) result.mahalanobis += b * b / variance;
     }
     result.mahalanobis = std::sqrt(result.mahalanobis);
-    result.distance = off.norm() / modes.mean_size;
-    result.outside = left.norm() / modes.mean_size;
+    result.distance = deviation.norm() / modes.mean_size;
+    result.outside = unexplained.norm() / modes.mean_size;
     return result;
 }
 
 Landmarks shape_of(const ShapeModes& modes, const std::vector<double>& coefficients) {
     if (coefficients.size() > static_cast<std::size_t>(modes.modes.rows()))
-        fail_usage("there are " + std::to_string(coefficients.size()) + " coefficients for " +
-                       std::to_string(modes.modes.rows()) + " modes",
-                   "give one for each mode at most");
+        fail_usage(fmt::format("there are {} coefficients for {} modes", coefficients.size(), modes.modes.rows()),
+                   "give at most one per mode");
     RowVectorXd row = row_of(modes.mean);
     for (std::size_t k = 0; k < coefficients.size(); ++k) row += coefficients[k] * modes.modes.row(static_cast<Eigen::Index>(k));
     return shape_from(row);
 }
 
 void ModeOptions::describe(OptionList& visit) {
-    visit("sizes", sizes, "the size of an object counts; else all are brought to one size first", Anything{});
+    visit("sizes", sizes, "the size of an object counts; otherwise all objects are first scaled to one size", Anything{});
     visit("modes", maximum, "maximum number of modes of variation", Range{0, 1e6});
     visit("variance", variance, "share of the variance that the modes explain", Range{0, 1});
 }

@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/digamma.hpp>
@@ -24,7 +25,7 @@ double inverse_trigamma(double y) {
     return std::sqrt(low * high);
 }
 
-constexpr double many = 1e6;  ///< degrees of freedom above which Student's distribution is treated as normal
+constexpr double max_freedom = 1e6;  ///< degrees of freedom above which Student's distribution is treated as normal
 
 }  // namespace
 
@@ -40,29 +41,30 @@ SampleMoments moments_of(std::span<const double> values) {
     return result;
 }
 
-PredictionInterval predict(const SampleMoments& known, bool one_sided, double reject, double resolution) {
-    if (known.count == 0 || !(known.freedom > 0))
-        fail_usage("nothing can be predicted from " + std::to_string(known.count) + " values", "give two or more");
-    if (!(reject > 0) || !(reject < 1)) fail_usage("the share to be rejected is not between 0 and 1", "use 0.05, say");
-    const double share = one_sided ? reject : reject / 2;
+PredictionInterval predict(const SampleMoments& moments, bool one_sided, double reject, double resolution) {
+    if (moments.count == 0 || !(moments.freedom > 0))
+        fail_usage(fmt::format("no prediction is possible from {} values", moments.count), "give at least two values");
+    if (!(reject > 0) || !(reject < 1)) fail_usage("the share to be rejected must be between 0 and 1", "use, for example, 0.05");
+    const double tail_probability = one_sided ? reject : reject / 2;
     const double t =
-        known.freedom < many
-            ? boost::math::quantile(boost::math::complement(boost::math::students_t_distribution<double>(known.freedom), share))
-            : boost::math::quantile(boost::math::complement(boost::math::normal_distribution<double>(), share));
+        moments.freedom < max_freedom
+            ? boost::math::quantile(
+                  boost::math::complement(boost::math::students_t_distribution<double>(moments.freedom), tail_probability))
+            : boost::math::quantile(boost::math::complement(boost::math::normal_distribution<double>(), tail_probability));
     const double half_width =
-        t * std::sqrt((known.variance + resolution * resolution) * (1 + 1 / static_cast<double>(known.count)));
-    return {known.mean - half_width, known.mean + half_width};
+        t * std::sqrt((moments.variance + resolution * resolution) * (1 + 1 / static_cast<double>(moments.count)));
+    return {moments.mean - half_width, moments.mean + half_width};
 }
 
-SampleMoments VariancePrior::moderate(const SampleMoments& own) const {
-    SampleMoments result = own;
+SampleMoments VariancePrior::moderate(const SampleMoments& sample) const {
+    SampleMoments result = sample;
     if (std::isinf(freedom)) {
         result.variance = variance;
         result.freedom = freedom;
         return result;
     }
-    result.freedom = freedom + own.freedom;
-    result.variance = (freedom * variance + own.freedom * own.variance) / result.freedom;
+    result.freedom = freedom + sample.freedom;
+    result.variance = (freedom * variance + sample.freedom * sample.variance) / result.freedom;
     return result;
 }
 
@@ -70,10 +72,10 @@ std::optional<VariancePrior> variance_prior(std::span<const SampleMoments> sampl
     using boost::math::digamma;
     using boost::math::trigamma;
     std::vector<double> logs, expected;
-    for (const SampleMoments& one : samples) {
-        if (!(one.variance > 0) || !(one.freedom > 0)) continue;
-        logs.push_back(std::log(one.variance) - digamma(one.freedom / 2) + std::log(one.freedom / 2));
-        expected.push_back(trigamma(one.freedom / 2));
+    for (const SampleMoments& sample : samples) {
+        if (!(sample.variance > 0) || !(sample.freedom > 0)) continue;
+        logs.push_back(std::log(sample.variance) - digamma(sample.freedom / 2) + std::log(sample.freedom / 2));
+        expected.push_back(trigamma(sample.freedom / 2));
     }
     if (logs.size() < 3) return {};
     const auto n = static_cast<double>(logs.size());

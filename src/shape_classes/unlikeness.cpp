@@ -13,10 +13,11 @@ namespace {
 /// Names of the quantities that count: all except those relative to the mean shape.
 const std::set<std::string>& names_that_count() {
     static const std::set<std::string> names = [] {
-        std::set<std::string> list;
-        for (const ClassQuantity& quantity : geometry_quantities(std::optional<FitResiduals>())) list.insert(quantity.name);
-        for (const ClassQuantity& quantity : geometry_quantities(WholeShape())) list.insert(quantity.name);
-        return list;
+        std::set<std::string> quantity_names;
+        for (const ClassQuantity& quantity : geometry_quantities(std::optional<FitResiduals>()))
+            quantity_names.insert(quantity.name);
+        for (const ClassQuantity& quantity : geometry_quantities(WholeShape())) quantity_names.insert(quantity.name);
+        return quantity_names;
     }();
     return names;
 }
@@ -45,19 +46,19 @@ SampleMoments unlikeness_moments(const LearntRange& range, std::optional<std::si
 namespace {
 
 /// Means and deviations of the members of a class, or of all but one, by which the dissimilarity of an object is measured.
-class Yardstick {
+class DissimilarityScale {
 public:
-    Yardstick(const ShapeClass& learnt, std::optional<std::size_t> without) {
+    DissimilarityScale(const ShapeClass& learnt, std::optional<std::size_t> without) {
         for (std::size_t k = 0; k < learnt.ranges.size(); ++k) {
             const LearntRange& range = learnt.ranges[k];
             if (!counts_for_unlikeness(range.quantity)) continue;
-            SampleMoments known = unlikeness_moments(range, without);
-            if (known.count < 2) continue;
-            known.variance += learnt.resolution * learnt.resolution;
+            SampleMoments moments = unlikeness_moments(range, without);
+            if (moments.count < 2) continue;
+            moments.variance += learnt.resolution * learnt.resolution;
             if (const auto prior = learnt.variances.find(range.quantity.key()); prior != learnt.variances.end())
-                known = prior->second.moderate(known);
-            const double deviation = std::sqrt(known.variance * (1 + 1 / static_cast<double>(known.count)));
-            if (deviation > 0) scales_.push_back({k, range.quantity, known.mean, deviation});
+                moments = prior->second.moderate(moments);
+            const double deviation = std::sqrt(moments.variance * (1 + 1 / static_cast<double>(moments.count)));
+            if (deviation > 0) scales_.push_back({k, range.quantity, moments.mean, deviation});
         }
         if (learnt.dependence && !scales_.empty()) decorrelate(learnt, without);
     }
@@ -65,20 +66,20 @@ public:
     [[nodiscard]] std::optional<Unlikeness> measure(const std::vector<std::optional<double>>& values) const {
         constexpr std::size_t least_quantities = 3;
         Unlikeness result;
-        Eigen::VectorXd off = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scales_.size()));
+        Eigen::VectorXd deviations = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scales_.size()));
         for (std::size_t i = 0; i < scales_.size(); ++i) {
             const Scale& scale = scales_[i];
             if (!values[scale.range]) continue;
-            const double one = (normal_scale(scale.quantity, *values[scale.range]) - scale.mean) / scale.deviation,
-                         counted = scale.counted(one);
+            const double deviation = (normal_scale(scale.quantity, *values[scale.range]) - scale.mean) / scale.deviation,
+                         counted = scale.counted(deviation);
             if (result.count == 0 || std::abs(counted) > std::abs(result.off)) result.off = counted, result.worst = scale.range;
-            off[static_cast<Eigen::Index>(i)] = one;
+            deviations[static_cast<Eigen::Index>(i)] = deviation;
             ++result.count;
         }
         if (result.count < least_quantities) return {};
-        if (root_.size() > 0) off = (root_ * off).eval();
+        if (root_.size() > 0) deviations = (root_ * deviations).eval();
         for (std::size_t i = 0; i < scales_.size(); ++i)
-            if (values[scales_[i].range]) result.value += std::abs(scales_[i].counted(off[static_cast<Eigen::Index>(i)]));
+            if (values[scales_[i].range]) result.value += std::abs(scales_[i].counted(deviations[static_cast<Eigen::Index>(i)]));
         result.value /= static_cast<double>(result.count);
         return result;
     }
@@ -88,17 +89,19 @@ private:
         std::size_t range;
         ClassQuantity quantity;
         double mean, deviation;
-        [[nodiscard]] double counted(double off) const { return quantity.one_sided ? std::max(0.0, off) : off; }
+        [[nodiscard]] double counted(double signed_deviation) const {
+            return quantity.one_sided ? std::max(0.0, signed_deviation) : signed_deviation;
+        }
     };
 
     /// Sets R^-1/2 from the cross products, without those of the member that is left out.
     void decorrelate(const ShapeClass& learnt, std::optional<std::size_t> without) {
-        const Dependence& known = *learnt.dependence;
+        const Dependence& dependence = *learnt.dependence;
         const auto n = static_cast<Eigen::Index>(scales_.size());
         std::vector<Eigen::Index> rows;  // -1: unknown
         for (const Scale& scale : scales_) {
-            const auto row = known.rows.find(scale.quantity.key());
-            rows.push_back(row == known.rows.end() ? -1 : row->second);
+            const auto row = dependence.rows.find(scale.quantity.key());
+            rows.push_back(row == dependence.rows.end() ? -1 : row->second);
         }
         Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n);
         Eigen::VectorXd left_out = Eigen::VectorXd::Zero(n);
@@ -108,18 +111,18 @@ private:
             if (row < 0) continue;
             for (Eigen::Index j = 0; j < n; ++j)
                 if (const Eigen::Index column = rows[static_cast<std::size_t>(j)]; column >= 0)
-                    products(i, j) = known.products(row, column);
+                    products(i, j) = dependence.products(row, column);
             // Downdate: a member adds count / (count + 1) times its squared distance from the mean of the others.
             const LearntRange& range = learnt.ranges[scale.range];
             if (without && range.values[*without]) {
-                const SampleMoments others = unlikeness_moments(range, without);
-                const auto count = static_cast<double>(others.count);
+                const SampleMoments other_moments = unlikeness_moments(range, without);
+                const auto count = static_cast<double>(other_moments.count);
                 left_out[i] =
-                    (normal_scale(scale.quantity, *range.values[*without]) - others.mean) * std::sqrt(count / (count + 1));
+                    (normal_scale(scale.quantity, *range.values[*without]) - other_moments.mean) * std::sqrt(count / (count + 1));
             }
         }
         products -= left_out * left_out.transpose();
-        const double freedom = std::max(0.0, known.freedom - (without ? 1 : 0)),
+        const double freedom = std::max(0.0, dependence.freedom - (without ? 1 : 0)),
                      weight = freedom / (freedom + static_cast<double>(n));
         Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(n, n);
         for (Eigen::Index i = 0; i < n; ++i)
@@ -128,8 +131,8 @@ private:
                     correlation(i, j) = weight * products(i, j) / std::sqrt(products(i, i) * products(j, j));
         const SymmetricEigenX eigen(correlation);
         if (!eigen.found()) return;
-        constexpr double least = 0.05;  // missing values can make the matrix indefinite
-        const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse();
+        constexpr double min_eigenvalue = 0.05;  // missing values can make the matrix indefinite
+        const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt().cwiseInverse();
         root_ = eigen.eigenvectors() * roots.asDiagonal() * eigen.eigenvectors().transpose();
     }
 
@@ -141,61 +144,61 @@ private:
 
 Dependence dependence_of(const std::vector<ShapeClass>& classes) {
     Dependence result;
-    for (const ShapeClass& one : classes)
-        for (const LearntRange& range : one.ranges)
+    for (const ShapeClass& shape_class : classes)
+        for (const LearntRange& range : shape_class.ranges)
             if (counts_for_unlikeness(range.quantity))
                 result.rows.try_emplace(range.quantity.key(), static_cast<Eigen::Index>(result.rows.size()));
     const auto n = static_cast<Eigen::Index>(result.rows.size());
     result.products = Eigen::MatrixXd::Zero(n, n);
-    for (const ShapeClass& one : classes) {
-        Eigen::MatrixXd off = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(one.members.size()));
-        for (const LearntRange& range : one.ranges) {
+    for (const ShapeClass& shape_class : classes) {
+        Eigen::MatrixXd deviations = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(shape_class.members.size()));
+        for (const LearntRange& range : shape_class.ranges) {
             if (!counts_for_unlikeness(range.quantity)) continue;
             const double mean = unlikeness_moments(range).mean;
             for (std::size_t i = 0; i < range.values.size(); ++i)
                 if (range.values[i])
-                    off(result.rows.at(range.quantity.key()), static_cast<Eigen::Index>(i)) =
+                    deviations(result.rows.at(range.quantity.key()), static_cast<Eigen::Index>(i)) =
                         normal_scale(range.quantity, *range.values[i]) - mean;
         }
-        result.products += off * off.transpose();
-        result.freedom += std::max(0.0, static_cast<double>(one.members.size()) - 1);
+        result.products += deviations * deviations.transpose();
+        result.freedom += std::max(0.0, static_cast<double>(shape_class.members.size()) - 1);
     }
     return result;
 }
 
 std::optional<Unlikeness> unlikeness(const ShapeClass& learnt, const std::vector<std::optional<double>>& values,
                                      std::optional<std::size_t> without) {
-    return Yardstick(learnt, without).measure(values);
+    return DissimilarityScale(learnt, without).measure(values);
 }
 
 void measure_unlikeness(ShapeClass& learnt) {
     if (!learnt.has_thresholds()) return;
-    const auto measured = [](const Yardstick& yardstick, const std::vector<std::optional<double>>& values) {
-        const auto found = yardstick.measure(values);
-        return found ? std::optional(found->value) : std::nullopt;
+    const auto dissimilarity_value = [](const DissimilarityScale& scale, const std::vector<std::optional<double>>& values) {
+        const auto dissimilarity_found = scale.measure(values);
+        return dissimilarity_found ? std::optional(dissimilarity_found->value) : std::nullopt;
     };
-    std::vector<std::optional<double>> own, theirs;
+    std::vector<std::optional<double>> member_values, out_of_class_values;
     for (std::size_t i = 0; i < learnt.members.size(); ++i) {
         std::vector<std::optional<double>> values;
         for (const LearntRange& range : learnt.ranges) values.push_back(range.values[i]);
-        own.push_back(measured(Yardstick(learnt, i), values));
+        member_values.push_back(dissimilarity_value(DissimilarityScale(learnt, i), values));
     }
-    const Yardstick all(learnt, {});
+    const DissimilarityScale all_members(learnt, {});
     for (std::size_t i = 0; i < learnt.strangers.size(); ++i) {
         std::vector<std::optional<double>> values;
         for (const LearntRange& range : learnt.ranges)
             values.push_back(i < range.strangers.size() ? range.strangers[i] : std::nullopt);
-        theirs.push_back(measured(all, values));
+        out_of_class_values.push_back(dissimilarity_value(all_members, values));
     }
     ClassQuantity quantity;
     quantity.name = unlike_the_members;
     quantity.one_sided = true;
-    const auto found = std::find_if(learnt.ranges.begin(), learnt.ranges.end(),
-                                    [&](const LearntRange& range) { return range.quantity.key() == quantity.key(); });
-    LearntRange& range = found != learnt.ranges.end() ? *found : learnt.ranges.emplace_back();
+    const auto existing = std::find_if(learnt.ranges.begin(), learnt.ranges.end(),
+                                       [&](const LearntRange& range) { return range.quantity.key() == quantity.key(); });
+    LearntRange& range = existing != learnt.ranges.end() ? *existing : learnt.ranges.emplace_back();
     range.quantity = quantity;
-    range.values = std::move(own);
-    range.strangers = std::move(theirs);
+    range.values = std::move(member_values);
+    range.strangers = std::move(out_of_class_values);
 }
 
 std::vector<double> stranger_logs(const LearntRange& range) {

@@ -22,42 +22,42 @@ constexpr std::uint64_t vertices = 1500, thickness_vertices = 600;
 constexpr int sources = 8, rays = 16;
 
 Mesh simplified_to(const Mesh& mesh, std::uint64_t count) {
-    Mesh small = mesh;
-    if (mesh.number_of_vertices() <= count) return small;
+    Mesh simplified = mesh;
+    if (mesh.number_of_vertices() <= count) return simplified;
     SimplifyOptions options;
     options.vertices = count;
-    static_cast<void>(simplify(small, options));
-    return small;
+    static_cast<void>(simplify(simplified, options));
+    return simplified;
 }
 
-/// Quantile by area: the value below which the area share `share` lies. `values` are sorted.
-double area_quantile(const std::vector<std::pair<double, double>>& values, double area, double share) {
+/// Quantile by area: the value below which the area fraction `fraction` lies. `values` are sorted.
+double area_quantile(const std::vector<std::pair<double, double>>& values, double area, double fraction) {
     double sum = 0;
     for (const auto& [value, weight] : values)
-        if ((sum += weight) >= share * area) return value;
+        if ((sum += weight) >= fraction * area) return value;
     return values.back().first;
 }
 
-void measure_thickness(const Mesh& small, WholeShape& shape) {
+void measure_thickness(const Mesh& simplified, WholeShape& shape) {
     ThicknessOptions options;
     options.rays = rays;
-    const std::vector<double> values = thickness(small, options);
-    std::vector<std::pair<double, double>> known;
+    const std::vector<double> values = thickness(simplified, options);
+    std::vector<std::pair<double, double>> values_by_area;
     double sum = 0, area = 0;
-    for (const Face face : small.faces()) {
-        const double a = face_area(small, face);
+    for (const Face face : simplified.faces()) {
+        const double a = face_area(simplified, face);
         if (!std::isfinite(values[face]) || !(a > 0)) continue;
-        known.emplace_back(values[face], a);
+        values_by_area.emplace_back(values[face], a);
         area += a;
         sum += a * values[face];
     }
-    const double whole = surface_area(small);
-    if (!(area > 0.9 * whole) || !(sum > 0)) return;
-    std::sort(known.begin(), known.end());
+    const double total_area = surface_area(simplified);
+    if (!(area > 0.9 * total_area) || !(sum > 0)) return;
+    std::sort(values_by_area.begin(), values_by_area.end());
     const double mean = sum / area;
-    shape.thickness_mean = mean / std::sqrt(whole);
-    shape.thickness_median = area_quantile(known, area, 0.5) / mean;
-    shape.thickness_most = area_quantile(known, area, 0.9) / mean;
+    shape.thickness_mean = mean / std::sqrt(total_area);
+    shape.thickness_median = area_quantile(values_by_area, area, 0.5) / mean;
+    shape.thickness_most = area_quantile(values_by_area, area, 0.9) / mean;
 }
 
 double compactness_of(double volume, double area) { return 6 * std::sqrt(pi) * volume / std::pow(area, 1.5); }
@@ -79,7 +79,7 @@ std::optional<double> volume_of(const Mesh& mesh) {
     return volume;
 }
 
-void measure_solid(const Mesh& mesh, const Mesh& small, double area, WholeShape& shape) {
+void measure_solid(const Mesh& mesh, const Mesh& simplified, double area, WholeShape& shape) {
     const std::optional<double> volume = volume_of(mesh);
     if (!volume) return;
     shape.compactness = compactness_of(*volume, area);
@@ -88,9 +88,9 @@ void measure_solid(const Mesh& mesh, const Mesh& small, double area, WholeShape&
         shape.hull_share = std::min(1.0, *volume / hull.volume);
         shape.hull_compactness = compactness_of(hull.volume, hull.area);
     }
-    const CurvatureIntegrals integrals = curvature_integrals(small);
+    const CurvatureIntegrals integrals = curvature_integrals(simplified);
     double sum = 0, absolute = 0, concave = 0, gaussian = 0;
-    for (const Face face : small.faces()) {
+    for (const Face face : simplified.faces()) {
         const double mean = integrals.mean[face];
         sum += mean;
         absolute += std::abs(mean);
@@ -106,22 +106,22 @@ void measure_solid(const Mesh& mesh, const Mesh& small, double area, WholeShape&
 
 WholeShape measure_whole_shape(const Mesh& mesh) {
     const double area = surface_area(mesh);
-    if (!(area > 0)) fail_input("mesh", "has no area", "is it the right file?");
+    if (!(area > 0)) fail_input("mesh", "has no area", "check that it is the right file");
     WholeShape shape;
-    const Mesh small = simplified_to(mesh, vertices);
-    measure_solid(mesh, small, area, shape);
-    shape.spectrum = laplace_spectrum(small, WholeShape::spectrum_size);
-    measure_thickness(simplified_to(small, thickness_vertices), shape);
-    std::vector<double> weights(small.number_of_vertices(), 0);
-    for (const Face face : small.faces())
-        for (const Vertex v : corners(small, face)) weights[v] += face_area(small, face) / 3;
+    const Mesh simplified = simplified_to(mesh, vertices);
+    measure_solid(mesh, simplified, area, shape);
+    shape.spectrum = laplace_spectrum(simplified, WholeShape::spectrum_size);
+    measure_thickness(simplified_to(simplified, thickness_vertices), shape);
+    std::vector<double> weights(simplified.number_of_vertices(), 0);
+    for (const Face face : simplified.faces())
+        for (const Vertex v : corners(simplified, face)) weights[v] += face_area(simplified, face) / 3;
     // The first source is the vertex farthest from the centre; each further source is the farthest from all before it.
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const Vertex v : small.vertices()) middle += weights[v] * eigen(small.point(v));
-    middle /= surface_area(small);
-    std::vector<double> nearest(small.number_of_vertices(), -1);
-    for (const Vertex v : small.vertices())
-        if (weights[v] > 0) nearest[v] = (eigen(small.point(v)) - middle).norm();
+    for (const Vertex v : simplified.vertices()) middle += weights[v] * eigen(simplified.point(v));
+    middle /= surface_area(simplified);
+    std::vector<double> nearest(simplified.number_of_vertices(), -1);
+    for (const Vertex v : simplified.vertices())
+        if (weights[v] > 0) nearest[v] = (eigen(simplified.point(v)) - middle).norm();
     double sum = 0, squares = 0, weight = 0, maximum = 0;
     const double size = std::sqrt(area);
     for (int s = 0; s < sources; ++s) {
@@ -130,7 +130,7 @@ WholeShape measure_whole_shape(const Mesh& mesh) {
         if (s == 1) shape.second_point = *at / size;
         if (s == 3) shape.fourth_point = *at / size;
         if (s == 5) shape.sixth_point = *at / size;
-        const auto distances = geodesic_distances(small, {static_cast<Index>(at - nearest.begin())});
+        const auto distances = geodesic_distances(simplified, {static_cast<Index>(at - nearest.begin())});
         for (std::size_t v = 0; v < distances.size(); ++v) {
             if (!std::isfinite(distances[v])) continue;
             nearest[v] = s == 0 ? distances[v] : std::min(nearest[v], distances[v]);

@@ -45,12 +45,12 @@ TEST_F(ClassCommand, LearnsClassifiesSamplesAndPropagates) {
     EXPECT_EQ(read_mesh(scratch / "class" / "idol.mean.ply").mesh.number_of_vertices(),
               read_mesh(scratch / "made" / "statuette-1.ply").mesh.number_of_vertices());
 
-    const auto asked = run_command("template classify " + quoted(scratch / "class" / "idol.class.json") + " " + member(1) +
-                                   " --report " + quoted(scratch / "answer.json"));
-    EXPECT_TRUE(asked.code == 0 || asked.code == 3) << asked.err;
-    const Json answer = read_json(scratch / "answer.json");
-    validate(answer, "classification", "answer");
-    EXPECT_STREQ(answer["objects"][0]["answers"][0]["class"].GetString(), "idol");
+    const auto classified = run_command("template classify " + quoted(scratch / "class" / "idol.class.json") + " " + member(1) +
+                                        " --report " + quoted(scratch / "answer.json"));
+    EXPECT_TRUE(classified.code == 0 || classified.code == 3) << classified.err;
+    const Json classification = read_json(scratch / "answer.json");
+    validate(classification, "classification", "answer");
+    EXPECT_STREQ(classification["objects"][0]["answers"][0]["class"].GetString(), "idol");
 
     const auto drawn = run_command("template sample " + quoted(scratch / "class" / "idol.class.json") +
                                    " --count 2 --seed 4 --output " + quoted(scratch / "drawn"));
@@ -62,18 +62,18 @@ TEST_F(ClassCommand, LearnsClassifiesSamplesAndPropagates) {
     const auto carried =
         run_command("template propagate " + known() + " " + member(2) + " --output " + quoted(scratch / "carried"));
     ASSERT_EQ(carried.code, 0) << carried.err;
-    const MeshFile own = read_mesh(scratch / "made" / "statuette-2.ply");
-    EXPECT_GT(read_annotations(scratch / "carried" / "statuette-2.ant.json", own.mesh).annotations.size(), 10U);
+    const MeshFile original = read_mesh(scratch / "made" / "statuette-2.ply");
+    EXPECT_GT(read_annotations(scratch / "carried" / "statuette-2.ant.json", original.mesh).annotations.size(), 10U);
 }
 
 /// From which place a threshold of a fit is.
 std::string origin_of(const Json& assembly, const std::string& option) {
-    for (const auto& one : assembly["thresholds"].GetArray())
-        if (option == one["option"].GetString()) return one["from"].GetString();
+    for (const auto& threshold : assembly["thresholds"].GetArray())
+        if (option == threshold["option"].GetString()) return threshold["from"].GetString();
     return "";
 }
 
-TEST_F(ClassCommand, AFitTakesShapeAndThresholdsOfItsOwnClassOnly) {
+TEST_F(ClassCommand, AFitUsesShapeAndThresholdsOfItsClassOnly) {
     const Path learnt = scratch / "class" / "idol.class.json";
     ASSERT_EQ(run_command("template learn " + known() + " " + member(2) + " " + member(3) + " " + member(4) +
                           " --name idol --output " + quoted(scratch / "class") + " --quiet")
@@ -86,12 +86,12 @@ TEST_F(ClassCommand, AFitTakesShapeAndThresholdsOfItsOwnClassOnly) {
     validate(assembly, "assembly", "assembly");
     const ShapeClass read = read_class(learnt);
     std::size_t by_class = 0;
-    for (const FragmentThreshold& one : fragment_thresholds(read)) {
-        if (one.option == "slack") continue;  // never below the default
+    for (const FragmentThreshold& threshold : fragment_thresholds(read)) {
+        if (threshold.option == "slack") continue;  // never below the default
         ++by_class;
-        EXPECT_EQ(one.members, 3U);
-        EXPECT_EQ(origin_of(assembly, one.option), "class");
-        EXPECT_NE(good.out.find("--" + one.option), std::string::npos) << good.out;
+        EXPECT_EQ(threshold.members, 3U);
+        EXPECT_EQ(origin_of(assembly, threshold.option), "class");
+        EXPECT_NE(good.out.find("--" + threshold.option), std::string::npos) << good.out;
     }
     EXPECT_EQ(by_class, 2U) << "statuettes have landmarks enough";
     // What is told holds; without a class the defaults do.
@@ -133,7 +133,7 @@ TEST_F(ClassCommand, AFitTakesShapeAndThresholdsOfItsOwnClassOnly) {
     EXPECT_NE(none.err.find("missing.class.json"), std::string::npos) << none.err;
 }
 
-TEST_F(ClassCommand, PropagateWritesWhereItIsFrom) {
+TEST_F(ClassCommand, PropagateWritesProvenance) {
     ASSERT_EQ(run_command("template propagate " + known() + " " + member(2) + " --output " + quoted(scratch / "carried")).code,
               0);
     for (const char* name : {"statuette-2.ant.json", "statuette-2.fitted.ant.json"}) {
@@ -147,29 +147,31 @@ TEST_F(ClassCommand, PropagateWritesWhereItIsFrom) {
               std::string::npos);
 }
 
-TEST_F(ClassCommand, PropagateSaysWhereTheTemplateDoesNotLie) {
+TEST_F(ClassCommand, PropagateReportsWhereTheTemplateDoesNotLie) {
     write_file(scratch / "one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    const std::string to = " --json --output " + quoted(scratch / "carried");
-    const auto good = run_command("template propagate " + known() + " " + member(3) + to);
+    const std::string output_options = " --json --output " + quoted(scratch / "carried");
+    const auto good = run_command("template propagate " + known() + " " + member(3) + output_options);
     EXPECT_EQ(good.code, 0) << good.err;
     const auto bad = run_command("template propagate " + known() + " " + quoted(scratch / "one.off") +
-                                 " " OSTRAKA_SOURCE_DIR "/data/teapot.ply" + to);
+                                 " " OSTRAKA_SOURCE_DIR "/data/teapot.ply" + output_options);
     EXPECT_EQ(bad.code, 3) << bad.err;
     const Json report = parse_json(bad.out, "report");
-    for (const auto& one : report["result"]["members"].GetArray()) {
-        EXPECT_FALSE(one["liesOn"].GetBool()) << one["name"].GetString();
-        EXPECT_GT(one["unmatched"].GetDouble() + one["unexplained"].GetDouble(), 0.25) << one["name"].GetString();
-        EXPECT_NE(std::string(one["notes"][0].GetString()).find("does not lie on it"), std::string::npos);
+    for (const auto& member_report : report["result"]["members"].GetArray()) {
+        EXPECT_FALSE(member_report["liesOn"].GetBool()) << member_report["name"].GetString();
+        EXPECT_GT(member_report["unmatched"].GetDouble() + member_report["unexplained"].GetDouble(), 0.25)
+            << member_report["name"].GetString();
+        EXPECT_NE(std::string(member_report["notes"][0].GetString()).find("does not lie on it"), std::string::npos);
     }
     EXPECT_GT(report["result"]["members"][0]["lost"].GetInt(), 0) << "a triangle has no room for them";
     EXPECT_NE(bad.err.find("teapot: the template does not lie on it"), std::string::npos) << bad.err;
     // The limit is the user's.
-    EXPECT_EQ(run_command("template propagate " + known() + " " OSTRAKA_SOURCE_DIR "/data/teapot.ply --max-off 1 --quiet" + to)
+    EXPECT_EQ(run_command("template propagate " + known() + " " OSTRAKA_SOURCE_DIR "/data/teapot.ply --max-off 1 --quiet" +
+                          output_options)
                   .err.find("does not lie"),
               std::string::npos);
 }
 
-TEST_F(ClassCommand, AFileThatCannotBeReadStopsNoOther) {
+TEST_F(ClassCommand, AnUnreadableFileDoesNotStopTheOthers) {
     const std::string vase = "'" OSTRAKA_SOURCE_DIR "/data/vase.ply'";
     const auto learnt = run_command("template learn " + known() + " " + member(2) + " " + member(3) + " " + member(4) +
                                     " --strangers " + vase + " --name idol --quiet --output " + quoted(scratch / "class"));
@@ -181,26 +183,26 @@ TEST_F(ClassCommand, AFileThatCannotBeReadStopsNoOther) {
     write_file(scratch / "broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
     const std::string idol = "template classify " + quoted(scratch / "class" / "idol.class.json") + " ",
                       report = " --report " + quoted(scratch / "answer.json");
-    const auto asked = run_command(idol + quoted(scratch / "broken.ply") + " " + vase + report);
-    EXPECT_EQ(asked.code, 3) << asked.err;
-    EXPECT_NE(asked.err.find("broken.ply"), std::string::npos) << asked.err;
-    EXPECT_NE(asked.err.find("1 of 2 objects"), std::string::npos) << asked.err;
-    const Json answer = read_json(scratch / "answer.json");
-    validate(answer, "classification", "answer");
-    ASSERT_EQ(answer["objects"].Size(), 2U);
-    EXPECT_TRUE(answer["objects"][0].HasMember("problem"));
-    const auto& last = answer["objects"][1];
+    const auto classified = run_command(idol + quoted(scratch / "broken.ply") + " " + vase + report);
+    EXPECT_EQ(classified.code, 3) << classified.err;
+    EXPECT_NE(classified.err.find("broken.ply"), std::string::npos) << classified.err;
+    EXPECT_NE(classified.err.find("1 of 2 objects"), std::string::npos) << classified.err;
+    const Json classification = read_json(scratch / "answer.json");
+    validate(classification, "classification", "answer");
+    ASSERT_EQ(classification["objects"].Size(), 2U);
+    EXPECT_TRUE(classification["objects"][0].HasMember("problem"));
+    const auto& last = classification["objects"][1];
     EXPECT_FALSE(last.HasMember("problem"));
     EXPECT_STRNE(last["verdict"].GetString(), "member") << "a vase is no statuette";
     EXPECT_TRUE(last["answers"][0]["explained"].HasMember("liesOn"));
-    EXPECT_NE(asked.out.find("the template explains"), std::string::npos) << asked.out;
+    EXPECT_NE(classified.out.find("the template explains"), std::string::npos) << classified.out;
     // Of files none of which can be read nothing is left to say.
     EXPECT_EQ(run_command(idol + quoted(scratch / "broken.ply")).code, 1);
     // One that is not there is found out before any work.
     EXPECT_EQ(run_command(idol + vase + " " + quoted(scratch / "missing.ply")).code, 1);
 }
 
-TEST_F(ClassCommand, WrongWordsAndFilesAreSaid) {
+TEST_F(ClassCommand, WrongArgumentsAndFilesAreReported) {
     // Before any work, and without leaving a folder.
     const std::string learn = "template learn " + known() + " " + quoted(scratch / "missing.ply");
     EXPECT_EQ(run_command(learn).code, 2) << "no --output";

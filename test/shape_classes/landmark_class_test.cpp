@@ -47,7 +47,7 @@ Motion far_away() {
     return motion;
 }
 
-TEST(LandmarkClass, IsLearntAndAskedWithoutASurface) {
+TEST(LandmarkClass, IsLearntAndQueriedWithoutASurface) {
     const Scratch scratch;
     write_box(scratch / "a.mrk.json", 1.9);
     write_box(scratch / "b.mrk.json", 2.0, far_away(), 3);  // other order, place, size
@@ -89,7 +89,7 @@ TEST(LandmarkClass, IsLearntAndAskedWithoutASurface) {
     EXPECT_NE(several.out.find("good belongs to 'box'"), std::string::npos) << several.out;
 }
 
-TEST(LandmarkClass, WhatIsMissingIsNamed) {
+TEST(LandmarkClass, MissingLandmarksAreNamed) {
     const Scratch scratch;
     write_box(scratch / "a.mrk.json", 2);
     write_box(scratch / "short.mrk.json", 2, {}, 0, 7);
@@ -111,9 +111,9 @@ TEST(LandmarkClass, WhatIsMissingIsNamed) {
     // Of one member nothing can be refused, and nothing drawn.
     ASSERT_EQ(run_command("template learn " + quoted(scratch / "a.mrk.json") + out).code, 0);
     const Path alone = scratch / "class" / "landmarks.class.json";
-    const auto asked = run_command("template classify " + quoted(alone) + " " + quoted(scratch / "a.mrk.json"));
-    EXPECT_EQ(asked.code, 3);
-    EXPECT_NE(asked.out.find("cannot decide, because"), std::string::npos) << asked.out;
+    const auto classified = run_command("template classify " + quoted(alone) + " " + quoted(scratch / "a.mrk.json"));
+    EXPECT_EQ(classified.code, 3);
+    EXPECT_NE(classified.out.find("cannot decide, because"), std::string::npos) << classified.out;
     const auto drawn = run_command("template sample " + quoted(alone) + " --output " + quoted(scratch / "drawn"));
     EXPECT_EQ(drawn.code, 1);
     EXPECT_NE(drawn.err.find("landmarks"), std::string::npos) << drawn.err;
@@ -127,11 +127,11 @@ TEST(LandmarkClass, MeanOfTheMouseSkullsIsThePublishedOne) {
     }
     const Scratch scratch;
     std::string files;
-    std::vector<Path> list;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) list.push_back(entry.path());
-    std::sort(list.begin(), list.end());
+    std::vector<Path> skull_files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) skull_files.push_back(entry.path());
+    std::sort(skull_files.begin(), skull_files.end());
     std::vector<Landmarks> skulls;
-    for (const Path& file : list) {
+    for (const Path& file : skull_files) {
         files += " " + quoted(file);
         skulls.push_back(read_rows(file));
     }
@@ -146,15 +146,15 @@ TEST(LandmarkClass, MeanOfTheMouseSkullsIsThePublishedOne) {
         // The mean of the class is turned as the first file is.
         const double norm = modes.mean.norm(), goal = expected.mean.norm();
         EXPECT_NEAR(procrustes(modes.mean / norm, expected.mean / goal).sum_of_squares, 0, 1e-16);
-        const double left = 30 * modes.total;
+        const double remaining_variance = 30 * modes.total;
         if (sizes) {
             EXPECT_NEAR(norm, 43.9042953, 1e-8 * 43.9042953);
-            EXPECT_NEAR(left, 233.5286065, 1e-8 * 233.5286065);
+            EXPECT_NEAR(remaining_variance, 233.5286065, 1e-8 * 233.5286065);
         } else {
             // Squares are taken about the mean of the members there, about the mean brought to size 1 in the published figure.
             const double short_of_one = 1 - norm / modes.mean_size;
-            EXPECT_NEAR(left / (modes.mean_size * modes.mean_size) + 31 * short_of_one * short_of_one, 0.04497425199,
-                        1e-8 * 0.04497425199);
+            EXPECT_NEAR(remaining_variance / (modes.mean_size * modes.mean_size) + 31 * short_of_one * short_of_one,
+                        0.04497425199, 1e-8 * 0.04497425199);
         }
     }
 }

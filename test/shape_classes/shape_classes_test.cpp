@@ -53,7 +53,7 @@ struct Planted {
     }
 };
 
-TEST(ShapeModes, KnownModesComeBack) {
+TEST(ShapeModes, PlantedModesAreRecovered) {
     const Planted planted;
     std::vector<Landmarks> members;
     // Coefficients that are uncorrelated: a cross.
@@ -70,36 +70,36 @@ TEST(ShapeModes, KnownModesComeBack) {
     EXPECT_NEAR(modes.variances[0], 2 * 0.3 * 0.3 / 3, 1e-3);
     EXPECT_NEAR(modes.variances[1], 2 * 0.1 * 0.1 / 3, 1e-3);
     EXPECT_NEAR((modes.mean - planted.mean).norm(), 0, 0.02) << "the mean stands where the frame is";
-    const auto along = [&](Eigen::Index k, const Landmarks& field) {
+    const auto projection = [&](Eigen::Index k, const Landmarks& field) {
         double sum = 0;
         for (Eigen::Index i = 0; i < field.rows(); ++i) sum += modes.modes.row(k).segment<3>(3 * i).dot(field.row(i));
         return std::abs(sum);
     };
-    EXPECT_GT(along(0, planted.first), 0.99);
-    EXPECT_GT(along(1, planted.second), 0.99);
+    EXPECT_GT(projection(0, planted.first), 0.99);
+    EXPECT_GT(projection(1, planted.second), 0.99);
     EXPECT_LT((modes.modes * modes.modes.transpose() - Eigen::MatrixXd::Identity(modes.modes.rows(), modes.modes.rows())).norm(),
               1e-9);
     // A shape of the class is given by its coefficients; one off the class is not.
     const ShapeCoordinates inside = coordinates_in(modes, members[0]);
     EXPECT_LT(inside.outside, 1e-6);
     EXPECT_NEAR((landmarks_of(points_of(shape_of(modes, inside.coefficients))) - inside.map.apply(members[0])).norm(), 0, 1e-6);
-    Landmarks off = members[0];
-    off(0, 2) += 0.5;
-    EXPECT_GT(coordinates_in(modes, off).outside, 0.01);
+    Landmarks displaced = members[0];
+    displaced(0, 2) += 0.5;
+    EXPECT_GT(coordinates_in(modes, displaced).outside, 0.01);
 }
 
 TEST(ShapeModes, OneAndEqualMembersHaveNoModes) {
     const Planted planted;
-    const ShapeModes one = learn_modes({planted.mean}, planted.mean);
-    EXPECT_TRUE(one.variances.empty());
-    EXPECT_TRUE(one.left_out_distances.empty());
+    const ShapeModes single_member = learn_modes({planted.mean}, planted.mean);
+    EXPECT_TRUE(single_member.variances.empty());
+    EXPECT_TRUE(single_member.left_out_distances.empty());
     const ShapeModes same = learn_modes({planted.mean, 1e6 * planted.mean, planted.mean}, planted.mean);
     EXPECT_TRUE(same.variances.empty()) << "sizes do not count";
     EXPECT_NEAR(same.left_out_distances[1], 0, 1e-7);
     EXPECT_THROW(static_cast<void>(learn_modes({}, planted.mean)), Error);
 }
 
-TEST(ShapeModes, WhatIsLeftOutIsMeasuredByTheOthers) {
+TEST(ShapeModes, ALeftOutMemberIsMeasuredByTheOthers) {
     const Planted planted;
     const std::vector<Landmarks> members{planted.mean + 0.3 * planted.first, planted.mean - 0.3 * planted.first,
                                          planted.mean + 0.1 * planted.first, planted.mean + 0.2 * planted.second};
@@ -112,23 +112,23 @@ TEST(ShapeModes, WhatIsLeftOutIsMeasuredByTheOthers) {
 }
 
 /// Members whose top is 0.9 to 1.1 of the base.
-std::vector<WholeObject> usual(const Tower& known) {
+std::vector<WholeObject> usual(const Tower& template_tower) {
     std::vector<WholeObject> members;
     for (const auto& [name, top, width] :
          {std::tuple{"a", 0.9, 1.0}, {"b", 1.0, 1.05}, {"c", 1.1, 0.95}, {"d", 0.95, 1.0}, {"e", 1.05, 1.02}})
-        members.push_back(member_of(known, name, 1, top, width, far_away()));
+        members.push_back(member_of(template_tower, name, 1, top, width, far_away()));
     return members;
 }
 
-std::vector<WholeObject> one_alone(const Tower& known) {
+std::vector<WholeObject> one_alone(const Tower& template_tower) {
     std::vector<WholeObject> members;
-    members.push_back(member_of(known, "a", 1, 0.9, 1));
+    members.push_back(member_of(template_tower, "a", 1, 0.9, 1));
     return members;
 }
 
 TEST(ShapeClass, LearnsTheRangesThatItsMembersHave) {
-    const Tower known = tower();
-    const ShapeClass learnt = class_of(known, usual(known));
+    const Tower template_tower = tower();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const LearntRange* ratio = learnt.find("proportion 7 ");
     ASSERT_NE(ratio, nullptr);
     EXPECT_EQ(ratio->count, 5U);
@@ -154,11 +154,11 @@ TEST(ShapeClass, LearnsTheRangesThatItsMembersHave) {
 }
 
 TEST(Classify, NamesThePlantedProportion) {
-    const Tower known = tower();
-    const ShapeClass learnt = class_of(known, usual(known));
-    const ClassAnswer good = ask_class(learnt, known.known(), member_of(known, "good", 1, 1.02, 1.01));
+    const Tower template_tower = tower();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
+    const ClassAnswer good = ask_class(learnt, template_tower.known(), member_of(template_tower, "good", 1, 1.02, 1.01));
     EXPECT_EQ(good.verdict, Membership::member) << (good.against.empty() ? "" : good.reasons().front());
-    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 1.6, 1, far_away()));
+    const ClassAnswer bad = ask_class(learnt, template_tower.known(), member_of(template_tower, "bad", 1, 1.6, 1, far_away()));
     ASSERT_EQ(bad.verdict, Membership::other);
     const QuantityCheck& first = bad.checks[bad.against.front()];
     EXPECT_EQ(first.quantity.kind, QuantityKind::proportion);
@@ -172,148 +172,150 @@ TEST(Classify, NamesThePlantedProportion) {
     EXPECT_EQ(decide("good", {good}).best, 0);
 }
 
-TEST(Classify, SaysWhenItCannotDecide) {
-    const Tower known = tower();
-    const ShapeClass one = class_of(known, one_alone(known));
-    ASSERT_FALSE(one.notes.empty());
-    const ClassAnswer answer = ask_class(one, known.known(), member_of(known, "x", 1, 1, 1));
-    EXPECT_EQ(answer.verdict, Membership::undecided);
-    const Classification decided = decide("x", {answer});
+TEST(Classify, ReportsWhenItCannotDecide) {
+    const Tower template_tower = tower();
+    const ShapeClass one_member_class = class_of(template_tower, one_alone(template_tower));
+    ASSERT_FALSE(one_member_class.notes.empty());
+    const ClassAnswer class_answer = ask_class(one_member_class, template_tower.known(), member_of(template_tower, "x", 1, 1, 1));
+    EXPECT_EQ(class_answer.verdict, Membership::undecided);
+    const Classification decided = decide("x", {class_answer});
     EXPECT_EQ(decided.text.find("cannot decide, because"), 0U) << decided.text;
     // Of two members, and of members of one shape.
     std::vector<WholeObject> equal;
-    equal.push_back(member_of(known, "a", 1, 0.9, 1));
-    equal.push_back(member_of(known, "b", 1, 0.9, 1, far_away()));
-    const ShapeClass two = class_of(known, equal);
-    EXPECT_EQ(ask_class(two, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::undecided);
-    equal.push_back(member_of(known, "c", 1, 0.9, 1));
-    const ShapeClass same = class_of(known, equal);
+    equal.push_back(member_of(template_tower, "a", 1, 0.9, 1));
+    equal.push_back(member_of(template_tower, "b", 1, 0.9, 1, far_away()));
+    const ShapeClass two = class_of(template_tower, equal);
+    EXPECT_EQ(ask_class(two, template_tower.known(), member_of(template_tower, "x", 1, 0.9, 1)).verdict, Membership::undecided);
+    equal.push_back(member_of(template_tower, "c", 1, 0.9, 1));
+    const ShapeClass same = class_of(template_tower, equal);
     EXPECT_NE(same.notes.back().find("one shape"), std::string::npos) << same.notes.back();
-    EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 0.9, 1)).verdict, Membership::member);
-    EXPECT_EQ(ask_class(same, known.known(), member_of(known, "x", 1, 1.8, 1)).verdict, Membership::other);
+    EXPECT_EQ(ask_class(same, template_tower.known(), member_of(template_tower, "x", 1, 0.9, 1)).verdict, Membership::member);
+    EXPECT_EQ(ask_class(same, template_tower.known(), member_of(template_tower, "x", 1, 1.8, 1)).verdict, Membership::other);
     // Two classes that say the same cannot be distinguished.
-    const ShapeClass learnt = class_of(known, usual(known));
-    const ClassAnswer yes = ask_class(learnt, known.known(), member_of(known, "x", 1, 1, 1));
-    const Classification both = decide("x", {yes, yes});
-    EXPECT_EQ(both.verdict, Membership::undecided) << both.text;
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
+    const ClassAnswer yes = ask_class(learnt, template_tower.known(), member_of(template_tower, "x", 1, 1, 1));
+    const Classification classification = decide("x", {yes, yes});
+    EXPECT_EQ(classification.verdict, Membership::undecided) << classification.text;
     EXPECT_THROW(static_cast<void>(decide("x", {})), Error);
-    EXPECT_THROW(static_cast<void>(class_of(known, {})), Error);
+    EXPECT_THROW(static_cast<void>(class_of(template_tower, {})), Error);
 }
 
 /// The nearest member to the mean of all was fitted badly.
-TEST(ShapeClass, BadFitsAreSaidAndAreNoArchetype) {
-    const Tower known = tower();
+TEST(ShapeClass, BadFitsAreReportedAndCannotBeTheArchetype) {
+    const Tower template_tower = tower();
     std::vector<LearntMember> members;
-    for (const WholeObject& member : usual(known)) members.push_back(learn_member(known.known(), member));
-    const ShapeClass before = learn_class(known.known(), members);
-    const std::size_t nearest = before.modes.archetype;
+    for (const WholeObject& member : usual(template_tower)) members.push_back(learn_member(template_tower.known(), member));
+    const ShapeClass original_class = learn_class(template_tower.known(), members);
+    const std::size_t nearest = original_class.modes.archetype;
     LearntMember& bad = members[nearest];
     bad.fit.residuals.emplace();
     bad.fit.residuals->unmatched = 0.4;
-    const ShapeClass noted = learn_class(known.known(), members);
+    const ShapeClass noted = learn_class(template_tower.known(), members);
     EXPECT_EQ(noted.members.size(), members.size());
     EXPECT_NE(noted.modes.archetype, nearest);
-    const auto says = [&](const ShapeClass& learnt, const std::string& words) {
+    const auto has_note = [&](const ShapeClass& learnt, const std::string& words) {
         return std::any_of(learnt.notes.begin(), learnt.notes.end(), [&](const std::string& note) {
             return note.starts_with(bad.name + " ") && note.find(words) != std::string::npos;
         });
     };
-    EXPECT_TRUE(says(noted, "no archetype"));
+    EXPECT_TRUE(has_note(noted, "cannot be the archetype"));
     bad.fit.residuals->unexplained = 1;
-    const ShapeClass without = learn_class(known.known(), members);
+    const ShapeClass without = learn_class(template_tower.known(), members);
     EXPECT_EQ(without.members.size(), members.size() - 1);
-    EXPECT_TRUE(says(without, "is left out"));
+    EXPECT_TRUE(has_note(without, "is left out"));
     // One without volume: what cannot be measured of it is said.
     bad.fit.residuals.reset();
     for (ClassQuantity& quantity : bad.quantities)
         if (quantity.name == "compactness") quantity.value.reset();
-    const ShapeClass flat = learn_class(known.known(), members);
+    const ShapeClass flat = learn_class(template_tower.known(), members);
     EXPECT_NE(flat.modes.archetype, nearest);
-    EXPECT_TRUE(says(flat, "no volume"));
+    EXPECT_TRUE(has_note(flat, "no volume"));
 }
 
-TEST(ShapeClass, WhatIsNeverNegativeIsNotAcceptedBelowZero) {
-    const Tower known = tower();
+TEST(ShapeClass, NonNegativeQuantitiesAreNotAcceptedBelowZero) {
+    const Tower template_tower = tower();
     std::vector<LearntMember> members;
-    for (const WholeObject& member : usual(known)) members.push_back(learn_member(known.known(), member));
+    for (const WholeObject& member : usual(template_tower)) members.push_back(learn_member(template_tower.known(), member));
     double value = 0;  // one of them zero: no logarithm
     for (LearntMember& member : members)
         for (ClassQuantity& quantity : member.quantities)
             if (quantity.kind == QuantityKind::proportion) quantity.value = value, value += 0.1;
-    const ShapeClass learnt = learn_class(known.known(), members);
+    const ShapeClass learnt = learn_class(template_tower.known(), members);
     const LearntRange* range = learnt.find("proportion 7 ");
     ASSERT_NE(range, nullptr);
     ASSERT_TRUE(range->low.has_value());
     EXPECT_EQ(*range->low, 0);
 }
 
-TEST(Classify, AFitsOwnErrorDoesNotSpeakAgainstAnObject) {
-    const Tower known = tower();
-    const ShapeClass learnt = class_of(known, usual(known));
-    LearntMember object = learn_member(known.known(), member_of(known, "x", 1, 1, 1));
+TEST(Classify, ErrorsOfTheFitDoNotRejectAnObject) {
+    const Tower template_tower = tower();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
+    LearntMember object = learn_member(template_tower.known(), member_of(template_tower, "x", 1, 1, 1));
     ASSERT_EQ(compare_with(learnt, object).verdict, Membership::member);
     // Vertices that slid along the surface: nothing else that is measured changes.
     Random random(7);
     for (Point& p : object.fit.points) p = Point(p.x() + random.uniform(-0.2, 0.2), p.y() + random.uniform(-0.2, 0.2), p.z());
     EXPECT_EQ(compare_with(learnt, object).verdict, Membership::other) << "in correspondence the vertices are what is compared";
     object.fit.residuals.emplace();
-    const ClassAnswer answer = compare_with(learnt, object);
-    EXPECT_EQ(answer.verdict, Membership::undecided);
-    EXPECT_NE(answer.undecided.find("this one was fitted"), std::string::npos) << answer.undecided;
+    const ClassAnswer class_answer = compare_with(learnt, object);
+    EXPECT_EQ(class_answer.verdict, Membership::undecided);
+    EXPECT_NE(class_answer.undecided.find("this object was fitted"), std::string::npos) << class_answer.undecided;
 }
 
-TEST(Classify, WithoutConstraintsGeometryDecidesAndThatIsSaid) {
-    Tower known = tower();
-    known.graph.relationships.clear();
-    const ShapeClass learnt = class_of(known, usual(known));
+TEST(Classify, WithoutConstraintsGeometryDecidesWithANote) {
+    Tower template_tower = tower();
+    template_tower.graph.relationships.clear();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     EXPECT_NE(std::find_if(learnt.notes.begin(), learnt.notes.end(),
                            [](const std::string& note) { return note.find("no constraint") != std::string::npos; }),
               learnt.notes.end());
-    const ClassAnswer bad = ask_class(learnt, known.known(), member_of(known, "bad", 1, 4, 1));
+    const ClassAnswer bad = ask_class(learnt, template_tower.known(), member_of(template_tower, "bad", 1, 4, 1));
     ASSERT_EQ(bad.verdict, Membership::other);
     for (const std::size_t i : bad.against)
         EXPECT_TRUE(bad.checks[i].quantity.kind == QuantityKind::geometry || bad.checks[i].quantity.kind == QuantityKind::part);
 }
 
-TEST(Classify, SizesCountWhereTold) {
-    const Tower known = tower();
+TEST(Classify, SizesCountIfRequested) {
+    const Tower template_tower = tower();
     Motion large;
     large.scale = 3;
-    const WholeObject big = member_of(known, "big", 1, 1, 1, large);
-    EXPECT_EQ(ask_class(class_of(known, usual(known)), known.known(), big).verdict, Membership::member);
+    const WholeObject big = member_of(template_tower, "big", 1, 1, 1, large);
+    EXPECT_EQ(ask_class(class_of(template_tower, usual(template_tower)), template_tower.known(), big).verdict,
+              Membership::member);
     LearnOptions options;
     options.modes.sizes = true;
-    EXPECT_EQ(ask_class(class_of(known, usual(known), options), known.known(), big).verdict, Membership::other);
+    EXPECT_EQ(ask_class(class_of(template_tower, usual(template_tower), options), template_tower.known(), big).verdict,
+              Membership::other);
 }
 
-TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
-    const Tower known = tower();
+TEST(MemberFit, FitsATowerWithOtherTrianglesAndTransfersAnnotations) {
+    const Tower template_tower = tower();
     Motion shifted;
     shifted.translation = Eigen::Vector3d(10, -20, 5);
-    WholeObject object = member_of(known, "object", 0.5, 0.6, 0.95, shifted);
+    WholeObject object = member_of(template_tower, "object", 0.5, 0.6, 0.95, shifted);
     // Other vertices: the box cut finer.
-    TriangleSoup fine = to_soup(member_of(known, "same", 0.5, 0.6, 0.95, shifted).mesh);
-    const std::size_t before = fine.triangles.size();
-    for (std::size_t t = 0; t < before; ++t) {
-        const auto c = fine.triangles[t];
+    TriangleSoup refined = to_soup(member_of(template_tower, "same", 0.5, 0.6, 0.95, shifted).mesh);
+    const std::size_t coarse_triangles = refined.triangles.size();
+    for (std::size_t t = 0; t < coarse_triangles; ++t) {
+        const auto c = refined.triangles[t];
         std::array<double, 3> middle{};
         for (const Index v : c)
-            for (std::size_t k = 0; k < 3; ++k) middle[k] += fine.points[v][k] / 3;
-        const auto m = static_cast<Index>(fine.points.size());
-        fine.points.push_back(middle);
-        fine.triangles[t] = {c[0], c[1], m};
-        fine.triangles.push_back({c[1], c[2], m});
-        fine.triangles.push_back({c[2], c[0], m});
+            for (std::size_t k = 0; k < 3; ++k) middle[k] += refined.points[v][k] / 3;
+        const auto m = static_cast<Index>(refined.points.size());
+        refined.points.push_back(middle);
+        refined.triangles[t] = {c[0], c[1], m};
+        refined.triangles.push_back({c[1], c[2], m});
+        refined.triangles.push_back({c[2], c[0], m});
     }
-    object.mesh = build_mesh(fine);
-    EXPECT_FALSE(in_correspondence(known.mesh, object.mesh));
-    EXPECT_THROW(static_cast<void>(member_in_correspondence(known.mesh, object)), Error);
-    const MemberFit fit = fit_member(known.mesh, known.set, object);
+    object.mesh = build_mesh(refined);
+    EXPECT_FALSE(in_correspondence(template_tower.mesh, object.mesh));
+    EXPECT_THROW(static_cast<void>(member_in_correspondence(template_tower.mesh, object)), Error);
+    const MemberFit fit = fit_member(template_tower.mesh, template_tower.set, object);
     ASSERT_TRUE(fit.problem.empty()) << fit.problem;
     ASSERT_TRUE(fit.residuals.has_value());
     EXPECT_LT(fit.residuals->distance, 0.01);
     EXPECT_LT(fit.residuals->unexplained, 0.2);
-    const Propagated carried = propagate(known.known(), object);
+    const Propagated carried = propagate(template_tower.known(), object);
     ASSERT_TRUE(carried.on_member.has_value());
     double area = 0;
     for (const Annotation& annotation : carried.on_member->annotations) {
@@ -325,8 +327,8 @@ TEST(MemberFit, FitsATowerOfOtherTrianglesAndCarriesAnnotations) {
 
 TEST(MemberFit, AHollowMemberIsMeasuredAsASolidOne) {
     // Half as large inside, and looking inwards: a fifth of the surface.
-    const Tower known = tower();
-    const WholeObject solid = member_of(known, "solid", 0.5, 0.6, 0.95);
+    const Tower template_tower = tower();
+    const WholeObject solid = member_of(template_tower, "solid", 0.5, 0.6, 0.95);
     WholeObject hollow = solid;
     TriangleSoup soup = to_soup(solid.mesh);
     const std::size_t points = soup.points.size(), faces = soup.triangles.size();
@@ -344,83 +346,88 @@ TEST(MemberFit, AHollowMemberIsMeasuredAsASolidOne) {
         soup.triangles.push_back({n + a, n + c, n + b});
     }
     hollow.mesh = build_mesh(soup);
-    LearnOptions how;
-    how.correspondence = CorrespondenceChoice::fitted;
-    const LearntMember one = learn_member(known.known(), solid, how), other = learn_member(known.known(), hollow, how);
-    EXPECT_EQ(one.fit.cavity, 0);
-    EXPECT_EQ(one.fit.outer, nullptr);
-    EXPECT_NEAR(other.fit.cavity, 0.2, 0.01);
-    ASSERT_TRUE(other.fit.residuals.has_value());
-    EXPECT_LT(other.fit.residuals->unexplained, 0.02);
+    LearnOptions options;
+    options.correspondence = CorrespondenceChoice::fitted;
+    const LearntMember solid_member = learn_member(template_tower.known(), solid, options),
+                       hollow_member = learn_member(template_tower.known(), hollow, options);
+    EXPECT_EQ(solid_member.fit.cavity, 0);
+    EXPECT_EQ(solid_member.fit.outer, nullptr);
+    EXPECT_NEAR(hollow_member.fit.cavity, 0.2, 0.01);
+    ASSERT_TRUE(hollow_member.fit.residuals.has_value());
+    EXPECT_LT(hollow_member.fit.residuals->unexplained, 0.02);
     const auto value = [](const LearntMember& member, const std::string& name) {
         for (const ClassQuantity& quantity : member.quantities)
             if (quantity.name == name) return quantity.value.value_or(-1);
         return -2.0;
     };
     for (const char* name : {"compactness", "share of the hull", "thickness mean"}) {
-        EXPECT_GT(value(one, name), 0) << name;
-        EXPECT_NEAR(value(other, name), value(one, name), 1e-3) << name;
+        EXPECT_GT(value(solid_member, name), 0) << name;
+        EXPECT_NEAR(value(hollow_member, name), value(solid_member, name), 1e-3) << name;
     }
-    EXPECT_NE(explained_text(other.fit)[1].find("it is hollow: 20"), std::string::npos);
+    EXPECT_NE(explained_text(hollow_member.fit)[1].find("it is hollow: 20"), std::string::npos);
 }
 
 TEST(MemberFit, DistortionIsThatOfTheMap) {
-    const Tower known = tower();
-    const WholeObject wide = member_of(known, "wide", 1, 1, 2);
+    const Tower template_tower = tower();
+    const WholeObject wide = member_of(template_tower, "wide", 1, 1, 2);
     std::vector<Point> points(wide.mesh.points().begin(), wide.mesh.points().end());
     FitResiduals residuals;
-    measure_distortion(known.mesh, points, 2, residuals);
+    measure_distortion(template_tower.mesh, points, 2, residuals);
     EXPECT_NEAR(residuals.stretch, 0, 1e-9) << "twice as large is the template's scale";
     EXPECT_NEAR(residuals.bend, 0, 1e-6);
-    measure_distortion(known.mesh, points, 1, residuals);
+    measure_distortion(template_tower.mesh, points, 1, residuals);
     EXPECT_NEAR(residuals.stretch, std::log(2.0), 1e-9);
 }
 
 TEST(ClassSample, HoldsTheConstraintsAndTheRanges) {
-    const Tower known = tower();
-    const ShapeClass learnt = class_of(known, usual(known));
+    const Tower template_tower = tower();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     SampleOptions options;
     options.count = 5;
-    const Sampling sampling = sample_class(learnt, known.known(), options);
+    const Sampling sampling = sample_class(learnt, template_tower.known(), options);
     ASSERT_EQ(sampling.samples.size(), 5U) << (sampling.examples.empty() ? "" : sampling.examples.front());
     const LearntRange* ratio = learnt.find("proportion 7 ");
     for (const ClassSample& sample : sampling.samples) {
-        const Mesh mesh = with_points(known.mesh, sample.points);
-        const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
-        const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
+        const Mesh mesh = with_points(template_tower.mesh, sample.points);
+        const double top =
+            evaluate(mesh, template_tower.set.annotations[1], template_tower.set.annotations[1].attributes[0].measure);
+        const double base =
+            evaluate(mesh, template_tower.set.annotations[0], template_tower.set.annotations[0].attributes[0].measure);
         EXPECT_GE(top / base, *ratio->low);
         EXPECT_LE(top / base, *ratio->high);
         WholeObject object{"sample", mesh, {}};
-        EXPECT_EQ(compare_with(learnt, learn_member(known.known(), object)).against.empty(), true);
+        EXPECT_EQ(compare_with(learnt, learn_member(template_tower.known(), object)).against.empty(), true);
     }
     EXPECT_GT(sampling.diversity, 0);
     // Told again, the same to the bit; another seed gives others.
-    const Sampling again = sample_class(learnt, known.known(), options);
-    EXPECT_EQ(again.samples[3].points, sampling.samples[3].points);
+    const Sampling second_sampling = sample_class(learnt, template_tower.known(), options);
+    EXPECT_EQ(second_sampling.samples[3].points, sampling.samples[3].points);
     options.seed = 2;
-    EXPECT_NE(sample_class(learnt, known.known(), options).samples[0].points, sampling.samples[0].points);
+    EXPECT_NE(sample_class(learnt, template_tower.known(), options).samples[0].points, sampling.samples[0].points);
 }
 
 TEST(ClassSample, RestoresAStatedProportionOrRejects) {
     // The template allows 1.02 at most, its members have up to 1.1: draws beyond are brought back.
-    const Tower known = tower(1.02);
-    const ShapeClass learnt = class_of(known, usual(known));
+    const Tower template_tower = tower(1.02);
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     SampleOptions options;
     options.count = 4;
     options.seed = 5;
-    const Sampling sampling = sample_class(learnt, known.known(), options);
+    const Sampling sampling = sample_class(learnt, template_tower.known(), options);
     for (const ClassSample& sample : sampling.samples) {
-        const Mesh mesh = with_points(known.mesh, in_template_frame(known.mesh, sample.points, false));
-        const double top = evaluate(mesh, known.set.annotations[1], known.set.annotations[1].attributes[0].measure);
-        const double base = evaluate(mesh, known.set.annotations[0], known.set.annotations[0].attributes[0].measure);
+        const Mesh mesh = with_points(template_tower.mesh, in_template_frame(template_tower.mesh, sample.points, false));
+        const double top =
+            evaluate(mesh, template_tower.set.annotations[1], template_tower.set.annotations[1].attributes[0].measure);
+        const double base =
+            evaluate(mesh, template_tower.set.annotations[0], template_tower.set.annotations[0].attributes[0].measure);
         EXPECT_LE(top / base, 1.02 * 1.001 + 1e-3);
     }
     EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);
 }
 
 TEST(ClassSample, DiversityIsTheMeanDistanceOfTwo) {
-    const Tower known = tower();
-    const ShapeClass learnt = class_of(known, usual(known));
+    const Tower template_tower = tower();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const ShapeModes& modes = learnt.modes;
     // Along one mode by +-a and 0: 2a, a and a off each other, wherever they lie and however large they are.
     const double a = 1e-4 * modes.mean_size;
@@ -440,36 +447,38 @@ TEST(ClassSample, DiversityIsTheMeanDistanceOfTwo) {
     options.count = 4;
     options.attempts = 50;
     options.spread = 0;
-    EXPECT_NEAR(sample_class(learnt, known.known(), options).diversity, 0, 1e-9);
+    EXPECT_NEAR(sample_class(learnt, template_tower.known(), options).diversity, 0, 1e-9);
     options.spread = 0.3;
-    const double few = sample_class(learnt, known.known(), options).diversity;
+    const double small_diversity = sample_class(learnt, template_tower.known(), options).diversity;
     options.spread = 1;
-    const Sampling wide = sample_class(learnt, known.known(), options);
-    EXPECT_GT(few, 0);
-    EXPECT_GT(wide.diversity, few);
+    const Sampling wide = sample_class(learnt, template_tower.known(), options);
+    EXPECT_GT(small_diversity, 0);
+    EXPECT_GT(wide.diversity, small_diversity);
     std::vector<Landmarks> drawn;
     for (const ClassSample& sample : wide.samples) drawn.push_back(landmarks_of(sample.points));
     EXPECT_EQ(wide.diversity, mean_distance(modes, drawn)) << "it is that of what is written";
 }
 
 TEST(ClassSample, EditsAndBadInput) {
-    const Tower known = tower();
-    const ShapeClass learnt = class_of(known, usual(known));
+    const Tower template_tower = tower();
+    const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     SampleOptions options;
     options.count = 2;
     options.by = SampleOptions::Way::edits;
     options.edit = 0.02;
-    const Sampling sampling = sample_class(learnt, known.known(), options);
+    const Sampling sampling = sample_class(learnt, template_tower.known(), options);
     EXPECT_GT(sampling.tried, 0U);
     for (const ClassSample& sample : sampling.samples) EXPECT_FALSE(sample.edits.empty());
     options.by = SampleOptions::Way::modes;
-    EXPECT_THROW(static_cast<void>(sample_class(class_of(known, one_alone(known)), known.known(), options)), Error);
+    EXPECT_THROW(
+        static_cast<void>(sample_class(class_of(template_tower, one_alone(template_tower)), template_tower.known(), options)),
+        Error);
 }
 
 TEST(ClassFile, ComesBackAsWritten) {
     const test::Scratch scratch;
-    const Tower known = tower();
-    ShapeClass learnt = class_of(known, usual(known));
+    const Tower template_tower = tower();
+    ShapeClass learnt = class_of(template_tower, usual(template_tower));
     learnt.template_file = "tower.template.json";
     write_class(scratch.path(), learnt, Provenance{"test", {}, {}});
     const ShapeClass read = read_class(scratch / "tower.class.json");
@@ -482,8 +491,9 @@ TEST(ClassFile, ComesBackAsWritten) {
         EXPECT_EQ(read.ranges[i].high, learnt.ranges[i].high);
         EXPECT_EQ(read.ranges[i].values, learnt.ranges[i].values);
     }
-    const WholeObject object = member_of(known, "bad", 1, 1.6, 1);
-    EXPECT_EQ(ask_class(read, known.known(), object).reasons(), ask_class(learnt, known.known(), object).reasons());
+    const WholeObject object = member_of(template_tower, "bad", 1, 1.6, 1);
+    EXPECT_EQ(ask_class(read, template_tower.known(), object).reasons(),
+              ask_class(learnt, template_tower.known(), object).reasons());
     // What was written and then changed is no class.
     const auto refused = [&](const ShapeClass& changed) {
         write_class(scratch.path(), changed, Provenance{"test", {}, {}});

@@ -18,20 +18,20 @@ std::vector<double> draws(Random& random, std::size_t count, double deviation = 
 
 TEST(Predict, IsTheTabulatedIntervalOfStudent) {
     // Student's t, 97.5 %, nine degrees of freedom: 2.26216; 95 %: 1.83311.
-    const SampleMoments known{10, 3, 4, 9};
-    const PredictionInterval both = predict(known, false, 0.05);
-    EXPECT_NEAR(both.high, 3 + 2.26216 * 2 * std::sqrt(1.1), 1e-4);
-    EXPECT_NEAR(both.low, 3 - 2.26216 * 2 * std::sqrt(1.1), 1e-4);
-    EXPECT_NEAR(predict(known, true, 0.05).high, 3 + 1.83311 * 2 * std::sqrt(1.1), 1e-4);
+    const SampleMoments moments{10, 3, 4, 9};
+    const PredictionInterval two_sided = predict(moments, false, 0.05);
+    EXPECT_NEAR(two_sided.high, 3 + 2.26216 * 2 * std::sqrt(1.1), 1e-4);
+    EXPECT_NEAR(two_sided.low, 3 - 2.26216 * 2 * std::sqrt(1.1), 1e-4);
+    EXPECT_NEAR(predict(moments, true, 0.05).high, 3 + 1.83311 * 2 * std::sqrt(1.1), 1e-4);
     // What cannot be distinguished widens it, also where all values are one.
     EXPECT_NEAR(predict({10, 3, 0, 9}, true, 0.05, 0.5).high, 3 + 1.83311 * 0.5 * std::sqrt(1.1), 1e-4);
     EXPECT_EQ(predict({10, 3, 0, 9}, true, 0.05).high, 3);
     EXPECT_NEAR(predict({10, 3, 4, 1e9}, true, 0.05).high, predict({10, 3, 4, 1e5}, true, 0.05).high, 1e-4);
     EXPECT_THROW(static_cast<void>(predict({1, 3, 0, 0}, true, 0.05)), Error);
-    EXPECT_THROW(static_cast<void>(predict(known, true, 1)), Error);
+    EXPECT_THROW(static_cast<void>(predict(moments, true, 1)), Error);
 }
 
-TEST(Predict, RefusesAsManyAsItSaysHoweverFewAreKnown) {
+TEST(Predict, RejectsAtTheGivenRateForAnySampleSize) {
     Random random(7);
     constexpr int rounds = 20000;
     for (const std::size_t count : {3, 4, 6, 20})
@@ -67,17 +67,17 @@ TEST(VariancePrior, EqualVariancesArePooledAndOthersAreNot) {
     EXPECT_NEAR(std::sqrt(other->variance), 0.3, 0.04);
     EXPECT_NEAR(other->freedom, 4, 1.5);
     // Between its own variance and that of all, and never with less freedom than it has.
-    const SampleMoments own{4, 1, 1, 3}, moderated = other->moderate(own);
+    const SampleMoments sample{4, 1, 1, 3}, moderated = other->moderate(sample);
     EXPECT_LT(moderated.variance, 1);
     EXPECT_GT(moderated.variance, other->variance);
     EXPECT_GT(moderated.freedom, 3);
     EXPECT_EQ(moderated.mean, 1);
-    EXPECT_FALSE(variance_prior(std::vector<SampleMoments>(2, own)).has_value());
+    EXPECT_FALSE(variance_prior(std::vector<SampleMoments>(2, sample)).has_value());
     EXPECT_FALSE(variance_prior(std::vector<SampleMoments>(5, {4, 1, 0, 3})).has_value()) << "nothing varies";
-    const auto one = variance_prior(std::vector<SampleMoments>(5, own));
-    ASSERT_TRUE(one.has_value());
-    EXPECT_TRUE(std::isinf(one->freedom));
-    EXPECT_TRUE(std::isfinite(predict(one->moderate(own), true, 0.05).high));
+    const auto equal_variances = variance_prior(std::vector<SampleMoments>(5, sample));
+    ASSERT_TRUE(equal_variances.has_value());
+    EXPECT_TRUE(std::isinf(equal_variances->freedom));
+    EXPECT_TRUE(std::isfinite(predict(equal_variances->moderate(sample), true, 0.05).high));
 }
 
 }  // namespace

@@ -16,10 +16,10 @@ struct Tower {
 };
 
 /// A class's answer about an object.
-inline ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& known, const WholeObject& object) {
-    LearnOptions how;
-    how.modes.sizes = learnt.sizes;
-    return compare_with(learnt, learn_member(known, object, how));
+inline ClassAnswer ask_class(const ShapeClass& learnt, const ClassTemplate& class_template, const WholeObject& object) {
+    LearnOptions options;
+    options.modes.sizes = learnt.sizes;
+    return compare_with(learnt, learn_member(class_template, object, options));
 }
 
 inline Annotation half(const Mesh& mesh, int id, const std::string& tag, bool upper) {

@@ -10,14 +10,14 @@
 namespace ostraka {
 namespace {
 
-Mesh made(const char* name) {
-    MakeOptions how;
-    how.vertices = 4000;
-    return make_mesh(synthetic_object(name), how).mesh;
+Mesh synthetic_mesh(const char* name) {
+    MakeOptions options;
+    options.vertices = 4000;
+    return make_mesh(synthetic_object(name), options).mesh;
 }
 
 TEST(WholeShape, OfABall) {
-    const WholeShape ball = measure_whole_shape(made("sphere"));
+    const WholeShape ball = measure_whole_shape(synthetic_mesh("sphere"));
     EXPECT_NEAR(ball.compactness.value(), 1, 0.01);
     EXPECT_NEAR(ball.hull_share.value(), 1, 0.001);
     EXPECT_NEAR(ball.hull_compactness.value(), 1, 0.01);
@@ -29,13 +29,13 @@ TEST(WholeShape, OfABall) {
 }
 
 TEST(WholeShape, OfATorus) {
-    const WholeShape torus = measure_whole_shape(made("torus"));
+    const WholeShape torus = measure_whole_shape(synthetic_mesh("torus"));
     EXPECT_NEAR(torus.saddles.value(), 2, 0.1) << "4 pi outside, 4 pi inside";
     EXPECT_LT(torus.hull_share.value(), 0.95);
 }
 
 TEST(WholeShape, OfAnOpenSurface) {
-    Mesh open = made("sphere");
+    Mesh open = synthetic_mesh("sphere");
     open.collect_garbage();
     CGAL::Euler::remove_face(open.halfedge(Face(0)), open);
     open.collect_garbage();
@@ -45,14 +45,15 @@ TEST(WholeShape, OfAnOpenSurface) {
     EXPECT_EQ(shape.spectrum.size(), 12U) << "borders are free";
 }
 
-TEST(WholeShape, SizeAndPlaceDoNotCount) {
-    Mesh vase = made("vase");
-    const WholeShape before = measure_whole_shape(vase);
+TEST(WholeShape, IsInvariantUnderSizeAndPosition) {
+    Mesh vase = synthetic_mesh("vase");
+    const WholeShape original = measure_whole_shape(vase);
     for (Point& p : vase.points()) p = Point(3 * p.y() + 100, -3 * p.x(), 3 * p.z() - 7);
-    const WholeShape after = measure_whole_shape(vase);
-    EXPECT_NEAR(*after.hull_share / *before.hull_share, 1, 0.01);
-    EXPECT_NEAR(*after.curvature / *before.curvature, 1, 0.05);
-    for (std::size_t k = 0; k < before.spectrum.size(); ++k) EXPECT_NEAR(after.spectrum[k] / before.spectrum[k], 1, 0.05) << k;
+    const WholeShape moved_shape = measure_whole_shape(vase);
+    EXPECT_NEAR(*moved_shape.hull_share / *original.hull_share, 1, 0.01);
+    EXPECT_NEAR(*moved_shape.curvature / *original.curvature, 1, 0.05);
+    for (std::size_t k = 0; k < original.spectrum.size(); ++k)
+        EXPECT_NEAR(moved_shape.spectrum[k] / original.spectrum[k], 1, 0.05) << k;
 }
 
 }  // namespace

@@ -18,6 +18,6 @@ void write_class(const Path& folder, const ShapeClass& learnt, const Provenance&
 ShapeClass read_class(const Path& file);
 
 /// The report of a classification (doc/schema/classification.schema.json).
-JsonValue classification_to_json(const Classification& answer, JsonAllocator& allocator);
+JsonValue classification_to_json(const Classification& classification, JsonAllocator& allocator);
 
 }  // namespace ostraka

@@ -14,7 +14,7 @@ namespace ostraka {
 /// spread, of the worst piece. "scale-tolerance": difference between the scale of a piece and that of the other landmarks, in
 /// per cent, of the worst piece. "slack": the largest deviation of a constraint in per cent. The first two need eight
 /// landmarks.
-std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& known, const std::vector<Point>& points,
+std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& class_template, const std::vector<Point>& points,
                                                const std::vector<ClassQuantity>& quantities);
 
 /// A threshold of `fit`, learnt from the class.

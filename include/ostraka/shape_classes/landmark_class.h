@@ -23,9 +23,10 @@ LandmarkTemplate read_landmark_template(const Path& file);
 
 /// Reads a member and matches its landmarks to the template's by name; additional landmarks are noted. Throws Error (input),
 /// naming file and landmark, if a landmark is missing or the unit differs.
-LearntMember read_landmark_member(const Path& file, const LandmarkTemplate& known);
+LearntMember read_landmark_member(const Path& file, const LandmarkTemplate& landmark_template);
 
 /// Writes the mean as a landmark file (.mrk.json).
-void write_landmark_mean(const Path& file, const LandmarkTemplate& known, const Landmarks& mean, const Provenance& provenance);
+void write_landmark_mean(const Path& file, const LandmarkTemplate& landmark_template, const Landmarks& mean,
+                         const Provenance& provenance);
 
 }  // namespace ostraka

@@ -25,14 +25,14 @@ struct SurfaceOff {
     std::vector<OffRegion> regions;  ///< regions of at least one per cent of the area, largest first
 };
 
-/// Samples at most 5000 points evenly over the faces. A point is off if it is farther than `near` from the other surface, or if
-/// no point of the other surface within that distance has a normal within 60 degrees of its own. A face without a sample takes
-/// the state of the nearest face with one, in steps between adjacent faces.
-SurfaceOff surface_off(const Mesh& mesh, const SurfaceSearch& other, double near);
+/// Samples at most 5000 points evenly over the faces. A point is off if it is farther than `max_distance` from the other surface,
+/// or if no point of the other surface within that distance has a normal within 60 degrees of its own. A face without a sample
+/// takes the state of the nearest face with one, in steps between adjacent faces.
+SurfaceOff surface_off(const Mesh& mesh, const SurfaceSearch& other, double max_distance);
 
 /// Finds the faces of an object that form the inside of walls whose outside lies on the other surface: faces that are off (as
 /// in surface_off), whose normal points away from that of the nearest point of the other surface, where this point in turn lies
 /// on the object. Returns one flag per face; connected regions of less than one per cent of the area are ignored.
-std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& other, double near);
+std::vector<bool> insides_of_walls(const Mesh& object, const SurfaceSearch& other, double max_distance);
 
 }  // namespace ostraka

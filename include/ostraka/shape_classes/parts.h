@@ -14,16 +14,17 @@ bool is_part(const Mesh& mesh, const Annotation& annotation);
 /// largest sides of a uniform bar with the region's moments of inertia (square roots of 12 times the eigenvalues of the area
 /// covariance); the distance of its centroid from that of the whole; and the distance between the centroids of two regions that
 /// share an edge on the template. Lengths are relative to the square root of the total area. Regions that the member has
-/// itself, in `own`, are measured there. The quantities have kind `part`; the list and its order depend only on the template.
-std::vector<ClassQuantity> part_quantities(const ClassTemplate& known, const std::vector<Point>& points,
-                                           const WholeObject* own = nullptr);
+/// itself, in `member`, are measured there. The quantities have kind `part`; the list and its order depend only on the template.
+std::vector<ClassQuantity> part_quantities(const ClassTemplate& class_template, const std::vector<Point>& points,
+                                           const WholeObject* member = nullptr);
 
 /// Whether a quantity of a part is a size, not a position.
 bool is_size_of_part(const ClassQuantity& quantity);
 
 /// 1 minus the area-weighted adjusted Rand index (Hubert and Arabie 1985) between the template's regions as registered to the
 /// member and the member's own regions: 0 for equal regions, 1 for chance agreement. None if either has no regions.
-std::optional<double> own_disagreement(const ClassTemplate& known, const std::vector<Point>& points, const WholeObject& member);
+std::optional<double> own_disagreement(const ClassTemplate& class_template, const std::vector<Point>& points,
+                                       const WholeObject& member);
 
 /// Root mean square of ln(value / expected) over the pairs where both exist and are positive, and the pair that is farthest
 /// off.

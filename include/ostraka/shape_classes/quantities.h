@@ -47,7 +47,7 @@ std::vector<Point> points_of(const Landmarks& landmarks);
 /// measures and its deviation from the range (per cent); the deviations of the other constraints and of the geometric relations
 /// (these in the frame of the template); scalar measures and descriptors of the attributes, in the unit of the points. The list
 /// and its order depend only on the template. A quantity that cannot be measured has no value.
-std::vector<ClassQuantity> measure_quantities(const ClassTemplate& known, const std::vector<Point>& points, bool sizes);
+std::vector<ClassQuantity> measure_quantities(const ClassTemplate& class_template, const std::vector<Point>& points, bool sizes);
 
 /// The residuals of a fit as quantities of kind geometry: "distance", "distance back", "unmatched", "unexplained", "stretch",
 /// "bend"; without values in correspondence.

@@ -43,6 +43,6 @@ struct Sampling {
 /// constraints hold, if every quantity on the template's annotations is in the accepted range, and if no faces intersect except
 /// those that do on the template. Returns fewer than `count` shapes if the attempts are used up. Throws Error (input) for a
 /// class without modes (by modes) or a template without parts (by edits).
-Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& known, const SampleOptions& options = {});
+Sampling sample_class(const ShapeClass& learnt, const ClassTemplate& class_template, const SampleOptions& options = {});
 
 }  // namespace ostraka

@@ -80,7 +80,7 @@ struct ShapeClass {
 };
 
 /// Registers the template to `member`, by correspondence or by a fit.
-MemberFit fit_by_method(const ClassTemplate& known, const WholeObject& member, CorrespondenceChoice correspondence,
+MemberFit fit_by_method(const ClassTemplate& class_template, const WholeObject& member, CorrespondenceChoice correspondence,
                         const MemberFitOptions& options);
 
 struct LearntMember {
@@ -89,21 +89,21 @@ struct LearntMember {
     std::vector<ClassQuantity> quantities;  ///< all quantities except those relative to other members
     std::vector<ClassQuantity> fragments;   ///< quantities of its pieces (fragment_quantities)
 };
-/// Fits one member and measures everything that does not depend on other members. `whole`, if given, saves measuring the
+/// Fits one member and measures everything that does not depend on other members. `whole_shape`, if given, saves measuring the
 /// surface again when several templates are registered to one object.
-LearntMember learn_member(const ClassTemplate& known, const WholeObject& member, const LearnOptions& options = {},
-                          const WholeShape* whole = nullptr);
+LearntMember learn_member(const ClassTemplate& class_template, const WholeObject& member, const LearnOptions& options = {},
+                          const WholeShape* whole_shape = nullptr);
 
 /// Measures a member to which the template is already registered: its own annotations where it has regions, and those of the
 /// template.
-LearntMember measure_member(const ClassTemplate& known, const WholeObject& member, MemberFit fit,
-                            const LearnOptions& options = {}, const WholeShape* whole = nullptr);
+LearntMember measure_member(const ClassTemplate& class_template, const WholeObject& member, MemberFit fit,
+                            const LearnOptions& options = {}, const WholeShape* whole_shape = nullptr);
 
 /// Learns a class from its members. Members with a problem are left out, and a note reports it. `strangers` are out-of-class
 /// objects: their values determine up to which dissimilarity an object is recognised. Throws Error (input) if no member is
 /// left.
-ShapeClass learn_class(const ClassTemplate& known, const std::vector<LearntMember>& members, const LearnOptions& options = {},
-                       const std::vector<LearntMember>& strangers = {});
+ShapeClass learn_class(const ClassTemplate& class_template, const std::vector<LearntMember>& members,
+                       const LearnOptions& options = {}, const std::vector<LearntMember>& strangers = {});
 
 /// Sets, for each range, whether it can reject, its share of `reject`, and the accepted range: the prediction interval
 /// (`predict`) of its values or their logarithms, one-sided for residuals. The rate is divided among the kinds of quantities

@@ -80,7 +80,7 @@ private:
     std::size_t inputs_ = 0;                                              ///< total number of inputs
 };
 
-/// Whether an object of kind `given` is accepted where `asked` is required.
+/// Whether an object of kind `available` is accepted where `required` is required.
 bool is_compatible(Kind available, Kind required);
 
 }  // namespace ostraka
