@@ -5,6 +5,8 @@
 #include "ostraka/core/stopwatch.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <poll.h>
 #include <unistd.h>
 
@@ -14,13 +16,13 @@ namespace ostraka {
 
 namespace {
 
-bool is_told_to_stop() {
+bool is_cancelled() {
     const Watch* watch = current_watch();
     return watch != nullptr && watch->is_cancelled();
 }
 
 /// Copies "result" of a report into the answer.
-void take_result(Answer& answer, const Json& report) {
+void copy_result(Answer& answer, const Json& report) {
     const JsonValue* result = find_member(report, "result");
     if (result == nullptr) return;
     auto copy = std::make_shared<Json>();
@@ -33,25 +35,25 @@ public:
     CommandBackend(std::vector<std::string> words, ArgumentsOf arguments, double time_limit)
         : words_(std::move(words)), arguments_(std::move(arguments)), time_limit_(time_limit) {}
 
-    Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& folder) override {
+    Answer run(const ConformanceCase& test_case, const JsonValue& settings, const Path& folder) override {
         std::vector<std::string> words = words_;
-        for (const std::string& word : arguments_(one.operation, settings)) words.push_back(word);
+        for (const std::string& word : arguments_(test_case.operation, settings)) words.push_back(word);
         const Path out = folder / "stdout", err = folder / "stderr";
         const Stopwatch clock;
         ChildProcess program(std::move(words), {.output = out, .errors = err});
         Answer answer;
-        if (!program.wait([&] { return clock.seconds() > time_limit_ || is_told_to_stop(); })) {
+        if (!program.wait([&] { return clock.seconds() > time_limit_ || is_cancelled(); })) {
             check_cancelled();
-            answer.message = "took more than " + digits(time_limit_, 4) + " s";
+            answer.message = fmt::format("took more than {} s", digits(time_limit_, 4));
             return answer;
         }
         answer.seconds = clock.seconds();
         answer.code = program.code();
         answer.message = printable(std::string(trimmed(read_file(err))), 400);
-        if (answer.code > 128) answer.message = program.ending() + " " + answer.message;
+        if (answer.code > 128) answer.message = fmt::format("{} {}", program.ending(), answer.message);
         if (answer.code == 0 || answer.code == 3) {
             try {
-                take_result(answer, parse_json(read_file(out), "its report"));
+                copy_result(answer, parse_json(read_file(out), "its report"));
             } catch (const Error& error) {
                 answer.message = error.what();
             }
@@ -77,20 +79,21 @@ public:
         program_->wait([&] { return since.seconds() > 1; });
     }
 
-    Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& /*folder*/) override {
+    Answer run(const ConformanceCase& test_case, const JsonValue& settings, const Path& /*folder*/) override {
         const std::lock_guard lock(mutex_);
         Answer answer;
         if (!program_) start();
         Json request(rapidjson::kObjectType);
         auto& allocator = request.GetAllocator();
-        add_member(request, "id", one.id, allocator);
-        add_member(request, "operation", one.operation, allocator);
+        add_member(request, "id", test_case.id, allocator);
+        add_member(request, "operation", test_case.operation, allocator);
         add_member(request, "with", JsonValue(settings, allocator), allocator);
         const Stopwatch clock;
-        if (!send(to_compact_text(request) + "\n")) return crashed("does not read any more");
+        if (!send(to_compact_text(request) + "\n")) return failed_answer("does not read its input any more");
         const auto line = receive(clock);
         if (!line)
-            return crashed(clock.seconds() > time_limit_ ? "took more than " + digits(time_limit_, 4) + " s" : "gave no answer");
+            return failed_answer(clock.seconds() > time_limit_ ? fmt::format("took more than {} s", digits(time_limit_, 4))
+                                                               : "gave no answer");
         answer.seconds = clock.seconds();
         try {
             const Json reply = parse_json(*line, "its answer");
@@ -99,7 +102,7 @@ public:
                 fail_input("its answer", "has no code", "answer {\"code\": 0, \"result\": {...}}");
             answer.code = code->GetInt();
             answer.message = text_in(reply, "message");
-            take_result(answer, reply);
+            copy_result(answer, reply);
         } catch (const Error& error) {
             answer.code = -1;
             answer.message = error.what();
@@ -110,12 +113,12 @@ public:
 private:
     void start() { program_ = std::make_unique<ChildProcess>(words_, ChildOptions{.pipes = true}); }
     /// The program will be restarted for the next case.
-    Answer crashed(const std::string& how) {
+    Answer failed_answer(const std::string& reason) {
         program_.reset();
-        left_.clear();
+        unread_.clear();
         check_cancelled();
         Answer answer;
-        answer.message = how;
+        answer.message = reason;
         return answer;
     }
     bool send(std::string_view bytes) const {
@@ -128,25 +131,25 @@ private:
     }
     std::optional<std::string> receive(const Stopwatch& clock) {
         for (;;) {
-            if (const std::size_t end = left_.find('\n'); end != std::string::npos) {
-                std::string line = left_.substr(0, end);
-                left_.erase(0, end + 1);
+            if (const std::size_t end = unread_.find('\n'); end != std::string::npos) {
+                std::string line = unread_.substr(0, end);
+                unread_.erase(0, end + 1);
                 return line;
             }
-            if (clock.seconds() > time_limit_ || is_told_to_stop()) return {};
+            if (clock.seconds() > time_limit_ || is_cancelled()) return {};
             pollfd waiting{program_->from(), POLLIN, 0};
             if (::poll(&waiting, 1, 100) <= 0) continue;
             char buffer[65536];
-            const ssize_t got = ::read(program_->from(), buffer, sizeof buffer);
-            if (got <= 0) return {};
-            left_.append(buffer, static_cast<std::size_t>(got));
+            const ssize_t bytes_read = ::read(program_->from(), buffer, sizeof buffer);
+            if (bytes_read <= 0) return {};
+            unread_.append(buffer, static_cast<std::size_t>(bytes_read));
         }
     }
 
     std::vector<std::string> words_;
     double time_limit_;
     std::unique_ptr<ChildProcess> program_;  ///< null after a crash
-    std::string left_;
+    std::string unread_;
     std::mutex mutex_;
 };
 

@@ -23,12 +23,12 @@ def cases():
 
 
 def conformance(*words, backend=()):
-    """Exit code, result of the report, and what was said, of a run of the kit."""
+    """Exit code, result of the report, and standard error of a run of the kit."""
     verb = ["run"] if backend else ["self"]
-    done = subprocess.run([COMMAND, "conformance", *verb, "--kit", KIT, "--json", *words, *(["--", *backend] if backend else [])],
+    completed = subprocess.run([COMMAND, "conformance", *verb, "--kit", KIT, "--json", *words, *(["--", *backend] if backend else [])],
                           capture_output=True, text=True, check=False)
-    assert done.returncode in (0, 3), done.stderr[-2000:]
-    return done.returncode, json.loads(done.stdout)["result"], done.stderr
+    assert completed.returncode in (0, 3), completed.stderr[-2000:]
+    return completed.returncode, json.loads(completed.stdout)["result"], completed.stderr
 
 
 def only(names):
@@ -51,14 +51,14 @@ def test_the_command_agrees_with_itself():
 
 
 def test_every_operation_has_its_cases():
-    done = subprocess.run([COMMAND, "operations", "--json"], capture_output=True, text=True, check=True)
-    for operation in json.loads(done.stdout)["result"]["operations"]:
+    completed = subprocess.run([COMMAND, "operations", "--json"], capture_output=True, text=True, check=True)
+    for operation in json.loads(completed.stdout)["result"]["operations"]:
         name = operation["name"]
         if name in ("conformance run", "conformance self"):
             continue
-        mine = [case for case in cases() if case["operation"] == name]
-        assert len(mine) >= 3, name
-        assert any(case.get("degenerate") for case in mine), name
+        own_cases = [case for case in cases() if case["operation"] == name]
+        assert len(own_cases) >= 3, name
+        assert any(case.get("degenerate") for case in own_cases), name
 
 
 def wrong(mode, operations):
@@ -88,8 +88,8 @@ def test_freedoms_allow_another_vertex_order():
     with open(os.path.join(HERE, "expected_failures.json"), encoding="utf-8") as stream:
         expected = set(json.load(stream)["order"])
     for case in cases():
-        meshes = [one for one in case.get("compare", []) if one["as"] == "mesh"]
-        if meshes and all(one.get("freedoms") for one in meshes):
+        meshes = [mesh for mesh in case.get("compare", []) if mesh["as"] == "mesh"]
+        if meshes and all(mesh.get("freedoms") for mesh in meshes):
             assert case["id"] not in expected, case["id"]
 
 
@@ -109,19 +109,19 @@ def test_the_numpy_backend_differs_by_its_known_weaknesses_alone():
 FEW = ("--only", "cage edit")
 
 
-def all_differ(backend, *words, says=""):
+def all_differ(backend, *words, expected=""):
     code, result, _ = conformance(*FEW, *words, backend=backend)
-    mine = sorted(case["id"] for case in cases() if case["operation"] == "cage edit")
-    assert differing(result) == mine and code == 3
-    assert any(says in row["difference"] for row in result["differences"]), result["differences"]
+    own_cases = sorted(case["id"] for case in cases() if case["operation"] == "cage edit")
+    assert differing(result) == own_cases and code == 3
+    assert any(expected in row["difference"] for row in result["differences"]), result["differences"]
 
 
 def test_a_crash():
-    all_differ(script("import os; os.kill(os.getpid(), 11)"), says="signal 11")
+    all_differ(script("import os; os.kill(os.getpid(), 11)"), expected="signal 11")
 
 
 def test_a_crash_between_lines():
-    all_differ(script("import sys, os; sys.stdin.readline(); os.kill(os.getpid(), 11)"), "--lines", says="gave no answer")
+    all_differ(script("import sys, os; sys.stdin.readline(); os.kill(os.getpid(), 11)"), "--lines", expected="gave no answer")
 
 
 def test_a_backend_that_reads_nothing():
@@ -129,11 +129,11 @@ def test_a_backend_that_reads_nothing():
 
 
 def test_a_hang():
-    all_differ(script("import time; time.sleep(60)"), "--time-limit", "0.3", says="took more than")
+    all_differ(script("import time; time.sleep(60)"), "--time-limit", "0.3", expected="took more than")
 
 
 def test_a_hang_between_lines():
-    all_differ(script("import sys, time; sys.stdin.readline(); time.sleep(60)"), "--lines", "--time-limit", "0.3", says="took more than")
+    all_differ(script("import sys, time; sys.stdin.readline(); time.sleep(60)"), "--lines", "--time-limit", "0.3", expected="took more than")
 
 
 def test_garbage():
@@ -148,7 +148,7 @@ def test_garbage_between_lines():
 def test_an_answer_without_files():
     report = {"code": 0, "result": {"steps": 1, "moved": 8, "intersects": False}}
     all_differ(script(f"import sys, json\nfor line in sys.stdin: print(json.dumps({report!r}), flush=True)"), "--lines",
-               says="was not written")
+               expected="was not written")
 
 
 def test_not_supported_is_counted():

@@ -126,7 +126,7 @@ TEST_F(ClassCommand, AFitUsesShapeAndThresholdsOfItsClassOnly) {
         const auto refused = run_command(command);
         EXPECT_EQ(refused.code, 1) << command;
         EXPECT_NE(refused.err.find("idol.class.json"), std::string::npos) << refused.err;
-        EXPECT_NE(refused.err.find("join other vertices"), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find("triangles differ"), std::string::npos) << refused.err;
     }
     const auto none = run_command(fit + " --class " + quoted(scratch / "class" / "missing.class.json"));
     EXPECT_EQ(none.code, 1);

@@ -55,7 +55,7 @@ struct Answer {
 class Backend {
 public:
     virtual ~Backend();
-    virtual Answer run(const ConformanceCase& one, const JsonValue& settings, const Path& folder) = 0;
+    virtual Answer run(const ConformanceCase& test_case, const JsonValue& settings, const Path& folder) = 0;
 };
 
 /// A program with the command-line interface WORDS... mesh info FILE --json. `arguments` produces the words of a call.
@@ -73,20 +73,20 @@ struct CaseResult {
 std::string to_string(Outcome outcome);
 
 /// Runs a case with the backend and compares its outputs with the expected ones. Each case has its own folder in `scratch`.
-CaseResult run_case(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& scratch,
+CaseResult run_case(const ConformanceKit& kit, const ConformanceCase& test_case, Backend& backend, const Path& scratch,
                     const FindOperation& find);
 /// Runs a case and stores its outputs as the expected ones. Throws Error (failure) if the exit code differs from the expected
 /// one.
-void record_case(const ConformanceKit& kit, const ConformanceCase& one, Backend& backend, const Path& scratch,
+void record_case(const ConformanceKit& kit, const ConformanceCase& test_case, Backend& backend, const Path& scratch,
                  const FindOperation& find);
 
 /// Settings of a case with absolute names: inputs from the kit, outputs in `folder`.
-Json settings_of(const ConformanceKit& kit, const ConformanceCase& one, const Path& folder, const FindOperation& find);
+Json settings_of(const ConformanceKit& kit, const ConformanceCase& test_case, const Path& folder, const FindOperation& find);
 
-/// Describes how the two differ, with numbers; empty if they agree. `expected`, `got`: files; for "report" JSON documents.
-std::string difference(const Comparison& comparison, const Path& expected, const Path& got, const Path& expected_mesh,
-                       const Path& got_mesh);
-std::string difference_of_values(const Comparison& comparison, const JsonValue& expected, const JsonValue& got);
+/// Describes how the two differ, with numbers; empty if they agree. `expected`, `actual`: files; for "report" JSON documents.
+std::string difference(const Comparison& comparison, const Path& expected, const Path& actual, const Path& expected_mesh,
+                       const Path& actual_mesh);
+std::string difference_of_values(const Comparison& comparison, const JsonValue& expected, const JsonValue& actual);
 
 /// JUnit XML of the results, one test case each.
 std::string junit_of(const ConformanceKit& kit, const std::vector<CaseResult>& results, const std::string& backend);
