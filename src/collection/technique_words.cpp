@@ -101,7 +101,7 @@ std::string explain(const TechniqueStudy& study, const TechniqueObject& object, 
     for (const ClassifierResult& classifier_result : study.classifiers)
         if (classifier_result.classifier.name == study.answered_by) classifier_words = classifier_result.classifier.words;
     if (answer.certainty.empty())
-        return fmt::format("{}{}no answer by {}: it needs descriptors that are unknown for this object", text,
+        return fmt::format("{}{}no answer by {}: it needs descriptors that are not known for this object", text,
                            text.empty() ? "" : "; ", classifier_words);
     text += "; " + verdict(study, answer, classifier_words);
     if (answer.answer.empty()) return text;

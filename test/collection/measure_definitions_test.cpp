@@ -81,9 +81,9 @@ TEST(MeasureDefinitions, ClayIsAVolumeOfTheWholeObject) {
     ASSERT_TRUE(measures.values[0].has_value());
     EXPECT_EQ(measures.powers[0], 3);
     EXPECT_NEAR(*measures.values[0], closed_volume(ball.mesh), 1e-4 * closed_volume(ball.mesh));
-    EXPECT_FALSE(measures.values[1].has_value());  // no wall is seen
+    EXPECT_FALSE(measures.values[1].has_value());  // no wall is found
     ASSERT_EQ(measures.notes.size(), 1U);
-    EXPECT_NE(measures.notes[0].find("no wall is seen"), std::string::npos) << measures.notes[0];
+    EXPECT_NE(measures.notes[0].find("no wall is found"), std::string::npos) << measures.notes[0];
     EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "most"})"), Error);
     EXPECT_THROW((void)definitions(R"({"name": "a", "clay": "max", "annotation": "cap"})"), Error);
 }

@@ -140,7 +140,7 @@ TEST(StudyTechniqueCommand, OutOfClassObjectsGetNoAnswer) {
     const auto result = run_command("study technique " + folder.string() + " --truth " + (folder / "truth.csv").string() +
                                     " --answer-by roundness --output " + out.string());
     EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.err.find("no upward direction is known, z is taken"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("the upward direction is unknown and z is used"), std::string::npos) << result.err;
     EXPECT_NE(result.out.find("8 of 8 right\nunlike the labelled objects"), std::string::npos) << result.out;
     const Json report = read_json(out / "technique.json");
     validate(report, "technique", "technique.json");
@@ -154,7 +154,7 @@ TEST(StudyTechniqueCommand, SaysWhereTheOptionOverridesTheAnnotations) {
     const std::string start = "study technique " + population().string() + " --output ";
     const auto same = run_command(start + (scratch / "same").string() + " --up 0,0,2");
     EXPECT_EQ(same.err.find("--up is used"), std::string::npos) << same.err;
-    EXPECT_EQ(same.err.find("is known"), std::string::npos) << same.err;
+    EXPECT_EQ(same.err.find("is unknown"), std::string::npos) << same.err;
     for (int run = 0; run < 2; ++run) {  // also where the results are kept from an earlier run
         const auto other = run_command(start + (scratch / "other").string() + " --up 0,0.2,1");
         EXPECT_NE(other.err.find("--up is used, although the annotations have a different"), std::string::npos) << other.err;

@@ -188,7 +188,7 @@ TEST(Classify, ReportsWhenItCannotDecide) {
     EXPECT_EQ(ask_class(two, template_tower.known(), member_of(template_tower, "x", 1, 0.9, 1)).verdict, Membership::undecided);
     equal.push_back(member_of(template_tower, "c", 1, 0.9, 1));
     const ShapeClass same = class_of(template_tower, equal);
-    EXPECT_NE(same.notes.back().find("one shape"), std::string::npos) << same.notes.back();
+    EXPECT_NE(same.notes.back().find("the same shape"), std::string::npos) << same.notes.back();
     EXPECT_EQ(ask_class(same, template_tower.known(), member_of(template_tower, "x", 1, 0.9, 1)).verdict, Membership::member);
     EXPECT_EQ(ask_class(same, template_tower.known(), member_of(template_tower, "x", 1, 1.8, 1)).verdict, Membership::other);
     // Two classes that say the same cannot be distinguished.
