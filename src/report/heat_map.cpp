@@ -5,6 +5,8 @@
 #include "ostraka/render/colour_scale.h"
 #include "sheet.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,11 +21,11 @@ constexpr double largest_name = 170, wished_size = 800;
 void check(const HeatMap& map) {
     const auto rows = static_cast<std::size_t>(map.values.rows()), columns = static_cast<std::size_t>(map.values.cols());
     if (map.rows.size() != rows || map.columns.size() != columns)
-        fail_usage("a heat map of " + std::to_string(rows) + " rows and " + std::to_string(columns) + " columns has " +
-                       std::to_string(map.rows.size()) + " and " + std::to_string(map.columns.size()) + " names",
-                   "give one each");
+        fail_usage(fmt::format("a heat map of {} rows and {} columns has {} and {} names", rows, columns, map.rows.size(),
+                               map.columns.size()),
+                   "give one name per row and per column");
     if (!map.groups.empty() && (map.groups.size() != rows || rows != columns))
-        fail_usage("the groups of a heat map do not fit its rows and columns", "give one a row of a square matrix");
+        fail_usage("the groups of a heat map do not match its rows and columns", "give one per row of a square matrix");
 }
 
 ColourScale colours(const HeatMap& map) {

@@ -4,6 +4,8 @@
 #include "ruler.h"
 #include "sheet.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,11 +20,11 @@ constexpr Rgb leader{150, 150, 150};
 
 void check(const Plot& plot) {
     for (const PlotSeries& series : plot.series) {
-        for (const auto& [what, count] : {std::pair{" labels", series.labels.size()}, {" intervals", series.intervals.size()}})
+        for (const auto& [kind, count] : {std::pair{" labels", series.labels.size()}, {" intervals", series.intervals.size()}})
             if (count != 0 && count != series.points.size())
-                fail_usage("series '" + series.name + "' of a plot has " + std::to_string(count) + what + " for " +
-                               std::to_string(series.points.size()) + " points",
-                           "give one a point, or none");
+                fail_usage(
+                    fmt::format("series '{}' of a plot has {}{} for {} points", series.name, count, kind, series.points.size()),
+                    "give one per point, or none");
     }
 }
 
@@ -45,17 +47,17 @@ public:
             run.clear();
         };
         for (const auto& point : series.points) {
-            if (placed(point)) run.push_back(pixel(point));
+            if (is_placed(point)) run.push_back(pixel(point));
             else end_run();
         }
         end_run();
         if (!series.marked) return;
         for (const auto& point : series.points)
-            if (placed(point)) {
+            if (is_placed(point)) {
                 const auto [px, py] = pixel(point);
                 if (series.joined) sheet_.dot(px, py, colour);
                 else sheet_.mark(px, py, series.colour.value_or(index), colour);
-                taken_.push_back({px - 4, py - 4, px + 4, py + 4});
+                occupied_.push_back({px - 4, py - 4, px + 4, py + 4});
             }
     }
 
@@ -65,14 +67,14 @@ public:
         std::size_t left_out = 0;
         for (const PlotSeries& series : plot_.series)
             for (std::size_t i = 0; i < series.labels.size(); ++i)
-                if (!series.labels[i].empty() && placed(series.points[i]) &&
+                if (!series.labels[i].empty() && is_placed(series.points[i]) &&
                     !draw_label(sheet_.fitted(series.labels[i], 140, label_size), pixel(series.points[i]), area))
                     ++left_out;
         return left_out;
     }
 
 private:
-    [[nodiscard]] bool placed(const std::array<double, 2>& point) const {
+    [[nodiscard]] bool is_placed(const std::array<double, 2>& point) const {
         return has_place(plot_.x, point[0]) && has_place(plot_.y, point[1]);
     }
     [[nodiscard]] std::array<double, 2> pixel(const std::array<double, 2>& point) const {
@@ -85,21 +87,21 @@ private:
     bool draw_label(const std::string& words, const std::array<double, 2>& at, const Box& area) {
         const double width = sheet_.width_of(words, label_size), height = label_size;
         const auto [px, py] = at;
-        for (const double away : {6.0, 14.0, 26.0, 40.0}) {
-            const double slant = 0.7 * away;
-            for (const auto& [dx, dy] : {std::array{away, -height / 2},
+        for (const double distance : {6.0, 14.0, 26.0, 40.0}) {
+            const double slant = 0.7 * distance;
+            for (const auto& [dx, dy] : {std::array{distance, -height / 2},
                                          {slant, -height - slant},
                                          {slant, slant},
-                                         {-away - width, -height / 2},
+                                         {-distance - width, -height / 2},
                                          {-slant - width, -height - slant},
                                          {-slant - width, slant},
-                                         {-width / 2, -height - away},
-                                         {-width / 2, away}}) {
+                                         {-width / 2, -height - distance},
+                                         {-width / 2, distance}}) {
                 const Box box{px + dx, py + dy, px + dx + width, py + dy + height};
                 if (box.left < area.left || box.right > area.right || box.top < area.top || box.bottom > area.bottom) continue;
-                if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); })) continue;
-                taken_.push_back(box);
-                if (away > 6)
+                if (std::any_of(occupied_.begin(), occupied_.end(), [&](const Box& other) { return box.meets(other); })) continue;
+                occupied_.push_back(box);
+                if (distance > 6)
                     sheet_.line(px, py, std::clamp(px, box.left, box.right), std::clamp(py, box.top, box.bottom), leader, 0.7);
                 sheet_.text(words, box.left, box.bottom - 0.15 * height, 0, label_size);
                 return true;
@@ -112,7 +114,7 @@ private:
         offset_ = (static_cast<double>(bar_) - (bars_ - 1) / 2.0) * width;
         ++bar_;
         for (const auto& point : series.points) {
-            if (!placed(point)) continue;
+            if (!is_placed(point)) continue;
             const auto [px, py] = pixel(point);
             sheet_.rectangle({px + offset_ - 0.46 * width, std::min(py, base), px + offset_ + 0.46 * width, std::max(py, base)},
                              colour);
@@ -122,7 +124,7 @@ private:
         const bool bars = series.mark == Mark::bars;
         const double shift = bars ? offset_ : 0;
         for (std::size_t i = 0; i < series.intervals.size(); ++i) {
-            if (!series.intervals[i] || !placed(series.points[i])) continue;
+            if (!series.intervals[i] || !is_placed(series.points[i])) continue;
             const auto [low, high] = *series.intervals[i];
             if (!has_place(plot_.y, low) || !has_place(plot_.y, high)) continue;
             const double px = x_.pixel(series.points[i][0]) + shift, a = y_.pixel(low), b = y_.pixel(high);
@@ -137,7 +139,7 @@ private:
     const Ruler &x_, &y_;
     int bars_ = 0, bar_ = 0;
     double offset_ = 0;
-    std::vector<Box> taken_;
+    std::vector<Box> occupied_;
 };
 
 void draw_legend(Sheet& sheet, const Plot& plot, double left, double top) {
@@ -209,27 +211,28 @@ std::string draw(const Plot& plot, Sheet::Format format) {
     sheet.clip({left, top - 5, right + 5, bottom + 5});
     Drawing drawing(sheet, plot, x, y);
     for (std::size_t i = 0; i < plot.series.size(); ++i) drawing.draw(i);
-    for (const PlotLine& mark : plot.lines) {
-        if (!has_place(mark.upright ? plot.x : plot.y, mark.value)) continue;
-        const double at = (mark.upright ? x : y).pixel(mark.value);
-        if (mark.upright) sheet.line(at, top, at, bottom, ink, 1, true);
+    for (const PlotLine& plot_line : plot.lines) {
+        if (!has_place(plot_line.upright ? plot.x : plot.y, plot_line.value)) continue;
+        const double at = (plot_line.upright ? x : y).pixel(plot_line.value);
+        if (plot_line.upright) sheet.line(at, top, at, bottom, ink, 1, true);
         else sheet.line(left, at, right, at, ink, 1, true);
     }
-    const std::size_t unnamed = drawing.draw_labels(area);
-    for (const PlotLine& mark : plot.lines) {
-        if (mark.label.empty() || !has_place(mark.upright ? plot.x : plot.y, mark.value)) continue;
-        const double at = (mark.upright ? x : y).pixel(mark.value), length = sheet.width_of(mark.label, label_size);
-        if (mark.upright) {
+    const std::size_t hidden_labels = drawing.draw_labels(area);
+    for (const PlotLine& plot_line : plot.lines) {
+        if (plot_line.label.empty() || !has_place(plot_line.upright ? plot.x : plot.y, plot_line.value)) continue;
+        const double at = (plot_line.upright ? x : y).pixel(plot_line.value),
+                     length = sheet.width_of(plot_line.label, label_size);
+        if (plot_line.upright) {
             sheet.rectangle({at - 5 - label_size, top + 2, at - 2, top + 6 + length}, paper);
-            sheet.upward_text(mark.label, at - 4, top + 3, 1, label_size);
+            sheet.upward_text(plot_line.label, at - 4, top + 3, 1, label_size);
         } else {
             sheet.rectangle({right - 6 - length, at - 4 - label_size, right - 2, at - 2}, paper);
-            sheet.text(mark.label, right - 4, at - 4, 1, label_size);
+            sheet.text(plot_line.label, right - 4, at - 4, 1, label_size);
         }
     }
     sheet.unclip();
-    if (unnamed > 0)
-        sheet.text(std::to_string(unnamed) + (unnamed == 1 ? " name finds" : " names find") + " no room", right,
+    if (hidden_labels > 0)
+        sheet.text(fmt::format("{}{} not shown", hidden_labels, hidden_labels == 1 ? " name is" : " names are"), right,
                    margin + 0.8 * text_size, 1, label_size);
     return sheet.finish();
 }

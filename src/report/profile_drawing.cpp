@@ -6,6 +6,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,7 +19,7 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr double points_a_mm = 72 / 25.4;
+constexpr double points_per_mm = 72 / 25.4;
 constexpr double above = 64, below = 62, beside = 64;
 
 /// Points of the sheet per unit, and the name of the scale ("1 : 2") if the unit is known.
@@ -29,9 +31,9 @@ Scale scale_of(double width, double height, const std::string& unit) {
     const double room_x = 430, room_y = 560;  // of a page with margins
     const double largest = std::min(room_x / width, room_y / height);
     static const std::map<std::string, double> units{{"um", 0.001}, {"mm", 1}, {"cm", 10}, {"m", 1000}};
-    const auto known = units.find(unit);
-    if (known == units.end()) return {largest, ""};
-    const double natural = known->second * points_a_mm;
+    const auto millimetres = units.find(unit);
+    if (millimetres == units.end()) return {largest, ""};
+    const double natural = millimetres->second * points_per_mm;
     Scale best{largest, ""};
     for (double ten = 1e-6; ten < 1e7; ten *= 10)
         for (const double step : {1.0, 2.0, 2.5, 3.0, 4.0, 5.0})
@@ -119,8 +121,8 @@ void write_profile_drawing(const Path& file, const Profile& profile, const std::
             dimension(sheet, placing({-r, 0})[0], top - 16, placing({r, 0})[0], top - 16);
             std::string words = "\u2300 " + length_text(profile.rim_diameter, unit);
             if (profile.rim_high > 0)
-                words += " (" + length_text(profile.rim_low, unit) + " to " + length_text(profile.rim_high, unit) + "; " +
-                         fixed(100 * profile.rim_share, 0) + " % is there)";
+                words += fmt::format(" ({} to {}; {} % preserved)", length_text(profile.rim_low, unit),
+                                     length_text(profile.rim_high, unit), fixed(100 * profile.rim_share, 0));
             sheet.text(words, middle, top - 21, 0.5, 9.5);
         }
         const double side = placing({right, 0})[0] + 18;

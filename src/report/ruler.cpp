@@ -4,6 +4,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/render/colour_scale.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,10 +42,10 @@ Ruler::Ruler(const Plot& plot, std::size_t coordinate)
                 for (const double end : *series.intervals[i])
                     if (has_place(plot.y, end)) include(end);
         }
-    if (minimum_ > maximum_) fail_input("plot", "no point has a place on the axis '" + axis_->label + "'");
+    if (minimum_ > maximum_) fail_input("plot", fmt::format("no point can be shown on the axis '{}'", axis_->label));
     if (!axis_->names.empty()) include(-0.5), include(static_cast<double>(axis_->names.size()) - 0.5);
-    for (const PlotLine& mark : plot.lines)
-        if (mark.upright == (coordinate == 0) && has_place(*axis_, mark.value)) include(mark.value);
+    for (const PlotLine& plot_line : plot.lines)
+        if (plot_line.upright == (coordinate == 0) && has_place(*axis_, plot_line.value)) include(plot_line.value);
     if (axis_->minimum) minimum_ = place(*axis_->minimum);
     if (axis_->maximum) maximum_ = place(*axis_->maximum);
     if (!(maximum_ > minimum_)) {
@@ -71,16 +73,16 @@ void Ruler::include(double value) {
 double Ruler::lowest() const { return logarithmic_ ? std::pow(10.0, minimum_) : minimum_; }
 
 void Ruler::widen(double extent) {
-    const double more = (extent - (maximum_ - minimum_)) / 2;
-    minimum_ -= more;
-    maximum_ += more;
+    const double margin_each = (extent - (maximum_ - minimum_)) / 2;
+    minimum_ -= margin_each;
+    maximum_ += margin_each;
 }
 
 std::vector<Tick> Ruler::ticks() const {
-    std::vector<Tick> list;
+    std::vector<Tick> tick_list;
     if (!axis_->names.empty()) {
-        for (std::size_t i = 0; i < axis_->names.size(); ++i) list.push_back({static_cast<double>(i), axis_->names[i]});
-        return list;
+        for (std::size_t i = 0; i < axis_->names.size(); ++i) tick_list.push_back({static_cast<double>(i), axis_->names[i]});
+        return tick_list;
     }
     if (!logarithmic_ || maximum_ - minimum_ < 0.5) return even_ticks();
     const int decades = static_cast<int>(std::ceil(maximum_ - minimum_)), stride = std::max(1, decades / 8);
@@ -89,17 +91,17 @@ std::vector<Tick> Ruler::ticks() const {
             if (digit > 1 ? decades > 2 : e % stride != 0) continue;
             const double value = digit * std::pow(10.0, e);
             if (place(value) < minimum_ || place(value) > maximum_) continue;
-            list.push_back({value, power_text(value)});
+            tick_list.push_back({value, power_text(value)});
         }
-    return list;
+    return tick_list;
 }
 
 std::vector<Tick> Ruler::even_ticks() const {
     const auto value = [&](double at) { return logarithmic_ ? std::pow(10.0, at) : at; };
     const std::vector<double> values = ostraka::ticks({value(minimum_), value(maximum_), false, ""}, 6);
-    std::vector<Tick> list;
-    for (const double v : values) list.push_back({v, tick_text(v, values.size() > 1 ? values[1] - values[0] : v)});
-    return list;
+    std::vector<Tick> tick_list;
+    for (const double v : values) tick_list.push_back({v, tick_text(v, values.size() > 1 ? values[1] - values[0] : v)});
+    return tick_list;
 }
 
 }  // namespace ostraka::report

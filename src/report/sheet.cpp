@@ -41,8 +41,8 @@ std::string drawable(const std::string& words) {
 
 Rgb series_colour(std::size_t index) { return index < colours.size() ? colours[index] : category_colour(index); }
 
-Rgb lighter(const Rgb& colour, double share) {
-    const auto mix = [&](std::uint8_t part) { return static_cast<std::uint8_t>(std::lround(part + share * (255 - part))); };
+Rgb lighter(const Rgb& colour, double fraction) {
+    const auto mix = [&](std::uint8_t part) { return static_cast<std::uint8_t>(std::lround(part + fraction * (255 - part))); };
     return {mix(colour.red), mix(colour.green), mix(colour.blue)};
 }
 
@@ -174,15 +174,15 @@ void Sheet::upward_text(const std::string& words, double x, double y, double anc
 }
 
 std::string Sheet::fitted(const std::string& words, double width, double size) {
-    std::string rest = drawable(words);
-    if (width_of(rest, size) <= width) return rest;
-    while (!rest.empty()) {
-        std::size_t last = rest.size() - 1;
-        while (last > 0 && (static_cast<unsigned char>(rest[last]) & 0xc0) == 0x80) --last;
-        rest.resize(last);
-        if (width_of(rest + "\u2026", size) <= width) break;
+    std::string remaining = drawable(words);
+    if (width_of(remaining, size) <= width) return remaining;
+    while (!remaining.empty()) {
+        std::size_t last = remaining.size() - 1;
+        while (last > 0 && (static_cast<unsigned char>(remaining[last]) & 0xc0) == 0x80) --last;
+        remaining.resize(last);
+        if (width_of(remaining + "\u2026", size) <= width) break;
     }
-    return rest + "\u2026";
+    return remaining + "\u2026";
 }
 
 void Sheet::clip(const Box& box) {
@@ -208,7 +208,7 @@ void write_sheet(const Path& file, const std::function<std::string(Sheet::Format
     const std::string ending = extension(file);
     if (ending != ".svg" && ending != ".png" && ending != ".pdf")
         throw Error(ErrorKind::usage, file.string(), "drawings are written as SVG, PDF or PNG",
-                    "let the name end in .svg, .pdf or .png");
+                    "use a file name that ends in .svg, .pdf or .png");
     make_folder(file.parent_path());
     write_file(file, draw(ending == ".png" ? Sheet::Format::png : ending == ".pdf" ? Sheet::Format::pdf : Sheet::Format::svg));
 }

@@ -21,7 +21,7 @@ inline constexpr Rgb ink{30, 30, 30}, pale{222, 222, 222}, quiet_line{150, 150, 
 /// Colours that colour-blind readers can distinguish (Okabe and Ito), followed by further colours.
 Rgb series_colour(std::size_t index);
 /// The colour mixed with the paper colour: 0 is the colour, 1 is paper.
-Rgb lighter(const Rgb& colour, double share);
+Rgb lighter(const Rgb& colour, double fraction);
 
 struct Box {
     double left = 0, top = 0, right = 0, bottom = 0;

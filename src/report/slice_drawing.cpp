@@ -7,6 +7,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/report/table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -85,11 +87,11 @@ std::string second_line(const DrawnSlice& drawn) {
     std::string text;
     if (std::isfinite(d.eccentricity)) text = "m/M " + fixed(d.eccentricity, 2);
     if (std::isfinite(d.roundness_fitted_relative))
-        text += (text.empty() ? "" : ", ") + std::string("off ") + fixed(100 * d.roundness_fitted_relative, 1) + " %";
-    const Completeness& there = drawn.slice->completeness;
-    if (!there.complete())
-        text = std::isfinite(there.share) ? "open, arc " + fixed(100 * there.share, 0) + " %"
-                                          : "open, at most " + fixed(100 * there.share_at_most, 0) + " %";
+        text += fmt::format("{}off {} %", text.empty() ? "" : ", ", fixed(100 * d.roundness_fitted_relative, 1));
+    const Completeness& completeness = drawn.slice->completeness;
+    if (!completeness.complete())
+        text = std::isfinite(completeness.share) ? fmt::format("open, arc {} %", fixed(100 * completeness.share, 0))
+                                                 : fmt::format("open, at most {} %", fixed(100 * completeness.share_at_most, 0));
     if (!drawn.slice->completeness.has_areas()) text = "contours cross";
     if (drawn.slice->contours.empty()) text = "empty";
     return text;
@@ -102,7 +104,8 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
     for (const auto& drawn : content.slices)
         for (const auto& contour : drawn.slice->contours)
             for (const auto& p : contour.points) extent.add(p);
-    if (!(extent.size().maxCoeff() > 0)) fail_input("drawing", "no slice has a contour", "choose heights that meet the mesh");
+    if (!(extent.size().maxCoeff() > 0))
+        fail_input("drawing", "no slice has a contour", "choose heights that intersect the mesh");
     for (const auto& curve : content.view)
         for (const auto& p : curve) side.add(p);
     // A thin figure still gets a cell of minimum width.
@@ -155,9 +158,9 @@ void write_slice_sheet(const Path& file, const SliceSheet& content) {
             sheet.unclip();
             const std::string number = slice_number(content, i);
             sheet.text(number, left, upper + grid.height + 11, 0, 9, guide);
-            const double after = left + sheet.width_of(number, 9) + 4, room = grid.width - (after - left);
-            sheet.text(sheet.fitted(length_text(drawn.slice->height, content.unit), room, 9), after, upper + grid.height + 11, 0,
-                       9);
+            const double height_x = left + sheet.width_of(number, 9) + 4, room = grid.width - (height_x - left);
+            sheet.text(sheet.fitted(length_text(drawn.slice->height, content.unit), room, 9), height_x, upper + grid.height + 11,
+                       0, 9);
             if (drawn.descriptors != nullptr)
                 sheet.text(sheet.fitted(second_line(drawn), grid.width, 7.5), left, upper + grid.height + 21, 0, 7.5, quiet);
         }

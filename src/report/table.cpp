@@ -4,6 +4,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/report/markdown.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -44,18 +46,18 @@ std::string latex_text(const std::string& text) {
     std::string result;
     const std::string line = one_line(text);
     for (std::size_t i = 0; i < line.size(); ++i) {
-        const auto found = names.find(line[i]);
+        const auto escaped = names.find(line[i]);
         // Consecutive hyphens would become a dash; a single hyphen stays.
         const bool alone = line[i] == '-' && (i == 0 || line[i - 1] != '-') && (i + 1 == line.size() || line[i + 1] != '-');
-        if (found == names.end() || alone) result += line[i];
-        else result += found->second;
+        if (escaped == names.end() || alone) result += line[i];
+        else result += escaped->second;
     }
     return result;
 }
 
-TableCell finite_cell(const std::optional<double>& value, const std::function<std::string(double)>& shown) {
+TableCell finite_cell(const std::optional<double>& value, const std::function<std::string(double)>& text_of) {
     if (!value || !std::isfinite(*value)) return {"-", {""}};
-    return {shown(*value), {digits(*value)}};
+    return {text_of(*value), {digits(*value)}};
 }
 
 }  // namespace
@@ -81,10 +83,11 @@ std::string markdown_paragraphs(std::string_view text) {
         std::string line = markdown_text(trimmed(text.substr(0, end)));
         text.remove_prefix(std::min(end + 1, text.size()));
         // "- ", "===", and a number with a point would be read as markup.
-        const std::size_t mark = std::min(line.find_first_not_of("0123456789"), line.size());
-        const bool is_mark =
-            mark == 0 ? line.find_first_of("-+=") == 0 : line.find_first_of(".)", mark) == mark && (line + " ")[mark + 1] == ' ';
-        if (is_mark) line.insert(mark, 1, '\\');
+        const std::size_t number_end = std::min(line.find_first_not_of("0123456789"), line.size());
+        const bool is_mark = number_end == 0
+                                 ? line.find_first_of("-+=") == 0
+                                 : line.find_first_of(".)", number_end) == number_end && (line + " ")[number_end + 1] == ' ';
+        if (is_mark) line.insert(number_end, 1, '\\');
         result += (result.empty() ? "" : "\n") + line;
     }
     return result;
@@ -107,8 +110,8 @@ TableCell fixed_cell(const std::optional<double>& value, int after_point) {
     return finite_cell(value, [&](double x) { return fixed(x, after_point); });
 }
 
-TableCell percent_cell(const std::optional<double>& share, int after_point) {
-    return finite_cell(share, [&](double x) { return percent(x, after_point); });
+TableCell percent_cell(const std::optional<double>& fraction, int after_point) {
+    return finite_cell(fraction, [&](double x) { return percent(x, after_point); });
 }
 
 std::size_t shown_width(const std::string& text) {
@@ -128,13 +131,12 @@ TextTable::TextTable(const std::vector<std::string>& columns)
 
 void TextTable::add(const std::vector<TableCell>& cells) {
     if (cells.size() != columns_.size())
-        throw std::logic_error("a row of " + std::to_string(cells.size()) + " cells in a table of " +
-                               std::to_string(columns_.size()) + " columns");
+        throw std::logic_error(fmt::format("a row of {} cells in a table of {} columns", cells.size(), columns_.size()));
     std::vector<std::string> row, values;
     for (std::size_t j = 0; j < cells.size(); ++j) {
         if (cells[j].csv.size() != csv_widths_[j])
-            throw std::logic_error(std::to_string(cells[j].csv.size()) + " values under '" + columns_[j] + "', which has " +
-                                   std::to_string(csv_widths_[j]) + " columns in the CSV");
+            throw std::logic_error(fmt::format("{} values under '{}', which has {} columns in the CSV", cells[j].csv.size(),
+                                               columns_[j], csv_widths_[j]));
         row.push_back(cells[j].text);
         values.insert(values.end(), cells[j].csv.begin(), cells[j].csv.end());
     }
@@ -193,7 +195,7 @@ std::string TextTable::latex(const std::string& caption, const std::string& labe
     text += "\\bottomrule\n\\end{tabular}\n";
     if (caption.empty()) return text;
     return "\\begin{table}\n\\centering\n" + text + "\\caption{" + latex_text(caption) + "}\n" +
-           (label.empty() ? "" : "\\label{" + label + "}\n") + "\\end{table}\n";
+           (label.empty() ? "" : fmt::format("\\label{{{}}}\n", label)) + "\\end{table}\n";
 }
 
 std::string aligned_rows(const std::vector<std::vector<std::string>>& rows,
@@ -242,8 +244,8 @@ std::string significant(double value, int digits) { return ostraka::digits(value
 
 std::string significant(const std::optional<double>& value, int digits) { return value ? significant(*value, digits) : "-"; }
 
-std::string percent(const std::optional<double>& share, int after_point) {
-    return share ? fixed(100 * *share, after_point) + "%" : "-";
+std::string percent(const std::optional<double>& fraction, int after_point) {
+    return fraction ? fixed(100 * *fraction, after_point) + "%" : "-";
 }
 
 }  // namespace ostraka

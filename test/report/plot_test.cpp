@@ -71,10 +71,10 @@ TEST(Plot, BarsAreAsHighAsTheirValues) {
         plot.series.push_back(bar);
     }
     const Picture picture = picture_of(plot);
-    const double one = static_cast<double>(count(picture, {0, 114, 178})),
+    const double first_series = static_cast<double>(count(picture, {0, 114, 178})),
                  three = static_cast<double>(count(picture, {213, 94, 0}));
-    ASSERT_GT(one, 1000);
-    EXPECT_NEAR(three / one, 3, 0.1);
+    ASSERT_GT(first_series, 1000);
+    EXPECT_NEAR(three / first_series, 3, 0.1);
 }
 
 TEST(Plot, ShowsPointsOfEachClassInItsColour) {
@@ -130,15 +130,15 @@ TEST(Plot, LabelsAreNeitherCutNorOverEachOther) {
     const auto ink_of = [&](const std::vector<std::array<double, 2>>& points) {
         return dark(picture_of(labelled(points, "a long name of it"))) - dark(picture_of(labelled(points, "")));
     };
-    const double one = ink_of({middle});
-    ASSERT_GT(one, 1000);
+    const double single_ink = ink_of({middle});
+    ASSERT_GT(single_ink, 1000);
     for (const auto& corner : {std::array{0.0, 0.0}, std::array{0.0, 1.0}, std::array{1.0, 0.0}, std::array{1.0, 1.0}})
-        EXPECT_NEAR(ink_of({corner}) / one, 1, 0.1) << corner[0] << " " << corner[1];
-    EXPECT_NEAR(ink_of({middle, {0.55, 0.551}}) / one, 2, 0.2);
+        EXPECT_NEAR(ink_of({corner}) / single_ink, 1, 0.1) << corner[0] << " " << corner[1];
+    EXPECT_NEAR(ink_of({middle, {0.55, 0.551}}) / single_ink, 2, 0.2);
     // Of a thousand in one place a few find room, and a line says how many do not.
-    const double many = ink_of(std::vector<std::array<double, 2>>(1000, middle));
-    EXPECT_GT(many, 3 * one);
-    EXPECT_LT(many, 60 * one);
+    const double repeated_ink = ink_of(std::vector<std::array<double, 2>>(1000, middle));
+    EXPECT_GT(repeated_ink, 3 * single_ink);
+    EXPECT_LT(repeated_ink, 60 * single_ink);
 }
 
 TEST(Plot, NamesFromOutsideStayText) {
@@ -177,8 +177,8 @@ TEST(HeatMap, FieldsHaveTheColoursOfTheirNumbers) {
     map.values << 0, 1, 0.25, 0.5;
     const Picture picture = picture_of(map);
     for (const double value : {0.0, 0.25, 0.5, 1.0}) {
-        const double shown = static_cast<double>(count(picture, colour_of({0, 1, false, ""}, value)));
-        EXPECT_GT(shown, 0.9 * 52 * 52) << value << ": a field of 26 points";
+        const double pixel_count = static_cast<double>(count(picture, colour_of({0, 1, false, ""}, value)));
+        EXPECT_GT(pixel_count, 0.9 * 52 * 52) << value << ": a field of 26 points";
     }
     map.values(1, 1) = std::nan("");
     EXPECT_NO_THROW(svg_bytes(map));

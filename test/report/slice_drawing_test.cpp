@@ -62,10 +62,10 @@ TEST(SliceSheet, OfOneAndOfManySlices) {
 TEST(SliceSheet, KeepsTheNumbersOfItsSlices) {
     const Scratch scratch;
     const Cut cut;
-    SliceSheet own = cut.sheet(3), others = cut.sheet(3);
-    write_slice_sheet(scratch / "place.svg", own);
-    for (std::size_t i = 0; i < 3; ++i) own.slices[i].number = i + 1, others.slices[i].number = 10 * (i + 1);
-    write_slice_sheet(scratch / "own.svg", own);
+    SliceSheet own_sheet = cut.sheet(3), others = cut.sheet(3);
+    write_slice_sheet(scratch / "place.svg", own_sheet);
+    for (std::size_t i = 0; i < 3; ++i) own_sheet.slices[i].number = i + 1, others.slices[i].number = 10 * (i + 1);
+    write_slice_sheet(scratch / "own.svg", own_sheet);
     write_slice_sheet(scratch / "others.svg", others);
     EXPECT_TRUE(read_file(scratch / "place.svg") == read_file(scratch / "own.svg"));
     EXPECT_FALSE(read_file(scratch / "others.svg") == read_file(scratch / "own.svg"));

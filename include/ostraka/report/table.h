@@ -15,24 +15,24 @@ struct TableCell {
     std::string text;
     std::vector<std::string> csv;  ///< one value for each CSV column of the table's column
 
-    TableCell(std::string both) : text(std::move(both)), csv{text} {}
-    TableCell(const char* both) : TableCell(std::string(both)) {}
-    TableCell(std::string shown, std::vector<std::string> values) : text(std::move(shown)), csv(std::move(values)) {}
+    TableCell(std::string content) : text(std::move(content)), csv{text} {}
+    TableCell(const char* content) : TableCell(std::string(content)) {}
+    TableCell(std::string displayed, std::vector<std::string> values) : text(std::move(displayed)), csv(std::move(values)) {}
 };
 /// Numbers formatted for display by `significant`, `fixed` and `percent`, "-" if missing or not finite. A percentage is a
 /// fraction in the CSV.
 TableCell number_cell(const std::optional<double>& value, int digits);
 TableCell fixed_cell(const std::optional<double>& value, int after_point);
-TableCell percent_cell(const std::optional<double>& share, int after_point = 1);
+TableCell percent_cell(const std::optional<double>& fraction, int after_point = 1);
 
 /// A column, which may be several columns in the CSV, such as the two ends of an interval.
 struct TableColumn {
     std::string name;
     std::vector<std::string> csv;
 
-    TableColumn(std::string both) : name(std::move(both)), csv{name} {}
-    TableColumn(const char* both) : TableColumn(std::string(both)) {}
-    TableColumn(std::string shown, std::vector<std::string> names) : name(std::move(shown)), csv(std::move(names)) {}
+    TableColumn(std::string title) : name(std::move(title)), csv{name} {}
+    TableColumn(const char* title) : TableColumn(std::string(title)) {}
+    TableColumn(std::string displayed, std::vector<std::string> names) : name(std::move(displayed)), csv(std::move(names)) {}
 };
 
 /// Cells are plain text, possibly untrusted: they are escaped in each format.
@@ -83,6 +83,6 @@ std::string fixed(double value, int after_point);
 std::string significant(double value, int digits);
 /// The same; empty if there is no value.
 std::string significant(const std::optional<double>& value, int digits);
-std::string percent(const std::optional<double>& share, int after_point = 1);
+std::string percent(const std::optional<double>& fraction, int after_point = 1);
 
 }  // namespace ostraka
