@@ -35,10 +35,10 @@ std::string quantised_glb(const TriangleSoup& soup, const std::array<double, 3>&
 
     glb::Builder builder;
     auto& allocator = builder.allocator();
-    JsonValue least = json_value(low, allocator), most = json_value(high, allocator);
+    JsonValue minimum = json_value(low, allocator), maximum = json_value(high, allocator);
     const int position =
         builder.add_compressed_accessor({packed_points, points.size(), sizeof(Quantised), "ATTRIBUTES"}, glb::array_buffer,
-                                        glb::short_word, points.size(), "VEC3", &least, &most);
+                                        glb::short_word, points.size(), "VEC3", &minimum, &maximum);
     const int indices = builder.add_compressed_accessor({packed_corners, corners.size(), sizeof(unsigned int), "TRIANGLES"},
                                                         glb::element_array_buffer, glb::word, corners.size(), "SCALAR");
     const std::array extensions{"KHR_mesh_quantization", "EXT_meshopt_compression"};

@@ -16,9 +16,9 @@ namespace {
 std::string deflated(std::string_view bytes) {
     uLongf size = ::compressBound(bytes.size());
     std::string packed(size, '\0');
-    const int done = ::compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                                 bytes.size(), 6);
-    if (done != Z_OK) fail_work("the page", "its bytes cannot be compressed", "show less on one page");
+    const int status = ::compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                                   bytes.size(), 6);
+    if (status != Z_OK) fail_work("the page", "the data cannot be compressed", "show fewer objects on one page");
     packed.resize(size);
     return packed;
 }
@@ -41,7 +41,7 @@ void Page::add(PageTable table) {
     auto& allocator = document_.GetAllocator();
     JsonValue rows(rapidjson::kArrayType), columns(rapidjson::kArrayType);
     std::vector<int> objects, annotations;
-    bool linked = false, deep = false;
+    bool has_objects = false, has_annotations = false;
     std::vector<bool> numeric(table.columns.size(), true);
     for (const PageTable::Row& row : table.rows) {
         for (std::size_t k = 0; k < row.cells.size() && k < numeric.size(); ++k)
@@ -49,15 +49,15 @@ void Page::add(PageTable table) {
         rows.PushBack(json_list(row.cells, allocator, [](const Json& cell) -> const JsonValue& { return cell; }), allocator);
         objects.push_back(row.object);
         annotations.push_back(row.annotation);
-        linked = linked || row.object >= 0;
-        deep = deep || row.annotation >= 0;
+        has_objects = has_objects || row.object >= 0;
+        has_annotations = has_annotations || row.annotation >= 0;
     }
     for (std::size_t k = 0; k < table.columns.size(); ++k)
         columns.PushBack(json_object(allocator, "title", table.columns[k], "numeric", static_cast<bool>(numeric[k])), allocator);
     JsonValue entry = json_object(allocator, "name", "table-" + std::to_string(tables_.Size()), "title", table.title, "note",
                                   table.note, "columns", std::move(columns), "rows", std::move(rows));
-    if (linked) add_members(entry, allocator, "objects", objects);
-    if (deep) add_members(entry, allocator, "annotations", annotations);
+    if (has_objects) add_members(entry, allocator, "objects", objects);
+    if (has_annotations) add_members(entry, allocator, "annotations", annotations);
     tables_.PushBack(entry, allocator);
 }
 
@@ -78,14 +78,14 @@ void Page::add(const PageEntry& entry) {
 }
 
 std::string Page::data(const std::string& made_how) const {
-    Json whole;
-    auto& allocator = whole.GetAllocator();
-    whole.CopyFrom(document_, allocator);
+    Json document;
+    auto& allocator = document.GetAllocator();
+    document.CopyFrom(document_, allocator);
     const auto copy = [&](const JsonValue& value) { return JsonValue(value, allocator); };
-    add_given(whole, allocator, "collection", copy(entries_));
-    add_members(whole, allocator, "notes", copy(notes_), "provenance", made_how, "objects", copy(objects_), "tables",
+    add_given(document, allocator, "collection", copy(entries_));
+    add_members(document, allocator, "notes", copy(notes_), "provenance", made_how, "objects", copy(objects_), "tables",
                 copy(tables_), "drawings", copy(drawings_), "blobs", copy(places_));
-    return with_markup_escaped(to_compact_text(whole));
+    return with_markup_escaped(to_compact_text(document));
 }
 
 std::string Page::html(const std::string& made_how) const {
@@ -106,20 +106,22 @@ PageTable annotation_table(const Mesh& mesh, const AnnotationSet& set, int objec
     table.title = name;
     table.columns = {"annotation", "id", "type", "elements", "area or length", "unit"};
     const auto cell = [](const auto& value) {
-        Json made;
-        static_cast<JsonValue&>(made) = json_value(value, made.GetAllocator());
-        return made;
+        Json json;
+        static_cast<JsonValue&>(json) = json_value(value, json.GetAllocator());
+        return json;
     };
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& one = set.annotations[i];
+        const Annotation& annotation = set.annotations[i];
         PageTable::Row& row = table.rows.emplace_back();
-        const bool region = one.type == AnnotationType::region, line = one.type == AnnotationType::line;
-        const auto size = region ? evaluate(mesh, one, "area") : line ? evaluate(mesh, one, "length") : std::nullopt;
-        std::size_t elements = region ? one.faces.size() : one.points.size();
-        for (const auto& polyline : one.polylines) elements += polyline.size();
-        row.cells.push_back(cell(one.tag.empty() ? "annotation " + std::to_string(one.id) : one.tag));
-        row.cells.push_back(cell(one.id));
-        row.cells.push_back(cell(to_string(one.type)));
+        const bool region = annotation.type == AnnotationType::region, line = annotation.type == AnnotationType::line;
+        const auto size = region ? evaluate(mesh, annotation, "area")
+                          : line ? evaluate(mesh, annotation, "length")
+                                 : std::nullopt;
+        std::size_t elements = region ? annotation.faces.size() : annotation.points.size();
+        for (const auto& polyline : annotation.polylines) elements += polyline.size();
+        row.cells.push_back(cell(annotation.tag.empty() ? "annotation " + std::to_string(annotation.id) : annotation.tag));
+        row.cells.push_back(cell(annotation.id));
+        row.cells.push_back(cell(to_string(annotation.type)));
         row.cells.push_back(cell(elements));
         row.cells.push_back(cell(size));
         row.cells.push_back(cell(size ? descriptor_unit(region ? "area" : "length", set.unit) : std::string()));

@@ -13,6 +13,8 @@
 #include "ostraka/relation/layout.h"
 #include "ostraka/render/colour_scale.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -94,10 +96,11 @@ std::pair<double, double> coloured_range(const std::vector<double>& values, cons
 
 std::string values_text(const Descriptor& descriptor) {
     if (!descriptor.file.empty()) return descriptor.file;
-    constexpr std::size_t most = 12;
+    constexpr std::size_t max_values = 12;
     std::vector<std::string> texts;
-    for (std::size_t i = 0; i < std::min(most, descriptor.values.size()); ++i) texts.push_back(digits(descriptor.values[i], 5));
-    if (descriptor.values.size() > most) texts.emplace_back("...");
+    for (std::size_t i = 0; i < std::min(max_values, descriptor.values.size()); ++i)
+        texts.push_back(digits(descriptor.values[i], 5));
+    if (descriptor.values.size() > max_values) texts.emplace_back("...");
     return joined(texts, ", ") + (descriptor.unit.empty() ? "" : " " + descriptor.unit);
 }
 
@@ -118,7 +121,7 @@ JsonValue exact_json(const TriangleSoup& soup, const Triple& low, const PageObje
 }
 
 /// The points of a curve, lifted slightly off the surface so that the curve is not partly inside.
-std::vector<Point> lifted(const Mesh& mesh, const SurfaceCurve& curve) {
+std::vector<Point> lifted_points(const Mesh& mesh, const SurfaceCurve& curve) {
     const double step = 0.002 * box_diagonal(mesh);
     std::vector<Point> places;
     for (std::size_t i = 0; i < curve.nodes.size(); ++i) {
@@ -142,17 +145,17 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
     PathSearch paths(mesh);
     JsonValue annotations(rapidjson::kArrayType);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
-        const Annotation& one = set.annotations[i];
+        const Annotation& annotation = set.annotations[i];
         JsonValue measures(rapidjson::kArrayType), attributes(rapidjson::kArrayType);
-        for (const Attribute& attribute : one.attributes) {
+        for (const Attribute& attribute : annotation.attributes) {
             if (attribute.type == AttributeType::measure) {
                 const Measure& measure = attribute.measure;
                 JsonValue entry = json_object(
                     allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
                     json_list(pins_of(mesh, measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
-                const auto way =
+                const auto measured_path =
                     json_list(way_of(paths, mesh, measure), allocator, [&](const Point& at) { return relative(triple(at)); });
-                add_given(entry, allocator, "way", way);
+                add_given(entry, allocator, "way", measured_path);
                 if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
                 add_given(entry, allocator, "stale", measure.stale);
                 measures.PushBack(entry, allocator);
@@ -163,19 +166,20 @@ JsonValue annotations_json(const Mesh& mesh, const AnnotationSet& set, const Con
                                     allocator);
             }
         }
-        JsonValue entry = json_object(allocator, "id", one.id, "tag", one.tag, "type", to_string(one.type), "colour", one.colour,
-                                      "parent", parents[i] ? static_cast<int>(*parents[i]) : -1, "attributes",
-                                      std::move(attributes), "measures", std::move(measures));
-        add_given(entry, allocator, "note", one.note);
-        if (one.type == AnnotationType::region)
+        JsonValue entry = json_object(allocator, "id", annotation.id, "tag", annotation.tag, "type", to_string(annotation.type),
+                                      "colour", annotation.colour, "parent", parents[i] ? static_cast<int>(*parents[i]) : -1,
+                                      "attributes", std::move(attributes), "measures", std::move(measures));
+        add_given(entry, allocator, "note", annotation.note);
+        if (annotation.type == AnnotationType::region)
             add_members(entry, allocator, "faces",
-                        json_object(allocator, "count", one.faces.size(), "blob", keep(runs_of(one.faces))));
-        else if (one.type == AnnotationType::line) add_members(entry, allocator, "lines", one.polylines);
-        else add_members(entry, allocator, "points", one.points);
-        if (is_free(one))
-            add_members(entry, allocator, "curves", json_list(curves_on(mesh, one), allocator, [&](const SurfaceCurve& curve) {
-                            return json_list(lifted(mesh, curve), allocator, [&](const Point& p) { return relative(triple(p)); });
-                        }));
+                        json_object(allocator, "count", annotation.faces.size(), "blob", keep(runs_of(annotation.faces))));
+        else if (annotation.type == AnnotationType::line) add_members(entry, allocator, "lines", annotation.polylines);
+        else add_members(entry, allocator, "points", annotation.points);
+        if (is_free(annotation))
+            add_members(
+                entry, allocator, "curves", json_list(curves_on(mesh, annotation), allocator, [&](const SurfaceCurve& curve) {
+                    return json_list(lifted_points(mesh, curve), allocator, [&](const Point& p) { return relative(triple(p)); });
+                }));
         annotations.PushBack(entry, allocator);
     }
     return annotations;
@@ -189,34 +193,35 @@ JsonValue map_json(const PageMap& map, const Keep& keep, JsonAllocator& allocato
     if (!map.categories.empty()) {
         std::vector<std::size_t> counts(map.categories.size(), 0);
         for (const double value : map.values) {
-            const bool given = value >= 0 && value < static_cast<double>(counts.size());
-            steps.push_back(given ? static_cast<std::uint16_t>(value) : no_value);
-            if (given) ++counts[steps.back()];
+            const bool has_category = value >= 0 && value < static_cast<double>(counts.size());
+            steps.push_back(has_category ? static_cast<std::uint16_t>(value) : no_value);
+            if (has_category) ++counts[steps.back()];
         }
         const auto last = static_cast<double>(counts.size() - 1);
         add_members(entry, allocator, "blob", keep(bytes_of_steps()), "minimum", 0, "maximum", last, "from", 0, "to", last,
                     "colours", std::vector<int>(), "histogram", counts, "categories",
-                    json_list(map.categories, allocator, [&](const PageMap::Category& one) {
-                        return json_object(allocator, "text", one.text, "colour", one.colour);
+                    json_list(map.categories, allocator, [&](const PageMap::Category& category) {
+                        return json_object(allocator, "text", category.text, "colour", category.colour);
                     }));
         return entry;
     }
     const ColourScale scale = scale_of({&map.values}, map.name);
     const double range = scale.maximum - scale.minimum;
-    const auto [from, to] = coloured_range(map.values, scale);
+    const auto [coloured_low, coloured_high] = coloured_range(map.values, scale);
     std::vector<std::size_t> histogram(40, 0);
     for (const double value : map.values) {
         if (!std::isfinite(value)) {
             steps.push_back(no_value);
             continue;
         }
-        const double share = range > 0 ? std::clamp((value - scale.minimum) / range, 0.0, 1.0) : 0.5;
-        steps.push_back(static_cast<std::uint16_t>(std::lround(share * (no_value - 1))));
-        const double place = to > from ? std::clamp((value - from) / (to - from), 0.0, 1.0) : 0.5;
+        const double fraction = range > 0 ? std::clamp((value - scale.minimum) / range, 0.0, 1.0) : 0.5;
+        steps.push_back(static_cast<std::uint16_t>(std::lround(fraction * (no_value - 1))));
+        const double place =
+            coloured_high > coloured_low ? std::clamp((value - coloured_low) / (coloured_high - coloured_low), 0.0, 1.0) : 0.5;
         ++histogram[std::min(histogram.size() - 1, static_cast<std::size_t>(place * static_cast<double>(histogram.size())))];
     }
     add_members(entry, allocator, "blob", keep(bytes_of_steps()), "minimum", scale.minimum, "maximum", scale.maximum, "from",
-                from, "to", to, "colours", colours_of(scale), "histogram", histogram);
+                coloured_low, "to", coloured_high, "colours", colours_of(scale), "histogram", histogram);
     return entry;
 }
 
@@ -225,13 +230,14 @@ JsonValue relations_json(const PageObject& object, const AnnotationSet& set, con
     JsonValue relations(rapidjson::kArrayType);
     if (object.graph != nullptr)
         for (std::size_t r = 0; r < object.graph->relationships.size(); ++r) {
-            const Relationship& one = object.graph->relationships[r];
+            const Relationship& relationship = object.graph->relationships[r];
             std::vector<std::size_t> members;
-            for (const int id : one.annotations)
+            for (const int id : relationship.annotations)
                 for (std::size_t i = 0; i < set.annotations.size(); ++i)
                     if (set.annotations[i].id == id) members.push_back(i);
-            JsonValue entry = json_object(allocator, "id", one.id, "type", one.type, "members", members, "directed", one.directed,
-                                          "constraint", one.is_constraint, "weight", one.weight, "text", "");
+            JsonValue entry = json_object(allocator, "id", relationship.id, "type", relationship.type, "members", members,
+                                          "directed", relationship.directed, "constraint", relationship.is_constraint, "weight",
+                                          relationship.weight, "text", "");
             if (layout.lanes[r]) add_members(entry, allocator, "lane", *layout.lanes[r]);
             if (r < object.checks.size() && object.checks[r].verdict != Verdict::unknown) {
                 add_members(entry, allocator, "holds", object.checks[r].verdict == Verdict::holds);
@@ -242,23 +248,25 @@ JsonValue relations_json(const PageObject& object, const AnnotationSet& set, con
     return relations;
 }
 
-JsonValue constraint_json(const PageConstraint& one, JsonAllocator& allocator) {
-    JsonValue entry = json_object(allocator, "type", one.type, "members", one.members, "weight", one.weight, "hard", one.hard,
-                                  "before", one.before, "verdict", one.verdict, "text", one.text, "deviations",
-                                  json_list(one.deviations, allocator, [&](const PageConstraint::Deviation& d) {
-                                      return json_object(allocator, "quantity", d.quantity, "before", d.before, "value", d.value,
-                                                         "tolerance", d.tolerance, "unit", d.unit);
-                                  }));
-    if (one.holds) add_members(entry, allocator, "holds", *one.holds);
-    if (one.residual)
+JsonValue constraint_json(const PageConstraint& constraint, JsonAllocator& allocator) {
+    JsonValue entry =
+        json_object(allocator, "type", constraint.type, "members", constraint.members, "weight", constraint.weight, "hard",
+                    constraint.hard, "before", constraint.before, "verdict", constraint.verdict, "text", constraint.text,
+                    "deviations", json_list(constraint.deviations, allocator, [&](const PageConstraint::Deviation& d) {
+                        return json_object(allocator, "quantity", d.quantity, "before", d.before, "value", d.value, "tolerance",
+                                           d.tolerance, "unit", d.unit);
+                    }));
+    if (constraint.holds) add_members(entry, allocator, "holds", *constraint.holds);
+    if (constraint.residual)
         add_members(entry, allocator, "residual",
-                    json_object(allocator, "mean", (*one.residual)[0], "largest", (*one.residual)[1]));
+                    json_object(allocator, "mean", (*constraint.residual)[0], "largest", (*constraint.residual)[1]));
     return entry;
 }
 
-JsonValue verdict_json(const PageVerdict& one, JsonAllocator& allocator) {
-    JsonValue entry = json_object(allocator, "kind", one.kind, "name", one.name, "members", one.members, "text", one.text);
-    if (one.holds) add_members(entry, allocator, "holds", *one.holds);
+JsonValue verdict_json(const PageVerdict& verdict, JsonAllocator& allocator) {
+    JsonValue entry =
+        json_object(allocator, "kind", verdict.kind, "name", verdict.name, "members", verdict.members, "text", verdict.text);
+    if (verdict.holds) add_members(entry, allocator, "holds", *verdict.holds);
     return entry;
 }
 
@@ -303,22 +311,20 @@ std::size_t Page::add(const PageObject& object) {
         return p;
     };
     const Keep keep = [this](std::string_view bytes) { return add_bytes(bytes); };
-    const AnnotationSet none;
-    const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : none;
+    const AnnotationSet no_annotations;
+    const AnnotationSet& set = object.annotations != nullptr ? *object.annotations : no_annotations;
     const ContainmentOrder order = topology(mesh, set).order;
     JsonValue annotations = annotations_json(mesh, set, order, relative, keep, allocator);
     JsonValue maps(rapidjson::kArrayType);
     for (const PageMap& map : object.maps) {
         if (map.values.size() != soup.points.size())
-            fail_input(
-                map.name,
-                "holds " + std::to_string(map.values.size()) + " values for " + std::to_string(soup.points.size()) + " vertices",
-                "give a map with a number for each vertex");
+            fail_input(map.name, fmt::format("holds {} values for {} vertices", map.values.size(), soup.points.size()),
+                       "give a map with one number per vertex");
         maps.PushBack(map_json(map, keep, allocator), allocator);
     }
     const std::string unit = !object.unit.empty() ? object.unit : set.unit;
-    const RelationGraph unrelated;
-    const GraphLayout layout = layout_of(object.graph != nullptr ? *object.graph : unrelated, set, order);
+    const RelationGraph empty_graph;
+    const GraphLayout layout = layout_of(object.graph != nullptr ? *object.graph : empty_graph, set, order);
     JsonValue tree = json_list(layout.rows, allocator, [&](const TreeEntry& row) {
         return json_object(allocator, "annotation", row.annotation, "depth", row.depth);
     });
@@ -329,22 +335,23 @@ std::size_t Page::add(const PageObject& object) {
                     set.up ? *set.up : object.up, "annotations", std::move(annotations), "maps", std::move(maps), "tree",
                     std::move(tree), "relations", relations_json(object, set, layout, allocator));
     // Packed, or exact for the viewer started by the command.
-    const auto add_shape = [&](JsonValue& to, const TriangleSoup& of, const Box& around, const std::string& part) {
+    const auto add_shape = [&](JsonValue& target, const TriangleSoup& shape, const Box& bounding_box, const std::string& part) {
         if (!object.exact) {
-            add_members(to, allocator, "geometry", add_bytes(quantised_glb(of, around.low, around.largest())));
+            add_members(target, allocator, "geometry", add_bytes(quantised_glb(shape, bounding_box.low, bounding_box.largest())));
             return;
         }
         PageObject::Exact exact = *object.exact;
         exact.key += part;
-        add_members(to, allocator, "shape", exact_json(of, around.low, exact, keep, allocator));
+        add_members(target, allocator, "shape", exact_json(shape, bounding_box.low, exact, keep, allocator));
     };
     add_shape(entry, soup, box, "");
-    add_given(entry, allocator, "constraints", json_list(object.constraints, allocator, [&](const PageConstraint& one) {
-                  return constraint_json(one, allocator);
+    add_given(entry, allocator, "constraints", json_list(object.constraints, allocator, [&](const PageConstraint& constraint) {
+                  return constraint_json(constraint, allocator);
               }));
     add_given(entry, allocator, "conflicts", object.conflicts);
-    add_given(entry, allocator, "conformance",
-              json_list(object.conformance, allocator, [&](const PageVerdict& one) { return verdict_json(one, allocator); }));
+    add_given(entry, allocator, "conformance", json_list(object.conformance, allocator, [&](const PageVerdict& verdict) {
+                  return verdict_json(verdict, allocator);
+              }));
     add_given(entry, allocator, "parts", object.parts);
     if (object.slices != nullptr) add_members(entry, allocator, "slices", slices_json(*object.slices, relative, keep, allocator));
     if (object.whole)
@@ -353,16 +360,17 @@ std::size_t Page::add(const PageObject& object) {
     if (object.cage != nullptr) {
         // Relative to the object's box; the positions of the cage start below its lower corner.
         TriangleSoup cage = to_soup(*object.cage);
-        const Box around = box_of(cage);
-        JsonValue shown = json_object(allocator, "vertices", cage.points.size(), "origin", relative(around.low));
-        add_shape(shown, cage, around, "-cage");
-        add_members(entry, allocator, "cage", std::move(shown));
+        const Box bounding_box = box_of(cage);
+        JsonValue cage_entry = json_object(allocator, "vertices", cage.points.size(), "origin", relative(bounding_box.low));
+        add_shape(cage_entry, cage, bounding_box, "-cage");
+        add_members(entry, allocator, "cage", std::move(cage_entry));
     }
     const std::string_view corner_bytes(reinterpret_cast<const char*>(soup.triangles.data()),
                                         soup.triangles.size() * sizeof soup.triangles.front());
     const std::string checksum = sha256(std::string(corner_bytes));
-    if (const auto like = std::find(triangles_.begin(), triangles_.end(), checksum); like != triangles_.end()) {
-        const auto first = static_cast<rapidjson::SizeType>(like - triangles_.begin());
+    if (const auto same_triangles = std::find(triangles_.begin(), triangles_.end(), checksum);
+        same_triangles != triangles_.end()) {
+        const auto first = static_cast<rapidjson::SizeType>(same_triangles - triangles_.begin());
         if (!objects_[first].HasMember("blend")) add_members(objects_[first], allocator, "blend", first);
         add_members(entry, allocator, "blend", first);
     }

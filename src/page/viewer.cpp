@@ -4,6 +4,8 @@
 #include "ostraka/core/file.h"
 #include "ostraka/page/content_policy.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdint>
 
@@ -44,9 +46,9 @@ bool runs(std::string_view attributes) {
     return attributes.find("type=") == std::string_view::npos || attributes.find("type=\"module\"") != std::string_view::npos;
 }
 
-/// The allowed sources before those of the data; they depend only on `beside`.
-std::string sources(std::string_view element, bool beside) {
-    return (beside ? "'self' " : "") + inline_hashes(built_page(), element) + " ";
+/// The allowed sources before those of the data; they depend only on `allow_self`.
+std::string sources(std::string_view element, bool allow_self) {
+    return (allow_self ? "'self' " : "") + inline_hashes(built_page(), element) + " ";
 }
 
 }  // namespace
@@ -80,34 +82,35 @@ std::string inline_hashes(std::string_view page, std::string_view element) {
     return hashes;
 }
 
-std::string viewer_with(const std::string& data, const std::string& bytes, bool beside) {
-    static const std::string own[] = {sources("script", false), sources("script", true), sources("style", false)};
+std::string viewer_with(const std::string& data, const std::string& bytes, bool allow_self) {
+    static const std::string cached_sources[] = {sources("script", false), sources("script", true), sources("style", false)};
     // Adds the sources of scripts, styles and pictures to the policy.
     constexpr std::string_view scripts = "script-src ", styles = "style-src ", pictures = "img-src ";
     struct Place {
-        std::string_view mark;
+        std::string_view placeholder;
         std::string_view kept, text;
     };
-    const Place places[] = {{scripts, scripts, own[beside ? 1 : 0]},
-                            {styles, styles, own[2]},
-                            {pictures, pictures, beside ? "'self' " : ""},
+    const Place places[] = {{scripts, scripts, cached_sources[allow_self ? 1 : 0]},
+                            {styles, styles, cached_sources[2]},
+                            {pictures, pictures, allow_self ? "'self' " : ""},
                             {"@OSTRAKA-DATA@", "", data},
                             {"@OSTRAKA-BYTES@", "", bytes}};
     const std::string_view page = built_page();
-    std::string made;
-    made.reserve(page.size() + data.size() + bytes.size() + 1000);
+    std::string html;
+    html.reserve(page.size() + data.size() + bytes.size() + 1000);
     std::size_t at = 0;
-    for (const auto& [mark, kept, text] : places) {
-        const std::size_t place = page.find(mark, at);
-        if (place == std::string_view::npos || page.find(mark, place + mark.size()) != std::string_view::npos)
-            fail_work("the viewer", "has not one place '" + std::string(mark) + "'", "build it again (web/README.md)");
-        made += page.substr(at, place - at);
-        made += kept;
-        made += text;
-        at = place + mark.size();
+    for (const auto& [placeholder, kept, text] : places) {
+        const std::size_t place = page.find(placeholder, at);
+        if (place == std::string_view::npos || page.find(placeholder, place + placeholder.size()) != std::string_view::npos)
+            fail_work("the viewer", fmt::format("does not contain exactly one placeholder '{}'", placeholder),
+                      "build it again (web/README.md)");
+        html += page.substr(at, place - at);
+        html += kept;
+        html += text;
+        at = place + placeholder.size();
     }
-    made += page.substr(at);
-    return made;
+    html += page.substr(at);
+    return html;
 }
 
 }  // namespace ostraka

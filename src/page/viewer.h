@@ -8,8 +8,8 @@ namespace ostraka {
 
 /// The built web/report.html with the data (JSON, escaped for HTML) and the bytes (base64) inserted, and a content policy that
 /// allows only the viewer's own script. Throws Error (failure) unless the built page has each placeholder exactly once.
-/// `beside`: the page loads scripts and pictures from its own folder.
-std::string viewer_with(const std::string& data, const std::string& bytes, bool beside);
+/// `allow_self`: the page loads scripts and pictures from its own folder.
+std::string viewer_with(const std::string& data, const std::string& bytes, bool allow_self);
 
 std::string base64(std::string_view bytes);
 

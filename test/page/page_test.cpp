@@ -47,12 +47,12 @@ struct ReadPage {
     explicit ReadPage(const std::string& html) : data(parse_json(inside(html, "ostraka-data"), "data")) {
         const std::string packed = from_base64(inside(html, "ostraka-bytes"));
         std::size_t size = 1024;
-        for (int done = Z_BUF_ERROR; done == Z_BUF_ERROR;) {
+        for (int status = Z_BUF_ERROR; status == Z_BUF_ERROR;) {
             bytes.resize(size *= 4);
-            uLongf got = size;
-            done = ::uncompress(reinterpret_cast<Bytef*>(bytes.data()), &got, reinterpret_cast<const Bytef*>(packed.data()),
-                                packed.size());
-            if (done == Z_OK) bytes.resize(got);
+            uLongf unpacked_size = size;
+            status = ::uncompress(reinterpret_cast<Bytef*>(bytes.data()), &unpacked_size,
+                                  reinterpret_cast<const Bytef*>(packed.data()), packed.size());
+            if (status == Z_OK) bytes.resize(unpacked_size);
         }
     }
     [[nodiscard]] std::string blob(const JsonValue& index) const {
@@ -105,23 +105,23 @@ struct Annotated {
         point.points = {5};
     }
     [[nodiscard]] PageObject object() const {
-        PageObject one;
-        one.name = "sphere";
-        one.mesh = &mesh;
-        one.annotations = &set;
-        return one;
+        PageObject page_object;
+        page_object.name = "sphere";
+        page_object.mesh = &mesh;
+        page_object.annotations = &set;
+        return page_object;
     }
 };
 
 }  // namespace
 
 TEST(Page, HoldsTheShapeInItsOrderWithinTheQuantisation) {
-    const Annotated one;
+    const Annotated annotated;
     Page page("a sphere");
-    page.add(one.object());
+    page.add(annotated.object());
     const ReadPage read(page.html("made by a test"));
     const JsonValue& object = read.data["objects"][0];
-    EXPECT_EQ(object["vertices"].GetUint64(), one.soup.points.size());
+    EXPECT_EQ(object["vertices"].GetUint64(), annotated.soup.points.size());
     const std::string glb = read.blob(object["geometry"]);
     const Json document = glb::Reader(glb, "glb").document().GetObject().MemberCount() > 0
                               ? parse_json(glb.substr(20, *reinterpret_cast<const std::uint32_t*>(glb.data() + 12)), "glb")
@@ -133,7 +133,7 @@ TEST(Page, HoldsTheShapeInItsOrderWithinTheQuantisation) {
         const auto view = document["accessors"][index]["bufferView"].GetUint();
         return document["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
     };
-    std::vector<std::array<std::uint16_t, 4>> points(one.soup.points.size());
+    std::vector<std::array<std::uint16_t, 4>> points(annotated.soup.points.size());
     const std::string point_bytes = bytes_of_view(glb, packed("POSITION"));
     ASSERT_EQ(meshopt_decodeVertexBuffer(points.data(), points.size(), 8,
                                          reinterpret_cast<const unsigned char*>(point_bytes.data()), point_bytes.size()),
@@ -143,32 +143,32 @@ TEST(Page, HoldsTheShapeInItsOrderWithinTheQuantisation) {
     for (std::size_t i = 0; i < points.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k)
             EXPECT_NEAR(object["origin"][static_cast<rapidjson::SizeType>(k)].GetDouble() + step * points[i][k],
-                        one.soup.points[i][k], 0.5001 * step);
-    std::vector<std::array<Index, 3>> triangles(one.soup.triangles.size());
+                        annotated.soup.points[i][k], 0.5001 * step);
+    std::vector<std::array<Index, 3>> triangles(annotated.soup.triangles.size());
     const std::string index_bytes = bytes_of_view(glb, packed("indices"));
     ASSERT_EQ(meshopt_decodeIndexBuffer(triangles.front().data(), 3 * triangles.size(), 4,
                                         reinterpret_cast<const unsigned char*>(index_bytes.data()), index_bytes.size()),
               0);
     for (std::size_t f = 0; f < triangles.size(); ++f) {
-        auto turned = triangles[f];  // the codec may turn the corners
-        for (int k = 0; k < 3 && turned != one.soup.triangles[f]; ++k)
-            std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-        EXPECT_EQ(turned, one.soup.triangles[f]);
+        auto rotated = triangles[f];  // the codec may turn the corners
+        for (int k = 0; k < 3 && rotated != annotated.soup.triangles[f]; ++k)
+            std::rotate(rotated.begin(), rotated.begin() + 1, rotated.end());
+        EXPECT_EQ(rotated, annotated.soup.triangles[f]);
     }
 }
 
 TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
-    const Annotated one;
+    const Annotated annotated;
     Page page("a sphere");
-    page.add(one.object());
-    page.add(annotation_table(one.mesh, one.set, 0, "sphere"));
+    page.add(annotated.object());
+    page.add(annotation_table(annotated.mesh, annotated.set, 0, "sphere"));
     const ReadPage read(page.html(""));
-    const JsonValue& list = read.data["objects"][0]["annotations"];
-    ASSERT_EQ(list.Size(), 4U);
-    EXPECT_EQ(list[0]["parent"].GetInt(), -1);
-    EXPECT_EQ(list[1]["parent"].GetInt(), 0);
+    const JsonValue& annotations = read.data["objects"][0]["annotations"];
+    ASSERT_EQ(annotations.Size(), 4U);
+    EXPECT_EQ(annotations[0]["parent"].GetInt(), -1);
+    EXPECT_EQ(annotations[1]["parent"].GetInt(), 0);
     for (rapidjson::SizeType i = 0; i < 2; ++i) {
-        const std::string runs = read.blob(list[i]["faces"]["blob"]);
+        const std::string runs = read.blob(annotations[i]["faces"]["blob"]);
         std::vector<Index> faces;
         std::size_t at = 0;
         Index face = 0;
@@ -184,100 +184,100 @@ TEST(Page, HoldsAnnotationsWithTheirTreeMeasuresAndFaces) {
             face += next();
             for (Index run = next(); run > 0; --run) faces.push_back(face++);
         }
-        EXPECT_EQ(faces, one.set.annotations[i].faces);
+        EXPECT_EQ(faces, annotated.set.annotations[i].faces);
     }
-    const JsonValue& pins = list[0]["measures"][0]["pins"];
+    const JsonValue& pins = annotations[0]["measures"][0]["pins"];
     const JsonValue& origin = read.data["objects"][0]["origin"];
     EXPECT_NEAR(pins[0][0].GetDouble() + origin[0].GetDouble(), 1007, 1e-9);
     EXPECT_NEAR(pins[1][0].GetDouble() + origin[0].GetDouble(), 993, 1e-9);
-    EXPECT_EQ(list[2]["lines"][0][1].GetUint(), one.soup.triangles[0][1]);
-    EXPECT_EQ(list[3]["points"][0].GetUint(), 5U);
+    EXPECT_EQ(annotations[2]["lines"][0][1].GetUint(), annotated.soup.triangles[0][1]);
+    EXPECT_EQ(annotations[3]["points"][0].GetUint(), 5U);
     const JsonValue& rows = read.data["tables"][0]["rows"];
-    EXPECT_NEAR(rows[0][4].GetDouble(), area_of(one.mesh, one.set.annotations[0].faces), 1e-9);
+    EXPECT_NEAR(rows[0][4].GetDouble(), area_of(annotated.mesh, annotated.set.annotations[0].faces), 1e-9);
     EXPECT_EQ(read.data["tables"][0]["annotations"][1].GetInt(), 1);
 }
 
 TEST(Page, HoldsCurvesThatRunThroughTheTriangles) {
-    Annotated one;
+    Annotated annotated;
     const std::string recipe = R"({"format": "ostraka-recipe", "version": 1, "annotations": [{"id": 20, "tag": "cap",
         "type": "region", "outline": "free", "select": {"sphere": {"centre": [1007, 2000, 3000], "radius": 5.3}}}]})";
-    one.set = apply_recipe(parse_json(recipe, "r"), one.mesh, {}, "r");
-    ASSERT_TRUE(is_free(one.set.annotations[0]));
+    annotated.set = apply_recipe(parse_json(recipe, "r"), annotated.mesh, {}, "r");
+    ASSERT_TRUE(is_free(annotated.set.annotations[0]));
     Page page("a sphere");
-    page.add(one.object());
+    page.add(annotated.object());
     const ReadPage read(page.html(""));
     const JsonValue &entry = read.data["objects"][0]["annotations"][0], &origin = read.data["objects"][0]["origin"];
-    const auto curves = curves_on(one.mesh, one.set.annotations[0]);
+    const auto curves = curves_on(annotated.mesh, annotated.set.annotations[0]);
     ASSERT_EQ(entry["curves"].Size(), curves.size());
     ASSERT_EQ(entry["curves"][0].Size(), curves[0].nodes.size());
     for (rapidjson::SizeType i = 0; i < curves[0].nodes.size(); ++i) {
         const JsonValue& place = entry["curves"][0][i];
-        const Point there(place[0].GetDouble() + origin[0].GetDouble(), place[1].GetDouble() + origin[1].GetDouble(),
-                          place[2].GetDouble() + origin[2].GetDouble());
-        const double off = std::sqrt(CGAL::squared_distance(there, curves[0].nodes[i].point));
-        EXPECT_NEAR(off, 0.002 * box_diagonal(one.mesh), 1e-4 * box_diagonal(one.mesh));
-        EXPECT_GT(std::sqrt(CGAL::squared_distance(there, Point(1000, 2000, 3000))),
+        const Point position(place[0].GetDouble() + origin[0].GetDouble(), place[1].GetDouble() + origin[1].GetDouble(),
+                             place[2].GetDouble() + origin[2].GetDouble());
+        const double distance = std::sqrt(CGAL::squared_distance(position, curves[0].nodes[i].point));
+        EXPECT_NEAR(distance, 0.002 * box_diagonal(annotated.mesh), 1e-4 * box_diagonal(annotated.mesh));
+        EXPECT_GT(std::sqrt(CGAL::squared_distance(position, Point(1000, 2000, 3000))),
                   std::sqrt(CGAL::squared_distance(curves[0].nodes[i].point, Point(1000, 2000, 3000))));
     }
     EXPECT_FALSE(entry.HasMember("lines"));
 }
 
-TEST(Page, QuantisesMapsAndTellsWhatHasNoValue) {
-    const Annotated one;
-    PageObject object = one.object();
+TEST(Page, QuantisesMapsAndMarksMissingValues) {
+    const Annotated annotated;
+    PageObject object = annotated.object();
     PageMap& map = object.maps.emplace_back();
     map.name = "height";
-    for (const auto& p : one.soup.points) map.values.push_back(p[2]);
+    for (const auto& p : annotated.soup.points) map.values.push_back(p[2]);
     map.values[3] = std::nan("");
     Page page("a sphere");
     page.add(object);
     const ReadPage read(page.html(""));
-    const JsonValue& shown = read.data["objects"][0]["maps"][0];
-    const std::string bytes = read.blob(shown["blob"]);
+    const JsonValue& map_entry = read.data["objects"][0]["maps"][0];
+    const std::string bytes = read.blob(map_entry["blob"]);
     ASSERT_EQ(bytes.size(), 2 * map.values.size());
     const auto* steps = reinterpret_cast<const std::uint16_t*>(bytes.data());
-    const double low = shown["minimum"].GetDouble(), range = shown["maximum"].GetDouble() - low;
+    const double low = map_entry["minimum"].GetDouble(), range = map_entry["maximum"].GetDouble() - low;
     EXPECT_EQ(steps[3], 65535);
     for (std::size_t i = 0; i < map.values.size(); ++i) {
         if (i == 3) continue;
         EXPECT_NEAR(low + steps[i] / 65534.0 * range, map.values[i], range / 131068 * 1.001);
     }
-    EXPECT_EQ(shown["colours"].Size(), 9U);
-    EXPECT_EQ(shown["colours"][0][0].GetInt(), 68);
-    EXPECT_EQ(shown["colours"][8][2].GetInt(), 37);
+    EXPECT_EQ(map_entry["colours"].Size(), 9U);
+    EXPECT_EQ(map_entry["colours"][0][0].GetInt(), 68);
+    EXPECT_EQ(map_entry["colours"][8][2].GetInt(), 37);
     std::size_t counted = 0;
-    for (const auto& count : shown["histogram"].GetArray()) counted += count.GetUint64();
+    for (const auto& count : map_entry["histogram"].GetArray()) counted += count.GetUint64();
     EXPECT_EQ(counted, map.values.size() - 1);
 }
 
-TEST(Page, NamesInPlaceOfNumbersAreCounted) {
-    const Annotated one;
-    PageObject object = one.object();
+TEST(Page, CategoriesAreCounted) {
+    const Annotated annotated;
+    PageObject object = annotated.object();
     PageMap& map = object.maps.emplace_back();
     map.name = map.label = "origin";
     map.categories = {{"observed", {1, 2, 3}}, {"guessed", {4, 5, 6}}};
-    map.values.assign(one.soup.points.size(), 0);
+    map.values.assign(annotated.soup.points.size(), 0);
     map.values[2] = map.values[7] = 1;
     map.values[3] = std::nan("");
     Page page("a sphere");
     page.add(object);
     const ReadPage read(page.html(""));
-    const JsonValue& shown = read.data["objects"][0]["maps"][0];
-    const std::string bytes = read.blob(shown["blob"]);
+    const JsonValue& map_entry = read.data["objects"][0]["maps"][0];
+    const std::string bytes = read.blob(map_entry["blob"]);
     const auto* steps = reinterpret_cast<const std::uint16_t*>(bytes.data());
     EXPECT_EQ(steps[2], 1);
     EXPECT_EQ(steps[3], 65535);
     EXPECT_EQ(steps[4], 0);
-    ASSERT_EQ(shown["histogram"].Size(), 2U);
-    EXPECT_EQ(shown["histogram"][0].GetUint64(), one.soup.points.size() - 3);
-    EXPECT_EQ(shown["histogram"][1].GetUint64(), 2U);
-    EXPECT_STREQ(shown["categories"][1]["text"].GetString(), "guessed");
-    EXPECT_EQ(shown["categories"][1]["colour"][2].GetInt(), 6);
+    ASSERT_EQ(map_entry["histogram"].Size(), 2U);
+    EXPECT_EQ(map_entry["histogram"][0].GetUint64(), annotated.soup.points.size() - 3);
+    EXPECT_EQ(map_entry["histogram"][1].GetUint64(), 2U);
+    EXPECT_STREQ(map_entry["categories"][1]["text"].GetString(), "guessed");
+    EXPECT_EQ(map_entry["categories"][1]["colour"][2].GetInt(), 6);
 }
 
 TEST(Page, HoldsSlicesConstraintsAndPartsInTheFrameOfTheObject) {
-    const Annotated one;
-    PageObject object = one.object();
+    const Annotated annotated;
+    PageObject object = annotated.object();
     PageSlices slices;
     slices.unit = "mm";
     slices.columns = {{"area", "area", "mm\xC2\xB2"}};
@@ -299,30 +299,30 @@ TEST(Page, HoldsSlicesConstraintsAndPartsInTheFrameOfTheObject) {
     Page page("a sphere");
     page.add(object);
     const ReadPage read(page.html(""));
-    const JsonValue& shown = read.data["objects"][0];
-    const JsonValue& level = shown["slices"]["levels"][1];
-    EXPECT_NEAR(level["origin"][2].GetDouble() + shown["origin"][2].GetDouble(), 3001, 1e-9);
+    const JsonValue& object_entry = read.data["objects"][0];
+    const JsonValue& level = object_entry["slices"]["levels"][1];
+    EXPECT_NEAR(level["origin"][2].GetDouble() + object_entry["origin"][2].GetDouble(), 3001, 1e-9);
     EXPECT_EQ(level["values"][0].GetDouble(), 12.5);
-    EXPECT_TRUE(shown["slices"]["levels"][0]["values"][0].IsNull());
-    const std::string bytes = read.blob(shown["slices"]["blob"]);
+    EXPECT_TRUE(object_entry["slices"]["levels"][0]["values"][0].IsNull());
+    const std::string bytes = read.blob(object_entry["slices"]["blob"]);
     ASSERT_EQ(bytes.size(), 2 * 3 * 2 * sizeof(float));
     EXPECT_EQ(reinterpret_cast<const float*>(bytes.data())[11], 3001.0F);
     EXPECT_EQ(level["contours"][0]["points"].GetInt(), 3);
-    EXPECT_EQ(shown["slices"]["tube"][1].GetDouble(), 3001);
-    const JsonValue& constraint = shown["constraints"][0];
+    EXPECT_EQ(object_entry["slices"]["tube"][1].GetDouble(), 3001);
+    const JsonValue& constraint = object_entry["constraints"][0];
     EXPECT_EQ(constraint["members"][1].GetInt(), 3);
     EXPECT_FALSE(constraint["holds"].GetBool());
     EXPECT_EQ(constraint["deviations"][0]["value"].GetDouble(), 4);
     EXPECT_TRUE(constraint["deviations"][0]["tolerance"].IsNull());
     EXPECT_EQ(constraint["residual"]["largest"].GetDouble(), 0.75);
-    EXPECT_STREQ(shown["conflicts"][0].GetString(), "this against that");
-    EXPECT_EQ(shown["parts"].Size(), 2U);
+    EXPECT_STREQ(object_entry["conflicts"][0].GetString(), "this against that");
+    EXPECT_EQ(object_entry["parts"].Size(), 2U);
 }
 
 TEST(Page, OfACollectionReadsItsObjectsFromFilesBesideIt) {
-    const Annotated one;
+    const Annotated annotated;
     Page alone("sphere");
-    alone.add(one.object());
+    alone.add(annotated.object());
     const std::string script = alone.script("objects/0001.js", "");
     const std::string begin = "ostrakaObject(\"objects/0001.js\", ";
     ASSERT_TRUE(script.starts_with(begin));
@@ -339,24 +339,24 @@ TEST(Page, OfACollectionReadsItsObjectsFromFilesBesideIt) {
     EXPECT_NE(policy(html), policy(alone.html("")));
 }
 
-TEST(Page, TextsStayTexts) {
+TEST(Page, EscapesMarkupInTexts) {
     const std::string evil = "</script><img src=x onerror=alert(1)><!--";
-    Annotated one(evil);
-    one.set.unit = evil;
-    one.set.annotations[0].note = evil;
-    one.set.annotations[0].attributes[0].name = evil;
+    Annotated annotated(evil);
+    annotated.set.unit = evil;
+    annotated.set.annotations[0].note = evil;
+    annotated.set.annotations[0].attributes[0].name = evil;
     Page page(evil);
-    PageObject object = one.object();
+    PageObject object = annotated.object();
     object.name = evil;
     page.add(object);
-    page.add(annotation_table(one.mesh, one.set, 0, evil));
+    page.add(annotation_table(annotated.mesh, annotated.set, 0, evil));
     page.add_drawing(evil, "<svg/>");
     page.note(evil);
     const std::string html = page.html(evil), plain = Page("").html("");
     EXPECT_EQ(html.find(evil), std::string::npos);
-    const auto count = [](const std::string& text, const std::string& what) {
+    const auto count = [](const std::string& text, const std::string& substring) {
         std::size_t n = 0;
-        for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+        for (std::size_t at = text.find(substring); at != std::string::npos; at = text.find(substring, at + 1)) ++n;
         return n;
     };
     EXPECT_EQ(count(html, "</script"), count(plain, "</script"));
@@ -367,7 +367,7 @@ TEST(Page, TextsStayTexts) {
     EXPECT_EQ(read.data["notes"][0].GetString(), evil);
 }
 
-TEST(Page, RunsNoScriptButTheViewers) {
+TEST(Page, RunsOnlyTheScriptOfTheViewer) {
     const auto policy_of = [](const std::string& html) {
         const std::size_t begin = html.find("content=\"default-src");
         return html.substr(begin, html.find('>', begin) - begin);
@@ -378,18 +378,18 @@ TEST(Page, RunsNoScriptButTheViewers) {
         const std::string policy = policy_of(html);
         EXPECT_EQ(policy.find("unsafe-inline"), std::string::npos) << policy;
         // The checksum is that of the only script that is no data.
-        const std::string mark = "<script type=\"module\"";
-        const std::size_t script = html.find('>', html.find(mark)) + 1;
-        EXPECT_EQ(html.find(mark, script), std::string::npos);
-        const std::string whole = sha256(html.substr(script, html.find("</script>", script) - script));
+        const std::string script_tag = "<script type=\"module\"";
+        const std::size_t script = html.find('>', html.find(script_tag)) + 1;
+        EXPECT_EQ(html.find(script_tag, script), std::string::npos);
+        const std::string script_hash = sha256(html.substr(script, html.find("</script>", script) - script));
         const std::size_t hash = policy.find("'sha256-", policy.find("script-src ")) + 8;
-        std::string found;
+        std::string allowed_hash;
         for (const char byte : from_base64(policy.substr(hash, 44))) {
             char digits[3];
             std::snprintf(digits, sizeof digits, "%02x", static_cast<unsigned>(static_cast<unsigned char>(byte)));
-            found += digits;
+            allowed_hash += digits;
         }
-        EXPECT_EQ(found, whole);
+        EXPECT_EQ(allowed_hash, script_hash);
     }
 }
 
@@ -404,13 +404,13 @@ TEST(Page, HashesOfInlineScripts) {
     EXPECT_EQ(inline_hashes("<script", "script"), "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='");
 }
 
-TEST(Page, TellsWhichObjectsHaveTheSameTriangles) {
-    const Annotated one;
+TEST(Page, ReportsObjectsWithTheSameTriangles) {
+    const Annotated annotated;
     Annotated moved;
     for (const Vertex v : moved.mesh.vertices()) moved.mesh.point(v) = moved.mesh.point(v) + Vector(0, 0, 0.1 * v.idx());
     const Mesh other = build_mesh(octahedron_sphere(3));
     Page page("three");
-    page.add(one.object());
+    page.add(annotated.object());
     PageObject third;
     third.name = "other";
     third.mesh = &other;
@@ -422,15 +422,15 @@ TEST(Page, TellsWhichObjectsHaveTheSameTriangles) {
     EXPECT_EQ(read.data["objects"][2]["blend"].GetInt(), 0);
 }
 
-TEST(Page, RefusesWhatItCannotShow) {
+TEST(Page, RefusesObjectsThatCannotBeShown) {
     Page page("none");
     const Mesh empty;
     PageObject object;
     object.name = "empty";
     object.mesh = &empty;
     EXPECT_THROW(page.add(object), Error);
-    const Annotated one;
-    PageObject mapped = one.object();
+    const Annotated annotated;
+    PageObject mapped = annotated.object();
     mapped.maps.push_back({"short", "", {1, 2, 3}});
     EXPECT_THROW(page.add(mapped), Error);
 }
@@ -459,10 +459,10 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     EXPECT_EQ(read_file(scratch / "a.html"), read_file(scratch / "b.html"));
     const ReadPage read(read_file(scratch / "a.html"));
     EXPECT_GT(read.data["objects"][0]["annotations"].Size(), 0U) << "annotations beside the mesh";
-    const auto refuse = [&](const std::string& words, int code, const std::string& says) {
+    const auto refuse = [&](const std::string& words, int code, const std::string& message) {
         const auto result = make(words + " " + (scratch / "c.html").string());
         EXPECT_EQ(result.code, code) << words << ": " << result.err;
-        EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
         EXPECT_FALSE(file_exists(scratch / "c.html"));
     };
     refuse((scratch / "none.ply").string(), 1, "none.ply");
@@ -564,13 +564,13 @@ TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
     const auto collected =
         run_command("report " + vase + data + "statuette.ply " + file("all.html") + " --beside '" + file("all of it") + "'");
     ASSERT_EQ(collected.code, 0) << collected.err;
-    const ReadPage all(read_file(scratch / "all.html"));
-    ASSERT_EQ(all.data["collection"].Size(), 2U);
-    EXPECT_EQ(all.data["objects"].Size(), 0U);
-    EXPECT_STREQ(all.data["collection"][1]["file"].GetString(), "all%20of%20it/0002.js");
+    const ReadPage all_objects(read_file(scratch / "all.html"));
+    ASSERT_EQ(all_objects.data["collection"].Size(), 2U);
+    EXPECT_EQ(all_objects.data["objects"].Size(), 0U);
+    EXPECT_STREQ(all_objects.data["collection"][1]["file"].GetString(), "all%20of%20it/0002.js");
     EXPECT_TRUE(read_file(scratch / "all of it/0002.js").starts_with("ostrakaObject(\"all%20of%20it/0002.js\", "));
     EXPECT_TRUE(read_file(scratch / "all of it/0002.png").starts_with("\x89PNG"));
-    EXPECT_EQ(all.data["tables"][0]["objects"][1].GetInt(), 1);
+    EXPECT_EQ(all_objects.data["tables"][0]["objects"][1].GetInt(), 1);
 }
 
 TEST(Publish, TakesAddressesOfTheWebOnly) {
@@ -591,7 +591,7 @@ TEST(Publish, TakesAddressesOfTheWebOnly) {
         EXPECT_EQ(publish(good, bad).code, 2) << bad;
         EXPECT_FALSE(file_exists(scratch / "out" / "manifest.json"));
     }
-    const auto done = publish(good, rights);
-    ASSERT_EQ(done.code, 0) << done.err;
+    const auto published = publish(good, rights);
+    ASSERT_EQ(published.code, 0) << published.err;
     EXPECT_NE(read_file(scratch / "out" / "manifest.json").find(rights), std::string::npos);
 }

@@ -51,7 +51,7 @@ std::string svg_bytes(const Drawing& drawing) {
     return read_file("memory:plot.svg");
 }
 
-TEST(Plot, IsTheSameWhereverAndWheneverItIsDrawn) {
+TEST(Plot, GivesTheSameBytesInEveryRun) {
     const std::string first = svg_bytes(simple());
     EXPECT_EQ(svg_bytes(simple()), first) << "also where other surfaces were made before";
     std::string other;
@@ -100,7 +100,7 @@ TEST(Plot, OfOnePointOfHugeAndOfMissingNumbers) {
     EXPECT_THROW(svg_bytes(Plot{"", {"x", true}, {"y"}, {{"", {{-1, 1}}}}}), Error) << "nothing below 0 on a logarithmic axis";
 }
 
-TEST(Plot, LabelsAndIntervalsAreOneAPoint) {
+TEST(Plot, LabelsAndIntervalsAreOnePerPoint) {
     Plot plot = simple();
     plot.series[1].labels.pop_back();
     EXPECT_THROW(svg_bytes(plot), Error);
@@ -117,7 +117,7 @@ Plot labelled(const std::vector<std::array<double, 2>>& points, const std::strin
     return plot;
 }
 
-TEST(Plot, LabelsAreNeitherCutNorOverEachOther) {
+TEST(Plot, LabelsAreNeitherClippedNorOverlapping) {
     const auto dark = [](const Picture& picture) {
         double sum = 0;
         for (const std::uint32_t pixel : picture.argb) {
@@ -141,7 +141,7 @@ TEST(Plot, LabelsAreNeitherCutNorOverEachOther) {
     EXPECT_LT(repeated_ink, 60 * single_ink);
 }
 
-TEST(Plot, NamesFromOutsideStayText) {
+TEST(Plot, EscapesMarkupInNames) {
     Plot plot = simple();
     plot.title = "</svg><script>alert(1)</script> \xff\xfe \x01 \n";
     plot.series[1].labels[0] = std::string(10000, 'x') + "\xc3";
@@ -185,7 +185,7 @@ TEST(HeatMap, FieldsHaveTheColoursOfTheirNumbers) {
     EXPECT_EQ(svg_bytes(map), svg_bytes(map));
 }
 
-TEST(HeatMap, RefusesWhatDoesNotFit) {
+TEST(HeatMap, RefusesMismatchedSizes) {
     HeatMap map{"", Eigen::MatrixXd::Zero(2, 2), {"a", "b"}, {"c"}, ""};
     EXPECT_THROW(svg_bytes(map), Error);
     map.columns = {"c", "d"};
@@ -220,7 +220,7 @@ TEST(DendrogramPicture, OfTreesOfAnySize) {
     EXPECT_NO_THROW(svg_bytes(Dendrogram{"", linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "a", "a"}}));
 }
 
-TEST(DendrogramPicture, RefusesWhatIsNoTree) {
+TEST(DendrogramPicture, RefusesInvalidTrees) {
     EXPECT_THROW(svg_bytes(Dendrogram{}), Error);
     Dendrogram tree{"", linkage(Eigen::MatrixXd::Zero(3, 3)), {"a", "b"}};
     EXPECT_THROW(svg_bytes(tree), Error) << "a name is missing";

@@ -71,7 +71,7 @@ TEST(SliceSheet, KeepsTheNumbersOfItsSlices) {
     EXPECT_FALSE(read_file(scratch / "others.svg") == read_file(scratch / "own.svg"));
 }
 
-TEST(SliceSheet, RefusesWhatCannotBeDrawn) {
+TEST(SliceSheet, RefusesEmptySheets) {
     const Scratch scratch;
     const Cut cut;
     EXPECT_THROW(write_slice_sheet(scratch / "a.gif", cut.sheet(2)), Error);
@@ -83,7 +83,7 @@ TEST(SliceSheet, RefusesWhatCannotBeDrawn) {
     EXPECT_EQ(count_files(scratch.path()), 0U);
 }
 
-TEST(ProfileDrawing, IsAtTheScaleItNames) {
+TEST(ProfileDrawing, IsDrawnAtTheStatedScale) {
     const Scratch scratch;
     const Cut cut;
     const Profile profile = find_profile(cut.mesh, slice_frame({0, 0, -1}, {0, 0, 1}));

@@ -40,7 +40,7 @@ TEST(TextTable, AsCsvReadsBack) {
     EXPECT_EQ(rows[1].cells[1], "3.1%");
 }
 
-TEST(TextTable, TextFromOutsideStaysText) {
+TEST(TextTable, EscapesMarkupInText) {
     TextTable hostile({"=1+1", "<b>"});
     hostile.add({"=cmd|' /C calc'!A0", "line\nbreak | \\input{/etc/passwd} `x` _a_ <script> 50% $x$ #1 ~ ^ {} -- \x1b[31m"});
     EXPECT_EQ(hostile.csv().find("\n=cmd"), std::string::npos);
@@ -55,7 +55,7 @@ TEST(TextTable, TextFromOutsideStaysText) {
         EXPECT_EQ(latex.find(bare), std::string::npos) << bare;
 }
 
-TEST(Markdown, TextFromOutsideStaysText) {
+TEST(Markdown, EscapesMarkupInText) {
     EXPECT_EQ(markdown_text("<img src=x onerror=alert(1)>"), "&lt;img src=x onerror=alert(1)&gt;");
     EXPECT_EQ(markdown_text("[x](javascript:alert(1)) ![y](z)"), "\\[x\\](javascript:alert(1)) !\\[y\\](z)");
     EXPECT_EQ(markdown_text("&lt;b&gt; `a` *b* _c_ # ~d~ | \\"),
@@ -70,7 +70,7 @@ TEST(Markdown, TextFromOutsideStaysText) {
     EXPECT_EQ(markdown_file("a>b&c%d#e?f\ng\\"), "a%3Eb%26c%25d%23e%3Ff%0Ag%5C");
 }
 
-TEST(TextTable, NumbersAreWholeInTheCsvAndWhatIsMissingIsEmpty) {
+TEST(TextTable, CsvHasFullPrecisionAndEmptyMissingValues) {
     TextTable t({"name", "mean", "cv", {"interval", {"low", "high"}}});
     t.add({"a", number_cell(1.0 / 3, 4), percent_cell(0.1234567), {"1 to 2", {"1.25", "2"}}});
     t.add({"-", number_cell(std::nullopt, 4), percent_cell(std::nan("")), {"-", {"", ""}}});
@@ -95,7 +95,7 @@ TEST(TextTable, IsWrittenInThreeFormats) {
     EXPECT_EQ(read_file(scratch / "t.tex"), table().latex("caption"));
 }
 
-TEST(TextTable, RowsHaveACellAColumn) {
+TEST(TextTable, RowsHaveOneCellPerColumn) {
     TextTable t({"a", "b"});
     EXPECT_THROW(t.add({"1"}), std::logic_error);
     EXPECT_EQ(t.markdown(), "| a | b |\n|---|---|\n");
