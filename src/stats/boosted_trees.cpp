@@ -5,6 +5,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,14 +38,14 @@ public:
             const BoostOptions& options)
         : table_(table), options_(options), rows_(table.rows()), truth_(truth), weights_(weights) {
         if (weights_.empty()) weights_.assign(rows_, 1.0);
-        cut();
+        compute_bins();
     }
 
     BoostedTrees run() {
-        double yes = 0, all = 0;
-        for (std::size_t r = 0; r < rows_; ++r) yes += truth_[r] ? weights_[r] : 0, all += weights_[r];
+        double positives = 0, total_weight = 0;
+        for (std::size_t r = 0; r < rows_; ++r) positives += truth_[r] ? weights_[r] : 0, total_weight += weights_[r];
         BoostedTrees model;
-        model.bias = static_cast<double>(rounded(std::log(yes / (all - yes))));
+        model.bias = static_cast<double>(rounded(std::log(positives / (total_weight - positives))));
         std::vector<double> odds(rows_, model.bias);
         slopes_.resize(rows_);
         Random random(options_.seed, 21);
@@ -58,7 +60,7 @@ public:
         return model;
     }
 
-    static double answer(const std::vector<BoostedTrees::Node>& tree, std::span<const float> features) {
+    static double tree_value(const std::vector<BoostedTrees::Node>& tree, std::span<const float> features) {
         const BoostedTrees::Node* node = tree.data();
         while (node->feature >= 0)
             node =
@@ -68,7 +70,7 @@ public:
 
 private:
     /// Computes thresholds of each feature at quantiles, and the bin of each value.
-    void cut() {
+    void compute_bins() {
         thresholds_.resize(table_.columns);
         binned_.resize(table_.columns);
         parallel_for(
@@ -113,12 +115,12 @@ private:
 
     void descend(std::vector<BoostedTrees::Node>& tree, std::size_t at, const std::vector<Index32>& sample,
                  const std::vector<std::size_t>& columns, int depth) {
-        Slope all;
+        Slope total;
         double weight = 0;
-        for (const Index32 r : sample) all.add(slopes_[r]), weight += weights_[r];
-        tree[at].value = rounded(-options_.rate * all.first / (all.second + options_.ridge));
+        for (const Index32 r : sample) total.add(slopes_[r]), weight += weights_[r];
+        tree[at].value = rounded(-options_.rate * total.first / (total.second + options_.ridge));
         if (depth == 0 || weight < 2 * options_.leaf_weight) return;
-        const auto worth = [&](const Slope& s) { return s.first * s.first / (s.second + options_.ridge); };
+        const auto gain_of = [&](const Slope& s) { return s.first * s.first / (s.second + options_.ridge); };
         std::vector<Split> best(columns.size());
         parallel_for(
             columns.size(),
@@ -137,15 +139,15 @@ private:
                     left.add(sums[b]);
                     below += weights[b];
                     if (below < options_.leaf_weight || weight - below < options_.leaf_weight) continue;
-                    const Slope right{all.first - left.first, all.second - left.second};
-                    const double gain = worth(left) + worth(right) - worth(all);
+                    const Slope right{total.first - left.first, total.second - left.second};
+                    const double gain = gain_of(left) + gain_of(right) - gain_of(total);
                     if (gain > best[k].gain) best[k] = {gain, c, b};
                 }
             },
             1);
         Split chosen;
-        for (const Split& one : best)
-            if (one.gain > chosen.gain) chosen = one;
+        for (const Split& split : best)
+            if (split.gain > chosen.gain) chosen = split;
         if (!(chosen.gain > 1e-6)) return;
         std::vector<Index32> left, right;
         for (const Index32 r : sample) (binned_[chosen.column][r] <= chosen.bin ? left : right).push_back(r);
@@ -171,8 +173,8 @@ private:
 void FeatureTable::add(std::span<const float> row) {
     if (columns == 0) columns = row.size();
     if (row.size() != columns)
-        fail_usage("a row of " + std::to_string(row.size()) + " features among rows of " + std::to_string(columns),
-                   "give all of them");
+        fail_usage(fmt::format("a row of {} features among rows of {}", row.size(), columns),
+                   "give the same number of features in every row");
     values.insert(values.end(), row.begin(), row.end());
 }
 
@@ -189,7 +191,7 @@ JsonValue BoostedTrees::to_json(JsonAllocator& allocator) const {
         std::snprintf(text, sizeof text, "%.4g", static_cast<double>(value));
         return std::strtod(text, nullptr);
     };
-    JsonValue list(rapidjson::kArrayType);
+    JsonValue tree_list(rapidjson::kArrayType);
     for (const auto& tree : trees) {
         JsonValue nodes(rapidjson::kArrayType);
         const auto add = [&](const auto& self, std::size_t at) -> void {
@@ -201,27 +203,27 @@ JsonValue BoostedTrees::to_json(JsonAllocator& allocator) const {
             self(self, static_cast<std::size_t>(node.right));
         };
         add(add, 0);
-        list.PushBack(nodes, allocator);
+        tree_list.PushBack(nodes, allocator);
     }
     JsonValue object(rapidjson::kObjectType);
     add_members(object, allocator, "bias", number(static_cast<float>(bias)));
-    object.AddMember("trees", list, allocator);
+    object.AddMember("trees", tree_list, allocator);
     return object;
 }
 
 BoostedTrees BoostedTrees::from_json(const JsonValue& value, std::size_t columns) {
-    const auto wrong = [](const std::string& what) { fail_input("boosted trees", what, "make the model anew"); };
+    const auto refuse = [](const std::string& problem) { fail_input("boosted trees", problem, "train the model again"); };
     BoostedTrees model;
     if (!value.IsObject() || !value.HasMember("bias") || !value["bias"].IsNumber() || !value.HasMember("trees") ||
         !value["trees"].IsArray())
-        wrong("have no bias or no list of trees");
+        refuse("have no bias or no list of trees");
     model.bias = static_cast<double>(static_cast<float>(value["bias"].GetDouble()));
     for (const JsonValue& nodes : value["trees"].GetArray()) {
         auto& tree = model.trees.emplace_back();
         rapidjson::SizeType at = 0;
         const auto read = [&](const auto& self, int depth) -> int {
             if (!nodes.IsArray() || at + 2 > nodes.Size() || !nodes[at].IsInt() || !nodes[at + 1].IsNumber() || depth > 64)
-                wrong("have a tree that is cut off");
+                refuse("have a truncated tree");
             const int feature = nodes[at].GetInt();
             const float number = static_cast<float>(nodes[at + 1].GetDouble());
             at += 2;
@@ -231,13 +233,13 @@ BoostedTrees BoostedTrees::from_json(const JsonValue& value, std::size_t columns
                 tree[place].value = number;
                 return static_cast<int>(place);
             }
-            if (static_cast<std::size_t>(feature) >= columns) wrong("ask for feature " + std::to_string(feature));
+            if (static_cast<std::size_t>(feature) >= columns) refuse("use the unknown feature " + std::to_string(feature));
             const int left = self(self, depth + 1), right = self(self, depth + 1);
             tree[place] = {feature, number, left, right, 0};
             return static_cast<int>(place);
         };
         read(read, 0);
-        if (at != nodes.Size()) wrong("have a tree with loose ends");
+        if (at != nodes.Size()) refuse("have a tree with unused nodes");
     }
     return model;
 }
@@ -246,24 +248,24 @@ BoostedTrees boost(const FeatureTable& table, const std::vector<bool>& truth, co
                    const BoostOptions& options) {
     check_options(options, "boost");
     if (truth.size() != table.rows() || (!weights.empty() && weights.size() != table.rows()))
-        fail_usage("rows, truth and weights are not equally many", "give one of each a sample");
-    const auto yes = std::count(truth.begin(), truth.end(), true);
-    if (yes == 0 || static_cast<std::size_t>(yes) == truth.size())
-        fail_input("samples", "are all of one kind", "give examples of both");
+        fail_usage("the numbers of rows, labels and weights differ", "give one of each per sample");
+    const auto positives = std::count(truth.begin(), truth.end(), true);
+    if (positives == 0 || static_cast<std::size_t>(positives) == truth.size())
+        fail_input("samples", "all belong to one class", "give samples of both classes");
     if (!std::all_of(table.values.begin(), table.values.end(), [](float x) { return std::isfinite(x); }))
-        fail_input("samples", "have features that are not finite", "look at where they come from");
+        fail_input("samples", "have features that are not finite", "check how the features are computed");
     return Booster(table, truth, weights, options).run();
 }
 
 void BoostOptions::describe(OptionList& visit) {
-    visit("trees", trees, "how many", Range{1, 10000});
-    visit("depth", depth, "decisions from root to leaf, at most", Range{1, 16});
-    visit("rate", rate, "share of each tree's answer that is taken", Range{1e-4, 1});
-    visit("leaf-weight", leaf_weight, "of the samples under a leaf, at least", Range{0, 1e9});
-    visit("ridge", ridge, "holds leaves to 0", Range{0, 1e9});
-    visit("row-share", row_share, "of the samples, for each tree", Range{0.01, 1});
-    visit("column-share", column_share, "of the features, for each tree", Range{0.01, 1});
-    visit("seed", seed, "of the choices of samples and features", Range{0, 9007199254740992.0});
+    visit("trees", trees, "number of trees", Range{1, 10000});
+    visit("depth", depth, "maximum number of decisions from root to leaf", Range{1, 16});
+    visit("rate", rate, "learning rate: factor on the value of each tree", Range{1e-4, 1});
+    visit("leaf-weight", leaf_weight, "minimum total weight of the samples of a leaf", Range{0, 1e9});
+    visit("ridge", ridge, "regularisation that shrinks the leaf values towards 0", Range{0, 1e9});
+    visit("row-share", row_share, "fraction of the samples used for each tree", Range{0.01, 1});
+    visit("column-share", column_share, "fraction of the features used for each tree", Range{0.01, 1});
+    visit("seed", seed, "random seed of the choice of samples and features", Range{0, 9007199254740992.0});
 }
 
 }  // namespace ostraka

@@ -2,6 +2,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <set>
 #include <vector>
@@ -10,16 +12,14 @@ namespace ostraka {
 
 namespace {
 
-std::string place(Eigen::Index row, Eigen::Index column) {
-    return "row " + std::to_string(row) + ", column " + std::to_string(column);
-}
+std::string place(Eigen::Index row, Eigen::Index column) { return fmt::format("row {}, column {}", row, column); }
 
 void require_finite_entries(const Eigen::MatrixXd& matrix, const std::string& where) {
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
         for (Eigen::Index j = 0; j < matrix.cols(); ++j)
             if (!std::isfinite(matrix(i, j)))
-                fail_input(where, "the value in " + place(i, j) + " is not a finite number",
-                           "leave it out, or give a finite number");
+                fail_input(where, fmt::format("the value in {} is not a finite number", place(i, j)),
+                           "remove it, or give a finite number");
 }
 
 }  // namespace
@@ -32,18 +32,17 @@ void require_samples(const Eigen::MatrixXd& samples, const std::string& where) {
 void require_symmetric(const Eigen::MatrixXd& matrix, bool distances, const std::string& where) {
     if (matrix.rows() == 0) fail_input(where, "the matrix is empty", "give at least one row");
     if (matrix.rows() != matrix.cols())
-        fail_input(where,
-                   "the matrix has " + std::to_string(matrix.rows()) + " rows and " + std::to_string(matrix.cols()) + " columns",
-                   "give a square one, a row and a column a sample");
+        fail_input(where, fmt::format("the matrix has {} rows and {} columns", matrix.rows(), matrix.cols()),
+                   "give a square matrix with one row and one column per sample");
     require_finite_entries(matrix, where);
     const double tolerance = 1e-9 * matrix.cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
         for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
             if (std::abs(matrix(i, j) - matrix(j, i)) > tolerance)
-                fail_input(where, "the entry in " + place(i, j) + " is not the one across the diagonal",
+                fail_input(where, fmt::format("the entry in {} differs from its mirror entry across the diagonal", place(i, j)),
                            "make the matrix symmetric first");
             if (distances && matrix(i, j) < 0)
-                fail_input(where, "the distance in " + place(i, j) + " is negative", "give distances, not similarities");
+                fail_input(where, fmt::format("the distance in {} is negative", place(i, j)), "give distances, not similarities");
         }
 }
 

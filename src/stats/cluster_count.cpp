@@ -5,6 +5,8 @@
 #include "ostraka/stats/k_means.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,8 +18,7 @@ namespace {
 template <class Distance>
 std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels, const Distance& distance) {
     if (labels.size() != n)
-        fail_usage("there are " + std::to_string(labels.size()) + " labels for " + std::to_string(n) + " samples",
-                   "give one label a sample");
+        fail_usage(fmt::format("there are {} labels for {} samples", labels.size(), n), "give one label per sample");
     const int maximum = *std::max_element(labels.begin(), labels.end());
     std::vector<std::size_t> sizes(static_cast<std::size_t>(std::max(0, maximum + 1)));
     for (const int label : labels)
@@ -27,14 +28,14 @@ std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels
         n,
         [&](std::size_t i) {
             if (labels[i] < 0 || sizes[static_cast<std::size_t>(labels[i])] < 2) return;
-            std::vector<double> sums(sizes.size());
+            std::vector<double> distance_sums(sizes.size());
             for (std::size_t j = 0; j < n; ++j)
-                if (labels[j] >= 0 && j != i) sums[static_cast<std::size_t>(labels[j])] += distance(i, j);
-            const auto own = static_cast<std::size_t>(labels[i]);
-            const double a = sums[own] / static_cast<double>(sizes[own] - 1);
+                if (labels[j] >= 0 && j != i) distance_sums[static_cast<std::size_t>(labels[j])] += distance(i, j);
+            const auto own_cluster = static_cast<std::size_t>(labels[i]);
+            const double a = distance_sums[own_cluster] / static_cast<double>(sizes[own_cluster] - 1);
             double b = std::numeric_limits<double>::infinity();
             for (std::size_t k = 0; k < sizes.size(); ++k)
-                if (k != own && sizes[k] > 0) b = std::min(b, sums[k] / static_cast<double>(sizes[k]));
+                if (k != own_cluster && sizes[k] > 0) b = std::min(b, distance_sums[k] / static_cast<double>(sizes[k]));
             if (std::isfinite(b) && std::max(a, b) > 0) result[i] = (b - a) / std::max(a, b);
         },
         16);
@@ -42,11 +43,11 @@ std::vector<double> silhouettes_by(std::size_t n, const std::vector<int>& labels
 }
 
 /// Draws the same number of samples uniformly from the box along the principal directions.
-Eigen::MatrixXd reference(const Eigen::MatrixXd& turned, Random random) {
-    Eigen::MatrixXd result(turned.rows(), turned.cols());
-    for (Eigen::Index j = 0; j < turned.cols(); ++j) {
-        const double low = turned.col(j).minCoeff(), high = turned.col(j).maxCoeff();
-        for (Eigen::Index i = 0; i < turned.rows(); ++i) result(i, j) = random.uniform(low, high);
+Eigen::MatrixXd reference(const Eigen::MatrixXd& rotated, Random random) {
+    Eigen::MatrixXd result(rotated.rows(), rotated.cols());
+    for (Eigen::Index j = 0; j < rotated.cols(); ++j) {
+        const double low = rotated.col(j).minCoeff(), high = rotated.col(j).maxCoeff();
+        for (Eigen::Index i = 0; i < rotated.rows(); ++i) result(i, j) = random.uniform(low, high);
     }
     return result;
 }
@@ -71,32 +72,32 @@ std::vector<double> silhouettes_of_distances(const Eigen::MatrixXd& distances, c
 ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const ClusterCountOptions& options) {
     check_options(options, "number of clusters");
     require_samples(samples, "number of clusters");
-    const std::size_t different = distinct_rows(samples);
-    const std::size_t possible =
-        2 * different <= static_cast<std::size_t>(samples.rows()) ? different : std::max<std::size_t>(1, different - 1);
-    const int maximum = static_cast<int>(std::min(static_cast<std::size_t>(options.max_clusters), possible));
+    const std::size_t distinct = distinct_rows(samples);
+    const std::size_t max_possible =
+        2 * distinct <= static_cast<std::size_t>(samples.rows()) ? distinct : std::max<std::size_t>(1, distinct - 1);
+    const int maximum = static_cast<int>(std::min(static_cast<std::size_t>(options.max_clusters), max_possible));
 
     // Version b of the paper: the box is aligned with the principal directions.
     Eigen::MatrixXd centred = samples.rowwise() - samples.row(0);
     centred.rowwise() -= centred.colwise().mean().eval();
     const double largest = centred.cwiseAbs().maxCoeff();
-    if (!std::isfinite(largest)) fail_input("number of clusters", "the values lie too far apart", "use another unit");
+    if (!std::isfinite(largest)) fail_input("number of clusters", "the range of the values is too large", "use another unit");
     if (largest > 0) centred /= largest;
     const SymmetricEigenX principal(centred.transpose() * centred);
-    const Eigen::MatrixXd turned = centred * principal.eigenvectors();
-    const double whole = centred.squaredNorm(), minimum = 1e-24 * (whole > 0 ? whole : 1);
+    const Eigen::MatrixXd rotated = centred * principal.eigenvectors();
+    const double total_cost = centred.squaredNorm(), minimum = 1e-24 * (total_cost > 0 ? total_cost : 1);
 
     ClusterCount result;
     double best = -std::numeric_limits<double>::infinity();
     for (int k = 1; k <= maximum; ++k) {
-        KMeansOptions of_k = options.k_means;
-        of_k.clusters = k;
-        const KMeansResult found = k_means(centred, of_k);
+        KMeansOptions options_for_k = options.k_means;
+        options_for_k.clusters = k;
+        const KMeansResult clustering = k_means(centred, options_for_k);
         ClusterCount::Row row;
         row.clusters = k;
-        row.cost = largest > 0 ? found.cost * largest * largest : 0;
+        row.cost = largest > 0 ? clustering.cost * largest * largest : 0;
         if (k > 1) {
-            for (const double s : silhouettes_of_samples(centred, found.labels))
+            for (const double s : silhouettes_of_samples(centred, clustering.labels))
                 row.silhouette += s / static_cast<double>(samples.rows());
             if (row.silhouette > best) best = row.silhouette, result.by_silhouette = k;
         }
@@ -104,13 +105,14 @@ ClusterCount propose_cluster_count(const Eigen::MatrixXd& samples, const Cluster
         parallel_for(
             logs.size(),
             [&](std::size_t b) {
-                logs[b] = std::log(std::max(minimum, k_means(reference(turned, Random(options.k_means.seed, b + 1)), of_k).cost));
+                logs[b] = std::log(
+                    std::max(minimum, k_means(reference(rotated, Random(options.k_means.seed, b + 1)), options_for_k).cost));
             },
             1);
         double mean = 0, square = 0;
         for (const double value : logs) mean += value / static_cast<double>(logs.size());
         for (const double value : logs) square += (value - mean) * (value - mean) / static_cast<double>(logs.size());
-        row.gap = mean - std::log(std::max(minimum, found.cost));
+        row.gap = mean - std::log(std::max(minimum, clustering.cost));
         row.gap_error = std::sqrt(square * (1 + 1 / static_cast<double>(logs.size())));
         result.rows.push_back(row);
     }

@@ -16,8 +16,8 @@ namespace ostraka {
 namespace {
 
 void check_neighbourhood(double epsilon, int minimum) {
-    if (!(epsilon >= 0)) fail_usage("the reach of DBSCAN is " + std::to_string(epsilon), "use a distance, 0 or more");
-    if (minimum < 1) fail_usage("the least number of neighbours is " + std::to_string(minimum), "use 1 or more");
+    if (!(epsilon >= 0)) fail_usage("the search radius of DBSCAN is " + std::to_string(epsilon), "use a distance of at least 0");
+    if (minimum < 1) fail_usage("the minimum number of neighbours is " + std::to_string(minimum), "use at least 1");
 }
 
 }  // namespace
@@ -30,20 +30,20 @@ std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int mini
     const auto distance = [&](std::size_t i, std::size_t j) {
         return (columns.col(static_cast<Eigen::Index>(i)) - columns.col(static_cast<Eigen::Index>(j))).stableNorm();
     };
-    constexpr int unseen = -2, noise = -1;
-    std::vector<int> labels(n, unseen);
+    constexpr int unvisited = -2, noise = -1;
+    std::vector<int> labels(n, unvisited);
     const auto neighbours = [&](std::size_t i) {
-        std::vector<std::size_t> near;
+        std::vector<std::size_t> neighbour_indices;
         for (std::size_t j = 0; j < n; ++j)
-            if (j == i || distance(i, j) <= epsilon) near.push_back(j);
-        return near;
+            if (j == i || distance(i, j) <= epsilon) neighbour_indices.push_back(j);
+        return neighbour_indices;
     };
-    const auto many = static_cast<std::size_t>(minimum);
+    const auto min_neighbours = static_cast<std::size_t>(minimum);
     int clusters = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        if (labels[i] != unseen) continue;
+        if (labels[i] != unvisited) continue;
         std::vector<std::size_t> reached = neighbours(i);
-        if (reached.size() < many) {
+        if (reached.size() < min_neighbours) {
             labels[i] = noise;
             continue;
         }
@@ -51,11 +51,11 @@ std::vector<int> dbscan(const Eigen::MatrixXd& samples, double epsilon, int mini
         for (std::size_t next = 0; next < reached.size(); ++next) {
             const std::size_t j = reached[next];
             if (labels[j] == noise) labels[j] = label;
-            if (labels[j] != unseen) continue;
+            if (labels[j] != unvisited) continue;
             labels[j] = label;
-            const std::vector<std::size_t> further = neighbours(j);
-            if (further.size() < many) continue;
-            for (const std::size_t k : further)
+            const std::vector<std::size_t> neighbours_of_j = neighbours(j);
+            if (neighbours_of_j.size() < min_neighbours) continue;
+            for (const std::size_t k : neighbours_of_j)
                 if (labels[k] < 0) reached.push_back(k);
         }
     }
@@ -90,9 +90,9 @@ double volume_epsilon(const Eigen::MatrixXd& samples, int minimum) {
 Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
     require_symmetric(distances, true, "linkage");
     const Eigen::Index n = distances.rows();
-    Eigen::MatrixXd between = (distances + distances.transpose()) / 2;
+    Eigen::MatrixXd cluster_distances = (distances + distances.transpose()) / 2;
     std::vector<double> sizes(static_cast<std::size_t>(n), 1.0);
-    std::vector<bool> gone(static_cast<std::size_t>(n));
+    std::vector<bool> is_merged(static_cast<std::size_t>(n));
     struct Step {
         Eigen::Index a, b;
         double height;
@@ -101,33 +101,34 @@ Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
     std::vector<Eigen::Index> chain;
     for (Eigen::Index start = 0; static_cast<Eigen::Index>(steps.size()) + 1 < n;) {
         if (chain.empty()) {
-            while (gone[static_cast<std::size_t>(start)]) ++start;
+            while (is_merged[static_cast<std::size_t>(start)]) ++start;
             chain.push_back(start);
         }
-        const Eigen::Index last = chain.back(), before = chain.size() > 1 ? chain[chain.size() - 2] : -1;
+        const Eigen::Index last = chain.back(), previous = chain.size() > 1 ? chain[chain.size() - 2] : -1;
         // The nearest other cluster; ties keep the previous cluster of the chain, so that chains end.
-        Eigen::Index nearest = before;
-        double minimum = before < 0 ? std::numeric_limits<double>::infinity() : between(last, before);
+        Eigen::Index nearest = previous;
+        double minimum = previous < 0 ? std::numeric_limits<double>::infinity() : cluster_distances(last, previous);
         for (Eigen::Index j = 0; j < n; ++j)
-            if (j != last && !gone[static_cast<std::size_t>(j)] && between(last, j) < minimum)
-                minimum = between(last, j), nearest = j;
-        if (nearest != before) {
+            if (j != last && !is_merged[static_cast<std::size_t>(j)] && cluster_distances(last, j) < minimum)
+                minimum = cluster_distances(last, j), nearest = j;
+        if (nearest != previous) {
             chain.push_back(nearest);
             continue;
         }
         chain.resize(chain.size() - 2);
-        const Eigen::Index a = std::min(last, before), b = std::max(last, before);
+        const Eigen::Index a = std::min(last, previous), b = std::max(last, previous);
         steps.push_back({a, b, minimum});
         const double na = sizes[static_cast<std::size_t>(a)], nb = sizes[static_cast<std::size_t>(b)];
         for (Eigen::Index j = 0; j < n; ++j) {
-            if (j == a || j == b || gone[static_cast<std::size_t>(j)]) continue;
-            const double da = between(a, j), db = between(b, j);
-            between(a, j) = between(j, a) = method == LinkageMethod::single     ? std::min(da, db)
-                                            : method == LinkageMethod::complete ? std::max(da, db)
-                                                                                : (na * da + nb * db) / (na + nb);
+            if (j == a || j == b || is_merged[static_cast<std::size_t>(j)]) continue;
+            const double da = cluster_distances(a, j), db = cluster_distances(b, j);
+            cluster_distances(a, j) = cluster_distances(j, a) = method == LinkageMethod::single ? std::min(da, db)
+                                                                : method == LinkageMethod::complete
+                                                                    ? std::max(da, db)
+                                                                    : (na * da + nb * db) / (na + nb);
         }
         sizes[static_cast<std::size_t>(a)] += nb;
-        gone[static_cast<std::size_t>(b)] = true;
+        is_merged[static_cast<std::size_t>(b)] = true;
     }
     std::stable_sort(steps.begin(), steps.end(), [](const Step& x, const Step& y) { return x.height < y.height; });
 
@@ -138,10 +139,10 @@ Linkage linkage(const Eigen::MatrixXd& distances, LinkageMethod method) {
     DisjointSets sets(static_cast<std::size_t>(n));
     for (const Step& step : steps) {
         const std::size_t a = sets.find(static_cast<std::size_t>(step.a)), b = sets.find(static_cast<std::size_t>(step.b));
-        const int sum = size[a] + size[b];
-        tree.merges.push_back({std::min(cluster[a], cluster[b]), std::max(cluster[a], cluster[b]), step.height, sum});
+        const int merged_size = size[a] + size[b];
+        tree.merges.push_back({std::min(cluster[a], cluster[b]), std::max(cluster[a], cluster[b]), step.height, merged_size});
         sets.unite_into(a, b);
-        size[a] = sum;
+        size[a] = merged_size;
         cluster[a] = static_cast<int>(n) + static_cast<int>(tree.merges.size()) - 1;
     }
     return tree;
@@ -172,20 +173,20 @@ std::vector<int> cut_at(const Linkage& tree, double height) {
 
 std::vector<int> leaf_order(const Linkage& tree) {
     std::vector<int> order;
-    std::vector<int> waiting;
-    if (tree.samples > 0) waiting.push_back(tree.merges.empty() ? 0 : tree.samples + static_cast<int>(tree.merges.size()) - 1);
+    std::vector<int> pending;
+    if (tree.samples > 0) pending.push_back(tree.merges.empty() ? 0 : tree.samples + static_cast<int>(tree.merges.size()) - 1);
     CancelCheck check;
-    while (!waiting.empty()) {
+    while (!pending.empty()) {
         check();
-        const int cluster = waiting.back();
-        waiting.pop_back();
+        const int cluster = pending.back();
+        pending.pop_back();
         if (cluster < tree.samples) {
             order.push_back(cluster);
             continue;
         }
         const Merge& merge = tree.merges[static_cast<std::size_t>(cluster - tree.samples)];
-        waiting.push_back(merge.second);
-        waiting.push_back(merge.first);
+        pending.push_back(merge.second);
+        pending.push_back(merge.first);
     }
     return order;
 }

@@ -13,7 +13,7 @@ namespace ostraka {
 namespace {
 
 void check_dimensions(int dimensions) {
-    if (dimensions < 1) fail_usage("the number of dimensions is " + std::to_string(dimensions), "use 1 or more");
+    if (dimensions < 1) fail_usage("the number of dimensions is " + std::to_string(dimensions), "use at least 1");
 }
 
 /// The sign (1 or -1) that makes the entry of largest magnitude, the first of equal ones, positive.
@@ -33,7 +33,7 @@ Embedding spectral_embedding(const Eigen::MatrixXd& symmetric, int dimensions) {
     const SymmetricEigenX solver((symmetric + symmetric.transpose()) / 2);
     if (!solver.found())
         throw Error(ErrorKind::failure, "spectral embedding", "the eigenvalues were not found",
-                    "is the matrix far too large or small?");
+                    "check that the matrix has entries of moderate size");
     const Eigen::VectorXd& values = solver.eigenvalues();
     std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
     // By decreasing value, so that a positive eigenvalue comes before a negative one of the same magnitude.
@@ -41,10 +41,10 @@ Embedding spectral_embedding(const Eigen::MatrixXd& symmetric, int dimensions) {
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return std::abs(values[a]) > std::abs(values[b]); });
     Embedding result{Eigen::MatrixXd(n, d), Eigen::VectorXd(d)};
     for (Eigen::Index k = 0; k < d; ++k) {
-        const Eigen::Index from = order[static_cast<std::size_t>(k)];
-        const Eigen::VectorXd vector = solver.eigenvectors().col(from);
+        const Eigen::Index column = order[static_cast<std::size_t>(k)];
+        const Eigen::VectorXd vector = solver.eigenvectors().col(column);
         result.coordinates.col(k) = sign_of(vector) * vector;
-        result.eigenvalues[k] = values[from];
+        result.eigenvalues[k] = values[column];
     }
     return result;
 }
@@ -57,12 +57,12 @@ PrincipalComponents principal_components(const Eigen::MatrixXd& samples, int dim
     const Eigen::MatrixXd centred = samples.rowwise() - result.mean;
     const SvdX svd(centred);
     const Eigen::Index d = std::min<Eigen::Index>(dimensions, svd.singularValues().size());
-    const double below = std::max<double>(1, static_cast<double>(samples.rows() - 1));
+    const double divisor = std::max<double>(1, static_cast<double>(samples.rows() - 1));
     result.directions.resize(samples.cols(), d);
     for (Eigen::Index k = 0; k < d; ++k) result.directions.col(k) = sign_of(svd.matrixV().col(k)) * svd.matrixV().col(k);
     result.scores = centred * result.directions;
-    result.variances = svd.singularValues().head(d).cwiseAbs2() / below;
-    result.total_variance = svd.singularValues().squaredNorm() / below;
+    result.variances = svd.singularValues().head(d).cwiseAbs2() / divisor;
+    result.total_variance = svd.singularValues().squaredNorm() / divisor;
     return result;
 }
 

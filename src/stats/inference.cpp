@@ -5,6 +5,7 @@
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
@@ -16,10 +17,10 @@ namespace ostraka {
 
 namespace {
 
-std::vector<double> stepped_up(const std::vector<double>& p, double factor) {
+std::vector<double> step_up_q_values(const std::vector<double>& p, double factor) {
     for (std::size_t i = 0; i < p.size(); ++i)
         if (!(p[i] >= 0 && p[i] <= 1))
-            fail_input("p-values", "number " + std::to_string(i) + " is " + std::to_string(p[i]), "give numbers from 0 to 1");
+            fail_input("p-values", fmt::format("number {} is {}", i, std::to_string(p[i])), "give numbers from 0 to 1");
     std::vector<std::size_t> order(p.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return p[a] < p[b]; });
@@ -34,12 +35,12 @@ std::vector<double> stepped_up(const std::vector<double>& p, double factor) {
 
 }  // namespace
 
-std::vector<double> benjamini_hochberg(const std::vector<double>& p) { return stepped_up(p, 1); }
+std::vector<double> benjamini_hochberg(const std::vector<double>& p) { return step_up_q_values(p, 1); }
 
 std::vector<double> benjamini_yekutieli(const std::vector<double>& p) {
     double sum = 0;
     for (std::size_t i = p.size(); i > 0; --i) sum += 1 / static_cast<double>(i);
-    return stepped_up(p, sum);
+    return step_up_q_values(p, sum);
 }
 
 double permutation_p_value(double observed, const std::vector<double>& chance) {
@@ -49,13 +50,14 @@ double permutation_p_value(double observed, const std::vector<double>& chance) {
 }
 
 double normal_quantile(double p) {
-    if (!(p > 0 && p < 1)) fail_usage("a normal quantile at " + std::to_string(p), "use a probability between 0 and 1");
+    if (!(p > 0 && p < 1))
+        fail_usage("a normal quantile is requested at " + std::to_string(p), "use a probability between 0 and 1");
     return boost::math::quantile(boost::math::normal(), p);
 }
 
 std::optional<Interval> deviation_interval(const std::vector<double>& values, bool relative, double confidence) {
     if (!(confidence > 0 && confidence < 1))
-        fail_usage("the confidence is " + std::to_string(confidence), "use one between 0 and 1");
+        fail_usage("the confidence is " + std::to_string(confidence), "use a value between 0 and 1");
     const double n = static_cast<double>(values.size()), z = normal_quantile(0.5 + confidence / 2);
     if (values.size() < 3 || !(n > z)) return std::nullopt;
     const Summary summary = summarise(values);
@@ -65,8 +67,8 @@ std::optional<Interval> deviation_interval(const std::vector<double>& values, bo
     for (const double value : values) scaled.push_back((value - summary.mean) / *summary.deviation);
     std::sort(scaled.begin(), scaled.end());
     // Trimmed mean: a fraction 1 / (2 sqrt(n - 4)) of the values is removed at either end.
-    const double share = values.size() > 4 ? std::min(0.5, 1 / (2 * std::sqrt(n - 4))) : 0.5;
-    const auto cut = std::min(static_cast<std::size_t>(share * n), (values.size() - 1) / 2);
+    const double trimmed_fraction = values.size() > 4 ? std::min(0.5, 1 / (2 * std::sqrt(n - 4))) : 0.5;
+    const auto cut = std::min(static_cast<std::size_t>(trimmed_fraction * n), (values.size() - 1) / 2);
     double middle = 0;
     for (std::size_t i = cut; i < scaled.size() - cut; ++i) middle += scaled[i] / static_cast<double>(scaled.size() - 2 * cut);
     double third = 0, fourth = 0;
@@ -101,20 +103,19 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
     parallel_for(
         overlaps.size(),
         [&](std::size_t r) {
-            std::vector<std::size_t> chosen = Random(options.seed, r).permutation(n);
-            chosen.resize(part);
-            std::sort(chosen.begin(), chosen.end());
-            const std::vector<int> found = cluster(chosen);
-            if (found.size() != chosen.size())
-                fail_usage("clustering gave " + std::to_string(found.size()) + " labels for " + std::to_string(chosen.size()) +
-                           " samples");
+            std::vector<std::size_t> resample = Random(options.seed, r).permutation(n);
+            resample.resize(part);
+            std::sort(resample.begin(), resample.end());
+            const std::vector<int> new_labels = cluster(resample);
+            if (new_labels.size() != resample.size())
+                fail_usage(fmt::format("clustering gave {} labels for {} samples", new_labels.size(), resample.size()));
             std::map<int, double> old_sizes, new_sizes;
             std::map<std::pair<int, int>, double> shared;
-            for (std::size_t i = 0; i < found.size(); ++i) {
-                const int before = labels[chosen[i]];
-                if (before >= 0) old_sizes[before] += 1;
-                if (found[i] >= 0) new_sizes[found[i]] += 1;
-                if (before >= 0 && found[i] >= 0) shared[{before, found[i]}] += 1;
+            for (std::size_t i = 0; i < new_labels.size(); ++i) {
+                const int old_label = labels[resample[i]];
+                if (old_label >= 0) old_sizes[old_label] += 1;
+                if (new_labels[i] >= 0) new_sizes[new_labels[i]] += 1;
+                if (old_label >= 0 && new_labels[i] >= 0) shared[{old_label, new_labels[i]}] += 1;
             }
             for (const auto& [name, size] : old_sizes) overlaps[r][name] = 0;
             for (const auto& [names, common] : shared) {
@@ -125,20 +126,20 @@ std::vector<ClusterStability> cluster_stability(const std::vector<int>& labels,
         1);
     for (const auto& resample : overlaps)
         for (const auto& [name, overlap] : resample) {
-            ClusterStability& of = clusters[name];
-            ++of.resamples;
-            of.jaccard += overlap;
-            of.recovered += overlap > 0.75 ? 1 : 0;
-            of.dissolved += overlap <= 0.5 ? 1 : 0;
+            ClusterStability& stability = clusters[name];
+            ++stability.resamples;
+            stability.jaccard += overlap;
+            stability.recovered += overlap > 0.75 ? 1 : 0;
+            stability.dissolved += overlap <= 0.5 ? 1 : 0;
         }
     std::vector<ClusterStability> result;
-    for (auto& [name, of] : clusters) {
-        if (of.resamples > 0) {
-            of.jaccard /= of.resamples;
-            of.recovered /= of.resamples;
-            of.dissolved /= of.resamples;
+    for (auto& [name, stability] : clusters) {
+        if (stability.resamples > 0) {
+            stability.jaccard /= stability.resamples;
+            stability.recovered /= stability.resamples;
+            stability.dissolved /= stability.resamples;
         }
-        result.push_back(of);
+        result.push_back(stability);
     }
     return result;
 }

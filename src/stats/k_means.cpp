@@ -38,13 +38,13 @@ Rows first_centres(const Rows& samples, Eigen::Index clusters, Random& random) {
             d = std::min(d, (samples.row(i) - centres.row(k - 1)).squaredNorm());
             sum += d;
         }
-        double rest = random.uniform() * sum;
+        double remaining = random.uniform() * sum;
         Eigen::Index chosen = -1;
         for (Eigen::Index i = 0; i < n; ++i) {
             const double d = nearest[static_cast<std::size_t>(i)];
             if (d == 0) continue;
             chosen = i;
-            if ((rest -= d) < 0) break;
+            if ((remaining -= d) < 0) break;
         }
         centres.row(k) = samples.row(std::max<Eigen::Index>(chosen, 0));
     }
@@ -72,7 +72,7 @@ bool assign(const Rows& samples, Restart& run, std::vector<double>& distances) {
 bool refill(Restart& run, std::vector<double>& distances) {
     std::vector<std::size_t> counts(static_cast<std::size_t>(run.centres.rows()));
     for (const int label : run.labels) ++counts[static_cast<std::size_t>(label)];
-    bool any = false;
+    bool any_refilled = false;
     for (std::size_t k = 0; k < counts.size(); ++k) {
         if (counts[k] > 0) continue;
         const auto farthest = static_cast<std::size_t>(std::max_element(distances.begin(), distances.end()) - distances.begin());
@@ -81,9 +81,9 @@ bool refill(Restart& run, std::vector<double>& distances) {
         ++counts[k];
         run.labels[farthest] = static_cast<int>(k);
         distances[farthest] = 0;
-        any = true;
+        any_refilled = true;
     }
-    return any;
+    return any_refilled;
 }
 
 void move_centres(const Rows& samples, Restart& run) {
@@ -115,18 +115,18 @@ Restart run_once(const Rows& samples, Eigen::Index clusters, int iterations, Ran
 }
 
 /// The samples about their mean, scaled by a power of two to at most 1, so that squares neither overflow nor underflow.
-struct Framed {
+struct Normalised {
     Rows samples;
     Eigen::RowVectorXd centre;
     double unit = 1;
 
-    explicit Framed(const Eigen::MatrixXd& given) {
-        centre = given.row(0);
-        for (Eigen::Index i = 0; i < given.rows(); ++i)
-            centre += (given.row(i) - given.row(0)) / static_cast<double>(given.rows());
-        samples = given.rowwise() - centre;
+    explicit Normalised(const Eigen::MatrixXd& input) {
+        centre = input.row(0);
+        for (Eigen::Index i = 0; i < input.rows(); ++i)
+            centre += (input.row(i) - input.row(0)) / static_cast<double>(input.rows());
+        samples = input.rowwise() - centre;
         const double largest = samples.cwiseAbs().maxCoeff();
-        if (!std::isfinite(largest)) fail_input("samples", "the values lie too far apart", "use another unit");
+        if (!std::isfinite(largest)) fail_input("samples", "the range of the values is too large", "use another unit");
         int exponent = 0;
         (void)std::frexp(largest, &exponent);
         unit = largest > 0 ? std::ldexp(1.0, std::min(exponent, 1000)) : 1;
@@ -169,7 +169,7 @@ void sort_clusters(Restart& run) {
 KMeansResult k_means(const Eigen::MatrixXd& samples, const KMeansOptions& options) {
     check_options(options, "k-means");
     require_samples(samples, "k-means");
-    const Framed framed(samples);
+    const Normalised framed(samples);
     Restart run = best_of(framed.samples, options.clusters, options);
     sort_clusters(run);
     return {std::move(run.labels), (framed.unit * run.centres).rowwise() + framed.centre, run.cost * framed.unit * framed.unit,
@@ -180,7 +180,7 @@ Eigen::MatrixXd standardised(const Eigen::MatrixXd& samples) {
     require_samples(samples, "samples");
     Eigen::MatrixXd result(samples.rows(), samples.cols());
     for (Eigen::Index j = 0; j < samples.cols(); ++j) {
-        const Framed column(Eigen::MatrixXd(samples.col(j)));
+        const Normalised column(Eigen::MatrixXd(samples.col(j)));
         const bool same = (samples.col(j).array() == samples(0, j)).all();
         const double square = column.samples.squaredNorm() / std::max<double>(1, static_cast<double>(samples.rows() - 1));
         if (same || square == 0) result.col(j).setZero();

@@ -46,16 +46,16 @@ double Random::normal() {
 }
 
 std::vector<std::size_t> Random::permutation(std::size_t count) {
-    std::vector<std::size_t> list(count);
-    std::iota(list.begin(), list.end(), std::size_t{0});
-    shuffle(list);
-    return list;
+    std::vector<std::size_t> indices(count);
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    shuffle(indices);
+    return indices;
 }
 
 std::vector<std::size_t> Random::resample(std::size_t count) {
-    std::vector<std::size_t> list(count);
-    for (std::size_t& i : list) i = below(count);
-    return list;
+    std::vector<std::size_t> indices(count);
+    for (std::size_t& i : indices) i = below(count);
+    return indices;
 }
 
 }  // namespace ostraka

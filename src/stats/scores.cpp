@@ -5,6 +5,8 @@
 #include "ostraka/stats/random.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -15,15 +17,13 @@ namespace ostraka {
 namespace {
 
 void require_same_length(std::size_t a, std::size_t b) {
-    if (a != b)
-        fail_usage("the lists have " + std::to_string(a) + " and " + std::to_string(b) + " entries",
-                   "give one of each for every sample");
+    if (a != b) fail_usage(fmt::format("the lists have {} and {} entries", a, b), "give one entry per sample in both lists");
 }
 
 double pairs(double count) { return count * (count - 1) / 2; }
 
-double share(std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+double ratio(std::size_t numerator, std::size_t denominator) {
+    return denominator == 0 ? 0.0 : static_cast<double>(numerator) / static_cast<double>(denominator);
 }
 
 std::size_t require_both(const std::vector<double>& values, const std::vector<bool>& truth) {
@@ -31,7 +31,8 @@ std::size_t require_both(const std::vector<double>& values, const std::vector<bo
     require_finite(values, "scores");
     const auto positives = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), true));
     if (positives == 0 || positives == truth.size())
-        fail_input("scores", positives == 0 ? "no sample is positive" : "no sample is negative", "give samples of both kinds");
+        fail_input("scores", positives == 0 ? "no sample is positive" : "no sample is negative",
+                   "give positive and negative samples");
     return positives;
 }
 
@@ -57,29 +58,29 @@ std::vector<Step> steps_up(const std::vector<double>& values, const std::vector<
 
 double adjusted_rand_index(const std::vector<int>& labels, const std::vector<int>& truth) {
     require_same_length(labels.size(), truth.size());
-    if (labels.empty()) fail_input("adjusted Rand index", "no sample is given", "give at least one");
-    std::map<std::pair<long, long>, double> both;
+    if (labels.empty()) fail_input("adjusted Rand index", "no sample is given", "give at least one sample");
+    std::map<std::pair<long, long>, double> joint;
     std::map<long, double> rows, columns;
     for (std::size_t i = 0; i < labels.size(); ++i) {
-        const long alone = -1 - static_cast<long>(i);
-        const long a = labels[i] < 0 ? alone : labels[i], b = truth[i] < 0 ? alone : truth[i];
-        both[{a, b}] += 1;
+        const long own_group = -1 - static_cast<long>(i);
+        const long a = labels[i] < 0 ? own_group : labels[i], b = truth[i] < 0 ? own_group : truth[i];
+        joint[{a, b}] += 1;
         rows[a] += 1;
         columns[b] += 1;
     }
-    double together = 0, in_rows = 0, in_columns = 0;
-    for (const auto& [key, count] : both) together += pairs(count);
+    double agreeing_pairs = 0, in_rows = 0, in_columns = 0;
+    for (const auto& [key, count] : joint) agreeing_pairs += pairs(count);
     for (const auto& [key, count] : rows) in_rows += pairs(count);
     for (const auto& [key, count] : columns) in_columns += pairs(count);
-    const double all = pairs(static_cast<double>(labels.size()));
-    const double expected = all > 0 ? in_rows * in_columns / all : 0, maximum = (in_rows + in_columns) / 2;
-    return maximum == expected ? 1.0 : (together - expected) / (maximum - expected);
+    const double total_pairs = pairs(static_cast<double>(labels.size()));
+    const double expected = total_pairs > 0 ? in_rows * in_columns / total_pairs : 0, maximum = (in_rows + in_columns) / 2;
+    return maximum == expected ? 1.0 : (agreeing_pairs - expected) / (maximum - expected);
 }
 
-double ConfusionScores::precision() const { return share(true_positive, true_positive + false_positive); }
-double ConfusionScores::recall() const { return share(true_positive, true_positive + false_negative); }
-double ConfusionScores::f1() const { return share(2 * true_positive, 2 * true_positive + false_positive + false_negative); }
-double ConfusionScores::accuracy() const { return share(true_positive + true_negative, count()); }
+double ConfusionScores::precision() const { return ratio(true_positive, true_positive + false_positive); }
+double ConfusionScores::recall() const { return ratio(true_positive, true_positive + false_negative); }
+double ConfusionScores::f1() const { return ratio(2 * true_positive, 2 * true_positive + false_positive + false_negative); }
+double ConfusionScores::accuracy() const { return ratio(true_positive + true_negative, count()); }
 
 void ConfusionScores::add(bool predicted, bool truth) {
     ++(predicted ? (truth ? true_positive : false_positive) : (truth ? false_negative : true_negative));
@@ -104,7 +105,7 @@ RocCurve roc_curve(const std::vector<double>& values, const std::vector<bool>& t
         doubled += static_cast<double>(step.negatives) * static_cast<double>(2 * tp + step.positives);
         tp += step.positives;
         fp += step.negatives;
-        curve.points.push_back({share(fp, negatives), share(tp, positives), step.value});
+        curve.points.push_back({ratio(fp, negatives), ratio(tp, positives), step.value});
     }
     curve.area = doubled / 2 / static_cast<double>(positives) / static_cast<double>(negatives);
     return curve;
@@ -117,11 +118,11 @@ Threshold best_threshold(const std::vector<double>& values, const std::vector<bo
     double best_gap = -1;
     const auto consider = [&](double value, double gap, bool above, const ConfusionScores& scores) {
         // Compares scores without division, f1 = 2 tp / (tp + fp + positives).
-        const double now = static_cast<double>(scores.true_positive) *
-                           static_cast<double>(best.scores.true_positive + best.scores.false_positive + positives),
-                     then = static_cast<double>(best.scores.true_positive) *
-                            static_cast<double>(scores.true_positive + scores.false_positive + positives);
-        if (best_gap >= 0 && (now < then || (now == then && gap <= best_gap))) return;
+        const double score_now = static_cast<double>(scores.true_positive) *
+                                 static_cast<double>(best.scores.true_positive + best.scores.false_positive + positives),
+                     best_score = static_cast<double>(best.scores.true_positive) *
+                                  static_cast<double>(scores.true_positive + scores.false_positive + positives);
+        if (best_gap >= 0 && (score_now < best_score || (score_now == best_score && gap <= best_gap))) return;
         best = {value, above, scores};
         best_gap = gap;
     };
@@ -148,14 +149,13 @@ Threshold best_threshold(const std::vector<double>& values, const std::vector<bo
 
 CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& learn, const CrossValidationOptions& options) {
     check_options(options, "cross-validation");
-    std::vector<std::size_t> kinds[2];
-    for (std::size_t i = 0; i < truth.size(); ++i) kinds[truth[i] ? 1 : 0].push_back(i);
-    const std::size_t rarer = std::min(kinds[0].size(), kinds[1].size());
+    std::vector<std::size_t> class_samples[2];
+    for (std::size_t i = 0; i < truth.size(); ++i) class_samples[truth[i] ? 1 : 0].push_back(i);
+    const std::size_t rarer = std::min(class_samples[0].size(), class_samples[1].size());
     if (rarer < 2)
         fail_input("cross-validation",
-                   "there are " + std::to_string(kinds[1].size()) + " positive and " + std::to_string(kinds[0].size()) +
-                       " negative samples",
-                   "give at least two of each");
+                   fmt::format("there are {} positive and {} negative samples", class_samples[1].size(), class_samples[0].size()),
+                   "give at least two of each class");
     const std::size_t folds = std::min(static_cast<std::size_t>(options.folds), rarer);
     const auto repeats = static_cast<std::size_t>(options.repeats);
     std::vector<std::vector<bool>> answers(repeats, std::vector<bool>(truth.size()));
@@ -164,33 +164,33 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
         [&](std::size_t r) {
             Random random(options.seed, r);
             std::vector<std::size_t> fold(truth.size());
-            std::size_t dealt = 0;
-            for (const auto& kind : kinds) {
-                std::vector<std::size_t> order = kind;
+            std::size_t assigned = 0;
+            for (const auto& samples_of_class : class_samples) {
+                std::vector<std::size_t> order = samples_of_class;
                 random.shuffle(order);
-                for (const std::size_t i : order) fold[i] = dealt++ % folds;
+                for (const std::size_t i : order) fold[i] = assigned++ % folds;
             }
             for (std::size_t f = 0; f < folds; ++f) {
-                std::vector<std::size_t> known, asked;
-                for (std::size_t i = 0; i < truth.size(); ++i) (fold[i] == f ? asked : known).push_back(i);
-                const std::vector<bool> said = learn(known, asked);
-                require_same_length(said.size(), asked.size());
-                for (std::size_t k = 0; k < asked.size(); ++k) answers[r][asked[k]] = said[k];
+                std::vector<std::size_t> training, test;
+                for (std::size_t i = 0; i < truth.size(); ++i) (fold[i] == f ? test : training).push_back(i);
+                const std::vector<bool> predictions = learn(training, test);
+                require_same_length(predictions.size(), test.size());
+                for (std::size_t k = 0; k < test.size(); ++k) answers[r][test[k]] = predictions[k];
             }
         },
         1);
     CrossValidation result;
     result.positive.assign(truth.size(), 0.0);
-    for (const auto& said : answers) {
-        const ConfusionScores scores = confusion(said, truth);
+    for (const auto& predictions : answers) {
+        const ConfusionScores scores = confusion(predictions, truth);
         if (result.f1.empty()) result.first = scores;
         result.f1.push_back(scores.f1());
         result.mean_precision += scores.precision() / static_cast<double>(repeats);
         result.mean_recall += scores.recall() / static_cast<double>(repeats);
         result.mean_accuracy += scores.accuracy() / static_cast<double>(repeats);
-        for (std::size_t i = 0; i < truth.size(); ++i) result.positive[i] += said[i] ? 1 : 0;
+        for (std::size_t i = 0; i < truth.size(); ++i) result.positive[i] += predictions[i] ? 1 : 0;
     }
-    for (double& share_of : result.positive) share_of /= static_cast<double>(repeats);
+    for (double& positive_fraction : result.positive) positive_fraction /= static_cast<double>(repeats);
     const Summary summary = summarise(result.f1, "F1");
     result.mean_f1 = summary.mean;
     result.deviation = summary.deviation.value_or(0);
@@ -199,7 +199,7 @@ CrossValidation cross_validate(const std::vector<bool>& truth, const Learner& le
 }
 
 void CrossValidationOptions::describe(OptionList& visit) {
-    visit("folds", folds, "parts that are left out in turn", Range{2, 100000});
+    visit("folds", folds, "number of folds that are held out in turn", Range{2, 100000});
     visit("repeats", repeats, "number of repeated divisions into folds", Range{1, 100000});
     visit("seed", seed, "random seed", Range{0, 1e18});
 }

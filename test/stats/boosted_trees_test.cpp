@@ -41,50 +41,49 @@ BoostOptions small() {
     return options;
 }
 
-TEST(BoostedTrees, TellWhatNoSingleFeatureTells) {
-    const Samples known = either_or(4000, 1), asked = either_or(4000, 2);
-    const BoostedTrees model = boost(known.table, known.truth, {}, small());
+TEST(BoostedTrees, LearnInteractionsOfFeatures) {
+    const Samples training = either_or(4000, 1), test = either_or(4000, 2);
+    const BoostedTrees model = boost(training.table, training.truth, {}, small());
     std::size_t right = 0;
-    for (std::size_t r = 0; r < asked.truth.size(); ++r)
-        right += (model.log_odds(asked.table.row(r)) > 0) == asked.truth[r] ? 1 : 0;
+    for (std::size_t r = 0; r < test.truth.size(); ++r) right += (model.log_odds(test.table.row(r)) > 0) == test.truth[r] ? 1 : 0;
     EXPECT_GT(static_cast<double>(right) / 4000, 0.95);
 }
 
-TEST(BoostedTrees, LogOddsAreThoseOfTheSamples) {
-    const Samples known = either_or(20000, 3, 0.2), asked = either_or(20000, 4, 0.2);
-    const BoostedTrees model = boost(known.table, known.truth, {}, small());
+TEST(BoostedTrees, LogOddsMatchTheFrequencies) {
+    const Samples training = either_or(20000, 3, 0.2), test = either_or(20000, 4, 0.2);
+    const BoostedTrees model = boost(training.table, training.truth, {}, small());
     double expected = 0, yes = 0;
-    for (std::size_t r = 0; r < asked.truth.size(); ++r) {
-        const double odds = model.log_odds(asked.table.row(r));
+    for (std::size_t r = 0; r < test.truth.size(); ++r) {
+        const double odds = model.log_odds(test.table.row(r));
         if (odds < 0.5) continue;
         expected += 1 / (1 + std::exp(-odds));
-        yes += asked.truth[r] ? 1 : 0;
+        yes += test.truth[r] ? 1 : 0;
     }
     EXPECT_GT(yes, 5000);
     EXPECT_NEAR(expected / yes, 1, 0.03);
     EXPECT_NEAR(yes / expected * 0.8, 0.8, 0.03);
 }
 
-TEST(BoostedTrees, AreTheSameForAnyNumberOfThreadsAndAsWritten) {
-    const Samples known = either_or(3000, 5, 0.1);
-    const int before = threads();
+TEST(BoostedTrees, AreTheSameForAnyNumberOfThreadsAndAfterReading) {
+    const Samples training = either_or(3000, 5, 0.1);
+    const int original_threads = threads();
     set_threads(1);
-    const BoostedTrees one = boost(known.table, known.truth, {}, small());
+    const BoostedTrees single_thread = boost(training.table, training.truth, {}, small());
     set_threads(3);
-    const BoostedTrees three = boost(known.table, known.truth, {}, small());
-    set_threads(before);
+    const BoostedTrees three = boost(training.table, training.truth, {}, small());
+    set_threads(original_threads);
     Json document;
     document.SetObject();
-    const std::string text = to_compact_text(one.to_json(document.GetAllocator()));
+    const std::string text = to_compact_text(single_thread.to_json(document.GetAllocator()));
     const BoostedTrees read = BoostedTrees::from_json(parse_json(text, "model"), 3);
-    for (std::size_t r = 0; r < known.truth.size(); ++r) {
-        const double odds = one.log_odds(known.table.row(r));
-        EXPECT_EQ(odds, three.log_odds(known.table.row(r)));
-        EXPECT_EQ(odds, read.log_odds(known.table.row(r)));
+    for (std::size_t r = 0; r < training.truth.size(); ++r) {
+        const double odds = single_thread.log_odds(training.table.row(r));
+        EXPECT_EQ(odds, three.log_odds(training.table.row(r)));
+        EXPECT_EQ(odds, read.log_odds(training.table.row(r)));
     }
 }
 
-TEST(BoostedTrees, AHeavySampleCountsLikeMany) {
+TEST(BoostedTrees, AWeightedSampleCountsLikeMany) {
     FeatureTable table;
     std::vector<bool> truth;
     std::vector<double> weights;
@@ -97,17 +96,17 @@ TEST(BoostedTrees, AHeavySampleCountsLikeMany) {
     EXPECT_NEAR(model.log_odds(table.row(0)), std::log(3.0), 0.05);
 }
 
-TEST(BoostedTrees, WhatIsWrongIsSaid) {
-    Samples known = either_or(100, 6);
-    EXPECT_THROW(known.table.add(std::array<float, 2>{1, 2}), Error);
-    EXPECT_THROW(boost(known.table, std::vector<bool>(99, true)), Error);
-    EXPECT_THROW(boost(known.table, std::vector<bool>(100, true)), Error) << "all of one kind";
-    EXPECT_THROW(boost(known.table, known.truth, std::vector<double>(3, 1.0)), Error);
+TEST(BoostedTrees, InvalidInputIsReported) {
+    Samples samples = either_or(100, 6);
+    EXPECT_THROW(samples.table.add(std::array<float, 2>{1, 2}), Error);
+    EXPECT_THROW(boost(samples.table, std::vector<bool>(99, true)), Error);
+    EXPECT_THROW(boost(samples.table, std::vector<bool>(100, true)), Error) << "all of one class";
+    EXPECT_THROW(boost(samples.table, samples.truth, std::vector<double>(3, 1.0)), Error);
     BoostOptions options;
     options.trees = 0;
-    EXPECT_THROW(boost(known.table, known.truth, {}, options), Error);
-    known.table.values[5] = std::nanf("");
-    EXPECT_THROW(boost(known.table, known.truth), Error);
+    EXPECT_THROW(boost(samples.table, samples.truth, {}, options), Error);
+    samples.table.values[5] = std::nanf("");
+    EXPECT_THROW(boost(samples.table, samples.truth), Error);
     for (const char* text : {"{}", "3", R"({"bias": 0, "trees": [[0, 1]]})", R"({"bias": 0, "trees": [[-1, 1, 2]]})",
                              R"({"bias": 0, "trees": [[7, 1, -1, 1, -1, 2]]})", R"({"bias": 0, "trees": [3]})"})
         EXPECT_THROW(BoostedTrees::from_json(parse_json(text, "model"), 3), Error) << text;

@@ -37,7 +37,7 @@ TEST(Dbscan, ByHand) {
     EXPECT_EQ(dbscan(samples, std::numeric_limits<double>::infinity(), 1), std::vector<int>(7, 0));
 }
 
-TEST(Dbscan, ASampleSeenAsNoiseFirstMayLieOnARim) {
+TEST(Dbscan, ASampleFirstMarkedAsNoiseMayBecomeABorderPoint) {
     // 0 has one neighbour only; 1 has three.
     EXPECT_EQ(dbscan(column({0, 1, 1.5, 2}), 1, 3), (std::vector<int>{0, 0, 0, 0}));
 }
@@ -135,9 +135,9 @@ TEST(Linkage, SingleLinkageCutIsDbscanWithMinimumOne) {
 }
 
 TEST(Linkage, OfOneOfIdenticalAndOfBadInput) {
-    const Linkage one = linkage(Eigen::MatrixXd::Zero(1, 1));
-    EXPECT_TRUE(one.merges.empty());
-    EXPECT_EQ(leaf_order(one), std::vector<int>{0});
+    const Linkage single_sample = linkage(Eigen::MatrixXd::Zero(1, 1));
+    EXPECT_TRUE(single_sample.merges.empty());
+    EXPECT_EQ(leaf_order(single_sample), std::vector<int>{0});
     const Linkage same = linkage(Eigen::MatrixXd::Zero(5, 5));
     EXPECT_EQ(same.merges.size(), 4u);
     EXPECT_EQ(same.merges.back().size, 5);
@@ -158,20 +158,20 @@ TEST(SpectralEmbedding, TakesTheLargestMagnitudes) {
     q.col(1) = Eigen::Vector3d(-2, 2, 1) / 3;
     q.col(2) = Eigen::Vector3d(1, 2, -2) / 3;
     const Eigen::Matrix3d a = q * Eigen::Vector3d(1, -2, 3).asDiagonal() * q.transpose();
-    const Embedding found = spectral_embedding(a, 2);
-    ASSERT_EQ(found.coordinates.cols(), 2);
-    EXPECT_NEAR(found.eigenvalues[0], 3, 1e-12);
-    EXPECT_NEAR(found.eigenvalues[1], -2, 1e-12);
-    EXPECT_LT((found.coordinates.col(0) - q.col(2)).norm(), 1e-12) << "2/3 comes before -2/3: its sign is positive";
-    EXPECT_LT((found.coordinates.col(1) + q.col(1)).norm(), 1e-12) << "-2/3 comes first: it is turned";
+    const Embedding embedding = spectral_embedding(a, 2);
+    ASSERT_EQ(embedding.coordinates.cols(), 2);
+    EXPECT_NEAR(embedding.eigenvalues[0], 3, 1e-12);
+    EXPECT_NEAR(embedding.eigenvalues[1], -2, 1e-12);
+    EXPECT_LT((embedding.coordinates.col(0) - q.col(2)).norm(), 1e-12) << "2/3 comes before -2/3: its sign is positive";
+    EXPECT_LT((embedding.coordinates.col(1) + q.col(1)).norm(), 1e-12) << "-2/3 comes first: it is turned";
     EXPECT_EQ(spectral_embedding(a, 9).coordinates.cols(), 3);
     EXPECT_EQ(spectral_embedding(Eigen::MatrixXd::Zero(2, 2), 1).eigenvalues[0], 0);
-    const Embedding one = spectral_embedding(Eigen::MatrixXd::Constant(1, 1, -4), 3);
-    EXPECT_EQ(one.eigenvalues[0], -4);
-    EXPECT_EQ(one.coordinates(0, 0), 1);
+    const Embedding single_entry = spectral_embedding(Eigen::MatrixXd::Constant(1, 1, -4), 3);
+    EXPECT_EQ(single_entry.eigenvalues[0], -4);
+    EXPECT_EQ(single_entry.coordinates(0, 0), 1);
 }
 
-TEST(SpectralEmbedding, RefusesWhatIsNotSymmetric) {
+TEST(SpectralEmbedding, RefusesAsymmetricMatrices) {
     Eigen::Matrix2d a;
     a << 1, 2, 3, 4;
     EXPECT_THROW(spectral_embedding(a, 1), Error);
@@ -183,12 +183,12 @@ TEST(PrincipalComponents, OfAnElongatedCloud) {
     Eigen::MatrixXd samples(4, 2);
     samples << 1, 1, 3, 3, 5, 5, 3, 3;
     samples.array() += 1e6;
-    const PrincipalComponents found = principal_components(samples, 2);
-    EXPECT_NEAR(found.variances[0], 16.0 / 3, 1e-9);
-    EXPECT_NEAR(found.variances[1], 0, 1e-9);
-    EXPECT_NEAR(found.total_variance, 16.0 / 3, 1e-9);
-    EXPECT_LT((found.directions.col(0) - Eigen::Vector2d(1, 1).normalized()).norm(), 1e-9);
-    EXPECT_NEAR(found.scores(2, 0), 2 * std::sqrt(2.0), 1e-9);
+    const PrincipalComponents components = principal_components(samples, 2);
+    EXPECT_NEAR(components.variances[0], 16.0 / 3, 1e-9);
+    EXPECT_NEAR(components.variances[1], 0, 1e-9);
+    EXPECT_NEAR(components.total_variance, 16.0 / 3, 1e-9);
+    EXPECT_LT((components.directions.col(0) - Eigen::Vector2d(1, 1).normalized()).norm(), 1e-9);
+    EXPECT_NEAR(components.scores(2, 0), 2 * std::sqrt(2.0), 1e-9);
     EXPECT_EQ(principal_components(samples.topRows(1), 5).variances[0], 0);
 }
 

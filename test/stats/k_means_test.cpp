@@ -26,43 +26,45 @@ Eigen::MatrixXd balls(int clusters, int each, double apart, std::uint64_t seed) 
 }
 
 TEST(KMeans, OfPilesByHand) {
-    const KMeansResult found = k_means(column({0, 1, 10, 11, 12, 100}), {.clusters = 3});
-    EXPECT_EQ(found.labels, (std::vector<int>{1, 1, 0, 0, 0, 2})) << "by falling size";
-    EXPECT_NEAR(found.centres(0, 0), 11, 1e-12);
-    EXPECT_NEAR(found.centres(1, 0), 0.5, 1e-12);
-    EXPECT_NEAR(found.centres(2, 0), 100, 1e-12);
-    EXPECT_NEAR(found.cost, 0.5 + 2, 1e-12);
-    EXPECT_TRUE(found.converged);
+    const KMeansResult clustering = k_means(column({0, 1, 10, 11, 12, 100}), {.clusters = 3});
+    EXPECT_EQ(clustering.labels, (std::vector<int>{1, 1, 0, 0, 0, 2})) << "by falling size";
+    EXPECT_NEAR(clustering.centres(0, 0), 11, 1e-12);
+    EXPECT_NEAR(clustering.centres(1, 0), 0.5, 1e-12);
+    EXPECT_NEAR(clustering.centres(2, 0), 100, 1e-12);
+    EXPECT_NEAR(clustering.cost, 0.5 + 2, 1e-12);
+    EXPECT_TRUE(clustering.converged);
 }
 
-TEST(KMeans, FindsBallsWhereverTheyAreAndInAnyUnit) {
+TEST(KMeans, FindsBallsAtAnyPositionAndScale) {
     const Eigen::MatrixXd samples = balls(4, 30, 20, 1);
     for (const double scale : {1.0, 1e-150, 1e150})
         for (const double shift : {0.0, 1e6}) {
-            const KMeansResult found = k_means(scale * (samples.array() + shift).matrix(), {.clusters = 4});
-            for (int i = 0; i < samples.rows(); ++i) ASSERT_EQ(found.labels[i], found.labels[i % 4]) << scale << ' ' << shift;
-            ASSERT_EQ(std::set<int>(found.labels.begin(), found.labels.end()).size(), 4u);
+            const KMeansResult clustering = k_means(scale * (samples.array() + shift).matrix(), {.clusters = 4});
+            for (int i = 0; i < samples.rows(); ++i)
+                ASSERT_EQ(clustering.labels[i], clustering.labels[i % 4]) << scale << ' ' << shift;
+            ASSERT_EQ(std::set<int>(clustering.labels.begin(), clustering.labels.end()).size(), 4u);
         }
 }
 
 TEST(KMeans, NoSampleLiesNearerToAnotherCentre) {
     const Eigen::MatrixXd samples = balls(3, 40, 2, 7);
-    const KMeansResult found = k_means(samples, {.clusters = 5});
-    ASSERT_TRUE(found.converged);
+    const KMeansResult clustering = k_means(samples, {.clusters = 5});
+    ASSERT_TRUE(clustering.converged);
     double cost = 0;
     for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-        const double own = (samples.row(i) - found.centres.row(found.labels[i])).squaredNorm();
-        cost += own;
-        for (Eigen::Index k = 0; k < 5; ++k) EXPECT_LE(own, (samples.row(i) - found.centres.row(k)).squaredNorm() + 1e-12);
+        const double own_distance = (samples.row(i) - clustering.centres.row(clustering.labels[i])).squaredNorm();
+        cost += own_distance;
+        for (Eigen::Index k = 0; k < 5; ++k)
+            EXPECT_LE(own_distance, (samples.row(i) - clustering.centres.row(k)).squaredNorm() + 1e-12);
     }
-    EXPECT_NEAR(found.cost, cost, 1e-9 * cost);
+    EXPECT_NEAR(clustering.cost, cost, 1e-9 * cost);
     for (int k = 0; k < 5; ++k) {
         Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(3);
         int count = 0;
         for (Eigen::Index i = 0; i < samples.rows(); ++i)
-            if (found.labels[i] == k) mean += samples.row(i), ++count;
+            if (clustering.labels[i] == k) mean += samples.row(i), ++count;
         ASSERT_GT(count, 0);
-        EXPECT_LT((mean / count - found.centres.row(k)).norm(), 1e-12);
+        EXPECT_LT((mean / count - clustering.centres.row(k)).norm(), 1e-12);
     }
 }
 
@@ -77,9 +79,9 @@ TEST(KMeans, OfIdenticalAndOfFewSamples) {
     EXPECT_EQ(two.labels, (std::vector<int>{1, 0, 1, 0, 0}));
     EXPECT_EQ(two.centres.rows(), 2);
 
-    const KMeansResult one = k_means(column({5}), {.clusters = 1});
-    EXPECT_EQ(one.labels, std::vector<int>{0});
-    EXPECT_EQ(one.centres(0, 0), 5);
+    const KMeansResult single_sample = k_means(column({5}), {.clusters = 1});
+    EXPECT_EQ(single_sample.labels, std::vector<int>{0});
+    EXPECT_EQ(single_sample.centres(0, 0), 5);
 
     const KMeansResult each = k_means(column({1, 2, 3, 4, 5}), {.clusters = 5});
     EXPECT_EQ(each.labels, (std::vector<int>{0, 1, 2, 3, 4}));
@@ -96,29 +98,29 @@ TEST(KMeans, NeverLosesACluster) {
         std::set<std::pair<double, double>> distinct;
         for (Eigen::Index i = 0; i < 20; ++i) distinct.insert({samples(i, 0), samples(i, 1)});
         const int k = static_cast<int>(distinct.size());
-        const KMeansResult found = k_means(samples, {.clusters = k, .restarts = 1, .seed = seed});
-        EXPECT_EQ(std::set<int>(found.labels.begin(), found.labels.end()).size(), distinct.size());
-        EXPECT_LT(found.cost, 1e-20) << "as many clusters as distinct samples";
+        const KMeansResult clustering = k_means(samples, {.clusters = k, .restarts = 1, .seed = seed});
+        EXPECT_EQ(std::set<int>(clustering.labels.begin(), clustering.labels.end()).size(), distinct.size());
+        EXPECT_LT(clustering.cost, 1e-20) << "as many clusters as distinct samples";
     }
 }
 
 TEST(KMeans, IsTheSameForAnyNumberOfThreads) {
     const Eigen::MatrixXd samples = balls(5, 40, 3, 11);
-    const int before = threads();
+    const int original_threads = threads();
     set_threads(1);
-    const KMeansResult one = k_means(samples, {.clusters = 6});
+    const KMeansResult single_thread = k_means(samples, {.clusters = 6});
     const ClusterCount count_one = propose_cluster_count(samples, {.max_clusters = 4, .references = 5});
     set_threads(3);
     const KMeansResult three = k_means(samples, {.clusters = 6});
     const ClusterCount count_three = propose_cluster_count(samples, {.max_clusters = 4, .references = 5});
-    set_threads(before);
-    EXPECT_EQ(one.labels, three.labels);
-    EXPECT_EQ(one.centres, three.centres);
-    EXPECT_EQ(one.cost, three.cost);
+    set_threads(original_threads);
+    EXPECT_EQ(single_thread.labels, three.labels);
+    EXPECT_EQ(single_thread.centres, three.centres);
+    EXPECT_EQ(single_thread.cost, three.cost);
     for (std::size_t k = 0; k < count_one.rows.size(); ++k) EXPECT_EQ(count_one.rows[k].gap, count_three.rows[k].gap);
 }
 
-TEST(KMeans, RefusesWhatItCannotUse) {
+TEST(KMeans, RefusesInvalidInput) {
     EXPECT_THROW(k_means(Eigen::MatrixXd(0, 2)), Error);
     EXPECT_THROW(k_means(Eigen::MatrixXd(2, 0)), Error);
     Eigen::MatrixXd bad = Eigen::MatrixXd::Zero(4, 2);
@@ -166,23 +168,23 @@ TEST(Silhouette, ByHand) {
 
 TEST(ClusterCount, FindsThePlantedNumber) {
     for (const int planted : {2, 3, 4}) {
-        const ClusterCount found = propose_cluster_count(balls(planted, 30, 15, 5), {.max_clusters = 7, .references = 20});
-        EXPECT_EQ(found.by_silhouette, planted);
-        EXPECT_EQ(found.by_gap, planted);
-        EXPECT_EQ(found.proposed, planted);
-        ASSERT_EQ(found.rows.size(), 7u);
-        for (std::size_t k = 1; k < 7; ++k) EXPECT_LE(found.rows[k].cost, found.rows[k - 1].cost * (1 + 1e-9));
+        const ClusterCount proposed = propose_cluster_count(balls(planted, 30, 15, 5), {.max_clusters = 7, .references = 20});
+        EXPECT_EQ(proposed.by_silhouette, planted);
+        EXPECT_EQ(proposed.by_gap, planted);
+        EXPECT_EQ(proposed.proposed, planted);
+        ASSERT_EQ(proposed.rows.size(), 7u);
+        for (std::size_t k = 1; k < 7; ++k) EXPECT_LE(proposed.rows[k].cost, proposed.rows[k - 1].cost * (1 + 1e-9));
     }
 }
 
-TEST(ClusterCount, GapTellsThatThereAreNoClusters) {
+TEST(ClusterCount, GapDetectsTheAbsenceOfClusters) {
     Random random(2);
     Eigen::MatrixXd samples(200, 2);
     for (Eigen::Index i = 0; i < 200; ++i) samples.row(i) << random.uniform(), random.uniform();
-    const ClusterCount found =
+    const ClusterCount proposed =
         propose_cluster_count(samples, {.max_clusters = 6, .criterion = ClusterCountOptions::Criterion::gap, .references = 20});
-    EXPECT_EQ(found.proposed, 1);
-    EXPECT_GT(found.by_silhouette, 1) << "which the silhouette cannot";
+    EXPECT_EQ(proposed.proposed, 1);
+    EXPECT_GT(proposed.by_silhouette, 1) << "which the silhouette cannot";
 }
 
 TEST(ClusterCount, OfFewAndIdenticalSamples) {

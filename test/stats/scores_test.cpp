@@ -90,7 +90,7 @@ TEST(Roc, ByHandWithTies) {
     EXPECT_DOUBLE_EQ(curve.points[2].false_positive_rate, 0.5);
 }
 
-TEST(Roc, NeedsBothKinds) {
+TEST(Roc, NeedsBothClasses) {
     EXPECT_THROW(roc_curve({1, 2}, {true, true}), Error);
     EXPECT_THROW(roc_curve({1, 2}, {false, false}), Error);
     EXPECT_THROW(roc_curve({}, {}), Error);
@@ -134,9 +134,9 @@ TEST(BestThreshold, IsTheBestOfAll) {
         }
         for (const Side side : {Side::above, Side::below, Side::either}) {
             const Threshold best = best_threshold(values, truth, side);
-            std::vector<bool> said;
-            for (const double v : values) said.push_back(best.positive(v));
-            EXPECT_EQ(confusion(said, truth).f1(), best.scores.f1()) << "the counts are those of the rule";
+            std::vector<bool> predictions;
+            for (const double v : values) predictions.push_back(best.positive(v));
+            EXPECT_EQ(confusion(predictions, truth).f1(), best.scores.f1()) << "the counts are those of the rule";
             for (const double at : values)
                 for (const bool above : {true, false}) {
                     if ((side == Side::above && !above) || (side == Side::below && above)) continue;
@@ -148,39 +148,39 @@ TEST(BestThreshold, IsTheBestOfAll) {
     }
 }
 
-TEST(CrossValidation, EverySampleIsAnsweredOnceARepeatAndNeverKnown) {
+TEST(CrossValidation, EverySampleIsTestedOncePerRepeatAndNeverTrainedOn) {
     std::vector<bool> truth(23);
     for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = i < 7;
-    const CrossValidation all =
+    const CrossValidation validation =
         cross_validate(truth,
-                       [&](const auto& known, const auto& asked) {
-                           std::set<std::size_t> both(known.begin(), known.end());
-                           both.insert(asked.begin(), asked.end());
-                           if (both.size() != truth.size() || known.size() + asked.size() != truth.size())
+                       [&](const auto& training, const auto& test) {
+                           std::set<std::size_t> both_sets(training.begin(), training.end());
+                           both_sets.insert(test.begin(), test.end());
+                           if (both_sets.size() != truth.size() || training.size() + test.size() != truth.size())
                                throw std::logic_error("not a division");
-                           const auto positives = std::count_if(asked.begin(), asked.end(), [&](auto i) { return truth[i]; });
+                           const auto positives = std::count_if(test.begin(), test.end(), [&](auto i) { return truth[i]; });
                            if (positives < 1 || positives > 2) throw std::logic_error("not stratified");
-                           std::vector<bool> said;
-                           for (const auto i : asked) said.push_back(truth[i]);
-                           return said;
+                           std::vector<bool> predictions;
+                           for (const auto i : test) predictions.push_back(truth[i]);
+                           return predictions;
                        },
                        {.folds = 5, .repeats = 8});
-    EXPECT_EQ(all.mean_f1, 1);
-    EXPECT_EQ(all.deviation, 0);
-    EXPECT_EQ(all.f1.size(), 8u);
-    EXPECT_EQ(all.first.count(), truth.size());
-    EXPECT_EQ(all.positive[0], 1);
-    EXPECT_EQ(all.positive[22], 0);
+    EXPECT_EQ(validation.mean_f1, 1);
+    EXPECT_EQ(validation.deviation, 0);
+    EXPECT_EQ(validation.f1.size(), 8u);
+    EXPECT_EQ(validation.first.count(), truth.size());
+    EXPECT_EQ(validation.positive[0], 1);
+    EXPECT_EQ(validation.positive[22], 0);
 }
 
 /// Answers by the best threshold of one value a sample.
 Learner by_threshold(const std::vector<double>& values, const std::vector<bool>& truth) {
-    return [&](const std::vector<std::size_t>& known, const std::vector<std::size_t>& asked) {
+    return [&](const std::vector<std::size_t>& training, const std::vector<std::size_t>& test) {
         std::vector<double> v;
         std::vector<bool> t, said;
-        for (const std::size_t i : known) v.push_back(values[i]), t.push_back(truth[i]);
+        for (const std::size_t i : training) v.push_back(values[i]), t.push_back(truth[i]);
         const Threshold threshold = best_threshold(v, t);
-        for (const std::size_t i : asked) said.push_back(threshold.positive(values[i]));
+        for (const std::size_t i : test) said.push_back(threshold.positive(values[i]));
         return said;
     };
 }
@@ -194,15 +194,15 @@ TEST(CrossValidation, OfAThreshold) {
         same.push_back(random.normal());
         apart.push_back(random.normal() + (truth.back() ? 20 : 0));
     }
-    const int before = threads();
+    const int original_threads = threads();
     set_threads(1);
-    const CrossValidation one = cross_validate(truth, by_threshold(same, truth));
+    const CrossValidation single_thread = cross_validate(truth, by_threshold(same, truth));
     set_threads(3);
     const CrossValidation three = cross_validate(truth, by_threshold(same, truth));
-    set_threads(before);
-    EXPECT_EQ(one.f1, three.f1);
+    set_threads(original_threads);
+    EXPECT_EQ(single_thread.f1, three.f1);
     EXPECT_EQ(cross_validate(truth, by_threshold(apart, truth)).mean_f1, 1);
-    EXPECT_LT(one.mean_f1, 0.75) << "chance gives 2/3 at most: all called positive";
+    EXPECT_LT(single_thread.mean_f1, 0.75) << "chance gives 2/3 at most: all called positive";
     EXPECT_THROW(cross_validate({true, false, false}, by_threshold(same, truth)), Error)
         << "one positive cannot be learned and asked";
     EXPECT_THROW(cross_validate(truth, by_threshold(apart, truth), {.folds = 1}), Error);
@@ -246,7 +246,7 @@ TEST(NormalDistribution, KnownQuantiles) {
     EXPECT_THROW(normal_quantile(1), Error);
 }
 
-TEST(DeviationInterval, HoldsTheTrueOneAsOftenAsItSays) {
+TEST(DeviationInterval, HasTheNominalCoverage) {
     for (const std::size_t n : {6U, 12U, 40U}) {
         int normal = 0, skewed = 0, relative = 0;
         const int trials = 1000;
@@ -273,18 +273,18 @@ TEST(DeviationInterval, HoldsTheTrueOneAsOftenAsItSays) {
 
 TEST(DeviationInterval, HasTheValuesUnit) {
     const std::vector<double> values{1, 2, 4, 4, 5, 7, 9, 3};
-    const auto plain = deviation_interval(values, false), relative = deviation_interval(values, true);
+    const auto absolute = deviation_interval(values, false), relative = deviation_interval(values, true);
     for (const double unit : {1e-200, 1e200, -1.0}) {
         std::vector<double> scaled = values;
         for (double& v : scaled) v *= unit;
-        EXPECT_NEAR(deviation_interval(scaled, false)->high / std::abs(unit), plain->high, 1e-9);
+        EXPECT_NEAR(deviation_interval(scaled, false)->high / std::abs(unit), absolute->high, 1e-9);
         EXPECT_NEAR(deviation_interval(scaled, true)->low, relative->low, 1e-9);
     }
-    EXPECT_LT(plain->low, *summarise(values).deviation);
-    EXPECT_GT(plain->high, *summarise(values).deviation);
+    EXPECT_LT(absolute->low, *summarise(values).deviation);
+    EXPECT_GT(absolute->high, *summarise(values).deviation);
     const auto wider = deviation_interval(values, false, 0.99);
-    EXPECT_LT(wider->low, plain->low);
-    EXPECT_GT(wider->high, plain->high);
+    EXPECT_LT(wider->low, absolute->low);
+    EXPECT_GT(wider->high, absolute->high);
     EXPECT_FALSE(deviation_interval({1, 2}, false));
     EXPECT_FALSE(deviation_interval({3, 3, 3, 3}, false)) << "nothing varies";
     EXPECT_FALSE(deviation_interval({-1, 0, 1}, true)) << "no mean to compare with";
@@ -297,9 +297,9 @@ TEST(ClusterStability, OfRealAndOfArbitraryClusters) {
     std::vector<int> labels;
     for (int i = 0; i < 40; ++i) values.push_back(random.normal() + (i < 20 ? 0 : 100)), labels.push_back(i < 20 ? 0 : 1);
     const auto by_place = [&](const std::vector<std::size_t>& chosen) {
-        std::vector<int> found;
-        for (const auto i : chosen) found.push_back(values[i] > 50 ? 0 : 1);
-        return found;
+        std::vector<int> new_labels;
+        for (const auto i : chosen) new_labels.push_back(values[i] > 50 ? 0 : 1);
+        return new_labels;
     };
     for (const ClusterStability& s : cluster_stability(labels, by_place)) {
         EXPECT_EQ(s.jaccard, 1);
@@ -309,9 +309,9 @@ TEST(ClusterStability, OfRealAndOfArbitraryClusters) {
         EXPECT_EQ(s.resamples, 100);
     }
     const auto by_chance = [&](const std::vector<std::size_t>& chosen) {
-        std::vector<int> found;
-        for (const auto i : chosen) found.push_back(static_cast<int>(i % 5));
-        return found;
+        std::vector<int> new_labels;
+        for (const auto i : chosen) new_labels.push_back(static_cast<int>(i % 5));
+        return new_labels;
     };
     for (const ClusterStability& s : cluster_stability(labels, by_chance)) {
         EXPECT_LT(s.jaccard, 0.5);

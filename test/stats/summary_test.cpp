@@ -25,11 +25,11 @@ TEST(Summary, OfNumbersByHand) {
 }
 
 TEST(Summary, OfOneValueAndOfEqualOnes) {
-    const Summary one = summarise({3});
-    EXPECT_EQ(one.mean, 3);
-    EXPECT_EQ(one.median, 3);
-    EXPECT_FALSE(one.deviation);
-    EXPECT_FALSE(one.variation);
+    const Summary single_value = summarise({3});
+    EXPECT_EQ(single_value.mean, 3);
+    EXPECT_EQ(single_value.median, 3);
+    EXPECT_FALSE(single_value.deviation);
+    EXPECT_FALSE(single_value.variation);
     const Summary same = summarise({0.1, 0.1, 0.1});
     EXPECT_EQ(same.mean, 0.1);
     EXPECT_EQ(*same.deviation, 0);
@@ -40,17 +40,17 @@ TEST(Summary, OfOneValueAndOfEqualOnes) {
 
 TEST(Summary, ScalesAndShifts) {
     const std::vector<double> values{1.5, -2, 8, 0.25, 3, 3};
-    const Summary plain = summarise(values);
+    const Summary original = summarise(values);
     for (const double scale : {0x1p-900, 0x1p-300, 0x1p600, 0x1p1000}) {
         std::vector<double> scaled = values;
         for (double& v : scaled) v *= scale;
         const Summary s = summarise(scaled);
-        EXPECT_NEAR(s.mean / scale, plain.mean, 1e-14 * 8);
-        EXPECT_NEAR(*s.deviation / scale, *plain.deviation, 1e-14 * 8);
+        EXPECT_NEAR(s.mean / scale, original.mean, 1e-14 * 8);
+        EXPECT_NEAR(*s.deviation / scale, *original.deviation, 1e-14 * 8);
     }
-    std::vector<double> far = values;
-    for (double& v : far) v += 0x1p40;
-    EXPECT_NEAR(*summarise(far).deviation, *plain.deviation, 1e-12) << "values are multiples of 1/4: nothing is lost";
+    std::vector<double> distant = values;
+    for (double& v : distant) v += 0x1p40;
+    EXPECT_NEAR(*summarise(distant).deviation, *original.deviation, 1e-12) << "values are multiples of 1/4: nothing is lost";
     const double huge = std::numeric_limits<double>::max();
     EXPECT_TRUE(std::isfinite(*summarise({-huge / 2, huge / 2}).deviation));
 }
@@ -67,7 +67,7 @@ TEST(Summary, DoesNotDependOnTheOrder) {
     }
 }
 
-TEST(Summary, RefusesNothingAndWhatIsNoNumber) {
+TEST(Summary, RefusesEmptyAndNonFiniteSamples) {
     EXPECT_THROW(summarise({}), Error);
     EXPECT_THROW(summarise({1, std::nan("")}), Error);
     EXPECT_THROW(summarise({1, std::numeric_limits<double>::infinity()}), Error);

@@ -72,8 +72,8 @@ struct CrossValidation {
     std::vector<double> positive;  ///< one per sample: fraction of repeats that classified it as positive
 };
 
-/// Trains on the `known` samples and classifies the `asked` samples.
-using Learner = std::function<std::vector<bool>(const std::vector<std::size_t>& known, const std::vector<std::size_t>& asked)>;
+/// Trains on the `training` samples and classifies the `test` samples.
+using Learner = std::function<std::vector<bool>(const std::vector<std::size_t>& training, const std::vector<std::size_t>& test)>;
 
 /// Stratified cross-validation: positives and negatives are assigned to the folds in random order, in equal proportions; the
 /// number of folds is at most the size of the rarer class. F1 is computed from all held-out answers of a repeat together

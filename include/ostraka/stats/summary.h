@@ -21,9 +21,9 @@ struct Statistics {
 /// Error (input), naming `where`, if there is no value, one is not finite, or a weight is negative or not finite.
 Statistics statistics(const std::vector<double>& values, const std::vector<double>& weights, const std::string& where = "map");
 
-/// The smallest value up to which the cumulative weight reaches `share` (0 to 1); if exactly reached, the mean of it and the
+/// The smallest value up to which the cumulative weight reaches `fraction` (0 to 1); if exactly reached, the mean of it and the
 /// next value. Throws the same errors.
-double quantile(const std::vector<double>& values, const std::vector<double>& weights, double share,
+double quantile(const std::vector<double>& values, const std::vector<double>& weights, double fraction,
                 const std::string& where = "map");
 
 /// Statistics of a sample drawn from a population.
@@ -39,7 +39,7 @@ Summary summarise(const std::vector<double>& values, const std::string& where = 
 
 /// Sample quantile with linear interpolation between order statistics (type 7 of Hyndman and Fan 1996): 0 gives the minimum, 1
 /// the maximum, 0.5 the median. Throws the same errors, and Error (usage) for a share outside 0 to 1.
-double sample_quantile(std::vector<double> values, double share, const std::string& where = "values");
+double sample_quantile(std::vector<double> values, double fraction, const std::string& where = "values");
 
 /// The median; for an even number of values, the upper of the two middle ones. Needs at least one value.
 double upper_median(std::vector<double> values);
