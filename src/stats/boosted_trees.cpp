@@ -55,7 +55,7 @@ public:
                 slopes_[r] = {weights_[r] * (p - (truth_[r] ? 1 : 0)), weights_[r] * std::max(1e-6, p * (1 - p))};
             }
             model.trees.push_back(grow(random));
-            for (std::size_t r = 0; r < rows_; ++r) odds[r] += answer(model.trees.back(), table_.row(r));
+            for (std::size_t r = 0; r < rows_; ++r) odds[r] += tree_value(model.trees.back(), table_.row(r));
         }
         return model;
     }
@@ -180,7 +180,7 @@ void FeatureTable::add(std::span<const float> row) {
 
 double BoostedTrees::log_odds(std::span<const float> features) const {
     double sum = bias;
-    for (const auto& tree : trees) sum += Booster::answer(tree, features);
+    for (const auto& tree : trees) sum += Booster::tree_value(tree, features);
     return sum;
 }
 
