@@ -64,7 +64,7 @@ MeasureDefinitions measure_definitions_from_text(const std::string& text, const 
                 for (const JsonValue& place : via->GetArray()) definition.pins.push_back(place_from(place, at + "/via"));
             definition.pins.push_back(place_from(entry["to"], at + "/to"));
         }
-        result.list.push_back(std::move(definition));
+        result.measures.push_back(std::move(definition));
     }
     return result;
 }

@@ -82,9 +82,9 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
         table.units.push_back(objects[i]->unit);
         rows.push_back(&*objects[i]);
     }
-    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.list.size()),
+    table.values.setConstant(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(definitions.measures.size()),
                              no_measure);
-    for (std::size_t j = 0; j < definitions.list.size(); ++j) {
+    for (std::size_t j = 0; j < definitions.measures.size(); ++j) {
         std::map<std::pair<int, std::string>, std::size_t> kinds;
         for (const ObjectMeasures* row : rows)
             if (row->values[j]) ++kinds[{row->powers[j], row->units[j]}];
@@ -92,14 +92,14 @@ MeasureTable measure_table(const std::vector<std::string>& names, const std::vec
         std::size_t maximum = 0;
         for (const auto& [key, count] : kinds)
             if (count > maximum) kind = key, maximum = count;
-        table.measures.push_back({definitions.list[j].name, kind.first, kind.second});
+        table.measures.push_back({definitions.measures[j].name, kind.first, kind.second});
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (!rows[i]->values[j]) continue;
             if (std::pair(rows[i]->powers[j], rows[i]->units[j]) == kind)
                 table.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = *rows[i]->values[j];
             else
                 notes.push_back(fmt::format("'{}' of '{}' has a different unit from most objects and is left out",
-                                            definitions.list[j].name, table.objects[i]));
+                                            definitions.measures[j].name, table.objects[i]));
         }
     }
     return table;

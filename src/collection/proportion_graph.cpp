@@ -104,8 +104,8 @@ Proposals propose_proportions(const Mesh& mesh, const AnnotationSet& set, Relati
     for (const RatioRow& ratio : study.ratios) {
         if (ratio.fixedness != Fixedness::fixed && !(options.stable && ratio.fixedness == Fixedness::stable)) continue;
         try {
-            const TemplateMeasure part = measure_on_template(mesh, result.set, definitions.list.at(ratio.denominator)),
-                                  reference = measure_on_template(mesh, result.set, definitions.list.at(ratio.numerator));
+            const TemplateMeasure part = measure_on_template(mesh, result.set, definitions.measures.at(ratio.denominator)),
+                                  reference = measure_on_template(mesh, result.set, definitions.measures.at(ratio.numerator));
             if (part.annotation == reference.annotation)
                 throw RejectedProposal{
                     fmt::format("both measures belong to '{}', but a constraint relates two annotations", part.tag)};

@@ -229,7 +229,7 @@ ObjectMeasures measure_object(const Mesh* mesh, const AnnotationSet* set, const 
                               const MeasureDefinitions& definitions, const TagWords* words) {
     ObjectMeasures result;
     MeasureReader reader(mesh, set, landmarks, words);
-    for (const MeasureDefinition& definition : definitions.list) {
+    for (const MeasureDefinition& definition : definitions.measures) {
         std::optional<double> value;
         int power = 1;
         std::string unit, why;
@@ -259,7 +259,7 @@ bool needs_only_landmarks(const LandmarkSet& landmarks, const MeasureDefinitions
         return !place.extreme && std::any_of(landmarks.landmarks.begin(), landmarks.landmarks.end(),
                                              [&](const Landmark& landmark) { return landmark.name == place.name; });
     };
-    return std::all_of(definitions.list.begin(), definitions.list.end(), [&](const MeasureDefinition& definition) {
+    return std::all_of(definitions.measures.begin(), definitions.measures.end(), [&](const MeasureDefinition& definition) {
         return definition.tool == "ruler" && std::all_of(definition.pins.begin(), definition.pins.end(), is_landmark);
     });
 }

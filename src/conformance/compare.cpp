@@ -19,7 +19,9 @@ bool is_free(const Comparison& comparison, const std::string& freedom) {
     return std::find(comparison.freedoms.begin(), comparison.freedoms.end(), freedom) != comparison.freedoms.end();
 }
 
-double scale_of(const Comparison& comparison, const Mesh& mesh) { return comparison.of == "diagonal" ? box_diagonal(mesh) : 1; }
+double scale_of(const Comparison& comparison, const Mesh& mesh) {
+    return comparison.scale == "diagonal" ? box_diagonal(mesh) : 1;
+}
 
 std::vector<std::array<Index, 3>> triangles_of(const Mesh& mesh) {
     std::vector<std::array<Index, 3>> triangles;
@@ -32,7 +34,7 @@ std::vector<std::array<Index, 3>> triangles_of(const Mesh& mesh) {
 }
 
 std::string surface_difference(const Comparison& comparison, const Mesh& expected, const Mesh& actual) {
-    const double limit = comparison.within * scale_of(comparison, expected);
+    const double limit = comparison.tolerance * scale_of(comparison, expected);
     const auto farthest = [](const Mesh& source, const Mesh& target) {
         const SurfaceSearch search(target);
         double max_distance = 0;
@@ -50,7 +52,7 @@ std::string mesh_difference(const Comparison& comparison, const Mesh& expected, 
     if (expected.number_of_vertices() != actual.number_of_vertices() || expected.number_of_faces() != actual.number_of_faces())
         return fmt::format("{} and {}, expected {} and {}", counted(actual.number_of_vertices(), "vertex"),
                            counted(actual.number_of_faces(), "face"), expected.number_of_vertices(), expected.number_of_faces());
-    const double limit = comparison.within * scale_of(comparison, expected);
+    const double limit = comparison.tolerance * scale_of(comparison, expected);
     std::vector<Index> place(actual.number_of_vertices());  // index of the matching expected vertex
     double max_distance = 0;
     if (is_free(comparison, "vertex order")) {
@@ -132,16 +134,16 @@ std::string annotations_difference(const Comparison& comparison, const Annotatio
         }
         if (expected_annotation.type == AnnotationType::region) {
             const double overlap = overlap_of(mesh, expected_annotation.faces, actual_annotation->faces);
-            if (overlap < comparison.within)
+            if (overlap < comparison.tolerance)
                 differences.push_back(fmt::format("{} has an overlap of {}, required is {}", name_of(expected_annotation),
-                                                  digits(overlap, 4), digits(comparison.within, 4)));
+                                                  digits(overlap, 4), digits(comparison.tolerance, 4)));
         } else {
             const double distance =
                 hausdorff_distance(mesh, touched_vertices(mesh, expected_annotation), touched_vertices(mesh, *actual_annotation));
-            if (distance > 1 - comparison.within)
+            if (distance > 1 - comparison.tolerance)
                 differences.push_back(fmt::format("{} is at a distance of {} diagonals, allowed is {}",
                                                   name_of(expected_annotation), digits(distance, 4),
-                                                  digits(1 - comparison.within, 4)));
+                                                  digits(1 - comparison.tolerance, 4)));
         }
     }
     if (actual.annotations.size() > expected.annotations.size())
@@ -164,7 +166,7 @@ std::string array_difference(const Comparison& comparison, const Path& expected,
             expected_array.values[i] == actual_array.values[i] ? 0 : std::abs(expected_array.values[i] - actual_array.values[i]);
         if (!(difference_here <= most)) most = difference_here, worst = i;
     }
-    const double limit = comparison.within * (comparison.of == "largest" ? largest : 1);
+    const double limit = comparison.tolerance * (comparison.scale == "largest" ? largest : 1);
     if (most <= limit) return {};
     return fmt::format("number {} is {}, expected {}, allowed difference {}", worst, digits(actual_array.values[worst], 6),
                        digits(expected_array.values[worst], 6), digits(limit, 4));
@@ -174,15 +176,15 @@ std::string array_difference(const Comparison& comparison, const Path& expected,
 void compare_values(const Comparison& comparison, const JsonValue& expected, const JsonValue& actual, const std::string& place,
                     std::vector<std::string>& differences) {
     const auto is_ignored = [&](const std::string& at) {
-        return std::any_of(comparison.but.begin(), comparison.but.end(), [&](const auto& ignored_name) {
+        return std::any_of(comparison.ignored.begin(), comparison.ignored.end(), [&](const auto& ignored_name) {
             return at == "/" + ignored_name || at.ends_with("/" + ignored_name);
         });
     };
     if (is_ignored(place) || differences.size() > 3) return;
     if (expected.IsNumber() && actual.IsNumber()) {
         const double expected_number = expected.GetDouble(), actual_number = actual.GetDouble();
-        const double limit =
-            comparison.within * (comparison.of == "value" ? std::max(std::abs(expected_number), std::abs(actual_number)) : 1);
+        const double limit = comparison.tolerance *
+                             (comparison.scale == "value" ? std::max(std::abs(expected_number), std::abs(actual_number)) : 1);
         if (!(std::abs(expected_number - actual_number) <= limit))
             differences.push_back(fmt::format("{} is {}, expected {}, allowed difference {}", place, digits(actual_number, 8),
                                               digits(expected_number, 8), digits(limit, 4)));
@@ -220,17 +222,17 @@ std::string difference_of_values(const Comparison& comparison, const JsonValue& 
 std::string difference(const Comparison& comparison, const Path& expected, const Path& actual, const Path& expected_mesh,
                        const Path& actual_mesh) {
     if (!file_exists(actual)) return "was not written";
-    if (comparison.as == "exists") return size_of_file(actual) == 0 ? "is empty" : "";
+    if (comparison.method == "exists") return size_of_file(actual) == 0 ? "is empty" : "";
     try {
-        if (comparison.as == "bytes") return read_file(expected) == read_file(actual) ? "" : "has different bytes";
-        if (comparison.as == "array") return array_difference(comparison, expected, actual);
-        if (comparison.as == "values") {
+        if (comparison.method == "bytes") return read_file(expected) == read_file(actual) ? "" : "has different bytes";
+        if (comparison.method == "array") return array_difference(comparison, expected, actual);
+        if (comparison.method == "values") {
             Json expected_json = read_json(expected), actual_json = read_json(actual);
             for (Json* document : {&expected_json, &actual_json})
                 if (document->IsObject()) document->RemoveMember("provenance");
             return difference_of_values(comparison, expected_json, actual_json);
         }
-        if (comparison.as == "mesh") return mesh_difference(comparison, read_mesh(expected).mesh, read_mesh(actual).mesh);
+        if (comparison.method == "mesh") return mesh_difference(comparison, read_mesh(expected).mesh, read_mesh(actual).mesh);
         const Mesh annotated_mesh = read_mesh(expected_mesh).mesh;
         AnnotationSet actual_annotations;
         if (expected_mesh == actual_mesh) {

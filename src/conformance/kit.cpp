@@ -23,14 +23,14 @@ std::vector<std::string> texts_in(const JsonValue& value, const char* member) {
 
 Comparison read_comparison(const JsonValue& value) {
     Comparison comparison;
-    comparison.what = text_in(value, "what");
-    comparison.as = text_in(value, "as");
-    comparison.within = number_or(value, "within", 0);
-    if (const std::string scale = text_in(value, "of"); !scale.empty()) comparison.of = scale;
+    comparison.output = text_in(value, "what");
+    comparison.method = text_in(value, "as");
+    comparison.tolerance = number_or(value, "within", 0);
+    if (const std::string scale = text_in(value, "of"); !scale.empty()) comparison.scale = scale;
     comparison.freedoms = texts_in(value, "freedoms");
     comparison.mesh = text_in(value, "mesh");
     comparison.only = texts_in(value, "only");
-    comparison.but = texts_in(value, "but");
+    comparison.ignored = texts_in(value, "but");
     comparison.reason = text_in(value, "reason");
     return comparison;
 }
@@ -128,9 +128,9 @@ void check_names(const ConformanceKit& kit, const ConformanceCase& test_case, co
     const Path expected = Path("expected") / test_case.id;
     require_in_kit((expected / "report.json").string(), "/id");
     for (const Comparison& comparison : test_case.comparisons) {
-        require_below(comparison.what, where, "/compare");
+        require_below(comparison.output, where, "/compare");
         if (!comparison.mesh.empty()) require_in_kit(comparison.mesh, "/compare/mesh");
-        if (const std::string file = file_of(test_case, comparison.what); !file.empty())
+        if (const std::string file = file_of(test_case, comparison.output); !file.empty())
             require_in_kit((expected / file).string(), "/compare");
     }
 }
@@ -151,10 +151,10 @@ void check_case(const ConformanceKit& kit, const ConformanceCase& test_case, con
     if ((test_case.code == 0 || test_case.code == 3) && test_case.comparisons.empty())
         fail_input(where, "has no comparisons", "list what is compared, and the tolerances");
     for (const Comparison& comparison : test_case.comparisons) {
-        if (comparison.what == "report" ? comparison.as != "values" : file_of(test_case, comparison.what).empty())
-            fail_input(where, fmt::format("compares '{}', which is not an output", comparison.what),
+        if (comparison.output == "report" ? comparison.method != "values" : file_of(test_case, comparison.output).empty())
+            fail_input(where, fmt::format("compares '{}', which is not an output", comparison.output),
                        "name one of its outputs, or report (as values)");
-        if (comparison.as == "annotations" && comparison.mesh.empty())
+        if (comparison.method == "annotations" && comparison.mesh.empty())
             fail_input(where, "compares annotations without their mesh", "give \"mesh\": \"FILE\" or the name of an output");
     }
 }
@@ -256,17 +256,17 @@ CaseResult run_case(const ConformanceKit& kit, const ConformanceCase& test_case,
             result.differences.push_back(fmt::format("the message does not contain '{}': {}", word, answer.message));
     for (const Comparison& comparison : test_case.comparisons) {
         std::string difference_text;
-        if (comparison.what == "report") {
+        if (comparison.output == "report") {
             const Json expected_report = read_json(expected / "report.json");
             difference_text = answer.result ? difference_of_values(comparison, expected_report, *answer.result)
                                             : "there is no report" + (answer.message.empty() ? "" : ": " + answer.message);
         } else {
-            const std::string file = file_of(test_case, comparison.what), mesh = file_of(test_case, comparison.mesh);
+            const std::string file = file_of(test_case, comparison.output), mesh = file_of(test_case, comparison.mesh);
             difference_text = difference(comparison, expected / file, folder / file,
                                          mesh.empty() ? kit.folder / comparison.mesh : expected / mesh,
                                          mesh.empty() ? kit.folder / comparison.mesh : folder / mesh);
         }
-        if (!difference_text.empty()) result.differences.push_back(fmt::format("{}: {}", comparison.what, difference_text));
+        if (!difference_text.empty()) result.differences.push_back(fmt::format("{}: {}", comparison.output, difference_text));
     }
     if (result.differences.empty()) result.outcome = Outcome::agrees;
     return result;
@@ -289,7 +289,7 @@ void record_case(const ConformanceKit& kit, const ConformanceCase& test_case, Ba
     std::set<std::string> files;
     Json report(rapidjson::kObjectType);  // only compared members: others may contain local paths
     for (const Comparison& comparison : test_case.comparisons) {
-        if (comparison.what == "report") {
+        if (comparison.output == "report") {
             if (!answer.result) fail_work(fmt::format("case '{}'", test_case.id), "there is no report", "correct the case");
             for (const std::string& name : comparison.only)
                 if (find_member(*answer.result, name) == nullptr)
@@ -300,15 +300,15 @@ void record_case(const ConformanceKit& kit, const ConformanceCase& test_case, Ba
                 const auto in = [&](const std::vector<std::string>& names) {
                     return std::find(names.begin(), names.end(), name) != names.end();
                 };
-                if ((comparison.only.empty() || in(comparison.only)) && !in(comparison.but) &&
+                if ((comparison.only.empty() || in(comparison.only)) && !in(comparison.ignored) &&
                     find_member(report, name) == nullptr) {
                     JsonValue value(member.value, report.GetAllocator());
-                    remove_members(value, comparison.but);
+                    remove_members(value, comparison.ignored);
                     add_members(report, report.GetAllocator(), name, std::move(value));
                 }
             }
-        } else if (comparison.as != "exists") {
-            files.insert(file_of(test_case, comparison.what));
+        } else if (comparison.method != "exists") {
+            files.insert(file_of(test_case, comparison.output));
             if (const std::string mesh = file_of(test_case, comparison.mesh); !mesh.empty()) files.insert(mesh);
         }
     }

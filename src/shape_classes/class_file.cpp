@@ -20,7 +20,7 @@ void add_quantity(JsonValue& object, const ClassQuantity& quantity, JsonAllocato
     add_members(object, allocator, "kind", to_string(quantity.kind));
     if (quantity.id >= 0) add_members(object, allocator, "id", quantity.id);
     add_members(object, allocator, "name", quantity.name);
-    if (!quantity.of.empty()) add_members(object, allocator, "of", quantity.of);
+    if (!quantity.subject.empty()) add_members(object, allocator, "of", quantity.subject);
     if (!quantity.unit.empty()) add_members(object, allocator, "unit", quantity.unit);
     add_members(object, allocator, "oneSided", quantity.one_sided);
 }
@@ -72,7 +72,7 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
     range.quantity.kind = quantity_kind(object["kind"].GetString());
     if (const JsonValue* id = find_member(object, "id")) range.quantity.id = id->GetInt();
     range.quantity.name = object["name"].GetString();
-    range.quantity.of = text_in(object, "of");
+    range.quantity.subject = text_in(object, "of");
     range.quantity.unit = text_in(object, "unit");
     range.quantity.one_sided = object["oneSided"].GetBool();
     range.count = object["count"].GetUint64();
@@ -250,7 +250,7 @@ ShapeClass read_class(const Path& file) {
     for (const auto& value : document["ranges"].GetArray()) {
         LearntRange range = range_from(value, learnt.members.size(), learnt.strangers.size(), where);
         const ClassQuantity& quantity = range.quantity;
-        if (!quantities_found.emplace(static_cast<int>(quantity.kind), quantity.id, quantity.name, quantity.of).second)
+        if (!quantities_found.emplace(static_cast<int>(quantity.kind), quantity.id, quantity.name, quantity.subject).second)
             fail_input(where, "has two ranges of " + quantity.text(), "keep one of them, or learn the class anew");
         learnt.ranges.push_back(std::move(range));
     }
@@ -281,8 +281,8 @@ JsonValue classification_to_json(const Classification& classification, JsonAlloc
     const auto explained = [&](const ClassAnswer& class_answer) {
         const FitResiduals& residuals = *class_answer.fit.residuals;
         return json_object(allocator, "object", 1 - residuals.unexplained, "template", 1 - residuals.unmatched, "within",
-                           class_answer.fit.near, "liesOn", class_answer.off.empty(), "mostOff", class_answer.most_off, "foreign",
-                           json_list(class_answer.fit.foreign, allocator, of_region), "missing",
+                           class_answer.fit.contact_distance, "liesOn", class_answer.off.empty(), "mostOff",
+                           class_answer.most_off, "foreign", json_list(class_answer.fit.foreign, allocator, of_region), "missing",
                            json_list(class_answer.fit.missing, allocator, of_region));
     };
     const auto of_class = [&](const ClassAnswer& class_answer) {

@@ -40,7 +40,7 @@ std::vector<std::string> explained_text(const MemberFit& fit) {
         return fmt::format("({}, {}, {})", digits(p.x(), 4), digits(p.y(), 4), digits(p.z(), 4));
     };
     lines.push_back(fmt::format("the template explains {} of its surface within {}; {} of the template lies on it",
-                                per_cent(1 - fit.residuals->unexplained), digits(fit.near, 3),
+                                per_cent(1 - fit.residuals->unexplained), digits(fit.contact_distance, 3),
                                 per_cent(1 - fit.residuals->unmatched)));
     if (fit.cavity > 0)
         lines.push_back(fmt::format(
@@ -323,7 +323,7 @@ MemberFit fit_member(const Mesh& mesh, const AnnotationSet& set, const WholeObje
         minimum = cost;
         best.scale = place.scale;
         best.residuals = residuals.numbers;
-        best.near = options.observed * place.scale * box_diagonal(mesh);
+        best.contact_distance = options.observed * place.scale * box_diagonal(mesh);
         best.points.clear();
         best.cavity = outer ? outer->second : 0;
         best.outer = outer ? std::make_shared<const Mesh>(outer->first) : nullptr;

@@ -36,13 +36,13 @@ std::string ClassQuantity::text() const {
         case QuantityKind::geometry:
             return name;
         case QuantityKind::part:
-            return id < 0 ? name : fmt::format("{} of part {}{}", name, id, of.empty() ? "" : fmt::format(" ({})", of));
+            return id < 0 ? name : fmt::format("{} of part {}{}", name, id, subject.empty() ? "" : fmt::format(" ({})", subject));
         case QuantityKind::attribute:
-            return fmt::format("{} of {}", name, of);
+            return fmt::format("{} of {}", name, subject);
         case QuantityKind::proportion:
             return fmt::format("proportion {}, {}", id, name);
         default:
-            return fmt::format("{} {} ({}), {}", to_string(kind), id, of, name);
+            return fmt::format("{} {} ({}), {}", to_string(kind), id, subject, name);
     }
 }
 

@@ -40,7 +40,7 @@ struct MeasureDefinition {
 };
 
 struct MeasureDefinitions {
-    std::vector<MeasureDefinition> list;
+    std::vector<MeasureDefinition> measures;
     std::string text;  ///< text of the file; part of the keys of results that depend on it
 };
 

@@ -12,14 +12,14 @@ namespace ostraka {
 
 /// How one output, or the report, is compared with the expected result.
 struct Comparison {
-    std::string what;  ///< "report", an output, or OUTPUT/FILE for a folder
-    std::string as;    ///< "mesh", "annotations", "array", "values", "bytes", "exists"
-    double within = 0;
-    std::string of = "absolute";         ///< scale of the tolerance: "absolute", "diagonal", "largest" or "value"
-    std::vector<std::string> freedoms;   ///< ignored properties of a mesh: "vertex order", "triangulation"
-    std::string mesh;                    ///< for annotations: their mesh, an input's file or an output
-    std::vector<std::string> only, but;  ///< for values: members to compare, or to ignore
-    std::string reason;                  ///< reason for the tolerance
+    std::string output;  ///< "report", an output, or OUTPUT/FILE for a folder
+    std::string method;  ///< "mesh", "annotations", "array", "values", "bytes", "exists"
+    double tolerance = 0;
+    std::string scale = "absolute";          ///< scale of the tolerance: "absolute", "diagonal", "largest" or "value"
+    std::vector<std::string> freedoms;       ///< ignored properties of a mesh: "vertex order", "triangulation"
+    std::string mesh;                        ///< for annotations: their mesh, an input's file or an output
+    std::vector<std::string> only, ignored;  ///< for values: members to compare, or to ignore
+    std::string reason;                      ///< reason for the tolerance
 };
 
 struct ConformanceCase {

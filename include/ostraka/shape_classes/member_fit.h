@@ -62,7 +62,7 @@ struct MemberFit {
     std::string problem;        ///< why it is not fitted, with the remedy; empty if it is fitted
     std::vector<std::string> notes;
     std::optional<FitResiduals> residuals;  ///< none in correspondence
-    double near = 0;                        ///< distance up to which surfaces lie on each other, in the object's unit
+    double contact_distance = 0;            ///< distance up to which surfaces lie on each other, in the object's unit
     /// Share of the object's surface that is the inside of walls whose outside lies on the template, as in a hollow figurine
     /// (insides_of_walls). It is excluded from the residuals and from the measures of the whole shape. `outer` is the object
     /// without this inside, closed where it was cut off; null if there is no such inside.

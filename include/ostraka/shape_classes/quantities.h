@@ -19,7 +19,7 @@ struct ClassQuantity {
     QuantityKind kind = QuantityKind::geometry;
     int id = -1;             ///< id of the relationship, or of the annotation of an attribute
     std::string name;        ///< "little finger / ring finger", "height", "distance" ...
-    std::string of;          ///< type of the relationship, tag of the annotation
+    std::string subject;     ///< type of the relationship, tag of the annotation
     std::string unit = {};   ///< empty for shares and ratios
     bool one_sided = false;  ///< a residual: smaller is never worse
     std::optional<double> value = {};
