@@ -182,7 +182,7 @@ TEST_F(MouldStudy, FindsTheMouldsOfWornCasts) {
     for (Eigen::Index i = 0; i < 9; ++i) EXPECT_EQ(matrices.consistent.row(i).maxCoeff(), matrices.consistent(i, i));
 }
 
-TEST_F(MouldStudy, SameForAnyNumberOfThreadsAndAfterAnInterruption) {
+TEST_F(MouldStudy, GivesTheSameForAnyNumberOfThreadsAndAfterAnInterruption) {
     const Collection collection = read_collection(*scratch / "heads");
     Collection some = collection;
     some.objects.resize(5);
@@ -352,7 +352,7 @@ TEST_F(MouldStudy, TheCommandWritesAllOutputs) {
     EXPECT_TRUE(std::filesystem::exists(out / "dendrogram.png")) << "a run that fails replaces nothing";
 }
 
-TEST(MouldCommand, SaysWhatIsWrong) {
+TEST(MouldCommand, ReportsWrongArguments) {
     const Scratch scratch;
     std::filesystem::create_directories(scratch / "heads");
     write_mesh(scratch / "heads" / "ball.ply", build_mesh(test::octahedron_sphere(3)));

@@ -111,7 +111,7 @@ TEST(ObjectParts, TheTopLiesAboveTheNeck) {
                  Error);
 }
 
-TEST(ObjectParts, TheLargestSegmentIsThatOfTheSegmentation) {
+TEST(ObjectParts, TheLargestSegmentMatchesTheSegmentation) {
     const OneStatuette statuette;
     PartOptions options;
     options.proposed = PartOptions::Proposal::segment;
@@ -132,7 +132,7 @@ TEST(ObjectParts, ProposalsAndNamesExcludeEachOther) {
     EXPECT_THROW(ObjectParts{options}, Error);
 }
 
-TEST(ObjectParts, StudiesOfAPartAreThoseOfThePartCutOut) {
+TEST(ObjectParts, StudiesOfAPartMatchStudiesOfTheExtractedPart) {
     const OneStatuette statuette;
     const test::Scratch cut;
     const MeshFile file = read_mesh(statuette.scratch / "one.ply");

@@ -215,7 +215,7 @@ TEST(StudyMakeProportionsCommand, MeasuresMatchTheDrawnValues) {
     EXPECT_EQ(run_command(make + quoted(scratch / "x") + " --fixed 'nose,chin'").code, 2);
 }
 
-TEST(StudyProportionsCommand, SaysNoWhereNothingIsFixed) {
+TEST(StudyProportionsCommand, AnswersNoWithoutFixedRatios) {
     const Scratch scratch;
     const Path single_file = scratch.file("one.csv", "name,arm [cm],height [cm]\na,8,20\n"),
                same = scratch.file("same.csv", "name,arm,height,base\na,8,20,5\nb,8,20,5\nc,8,20,5\nd,8,20,5\ne,8,20,5\n");

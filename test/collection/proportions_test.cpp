@@ -120,7 +120,7 @@ TEST(Proportions, PlantedOnesAreFoundWithAndWithoutCommonSize) {
     }
 }
 
-TEST(Proportions, GroupsOfThreeAreFoundToo) {
+TEST(Proportions, GroupsOfThreeAreFound) {
     SyntheticMeasuresOptions options;
     options.group_size = 3;
     const Counts counts = over_seeds(options, 6);
@@ -219,7 +219,7 @@ TEST(Proportions, MissingValuesAreReportedInEachRow) {
     EXPECT_NE(notes.find("not positive: 1;"), std::string::npos) << notes;
 }
 
-TEST(Proportions, OfOneObjectAndOfIdenticalOnes) {
+TEST(Proportions, HandlesSingleAndIdenticalObjects) {
     const ProportionStudy single_object = study_proportions(table_of({"a", "b", "c"}, {{1, 2, 3}}), quick());
     ASSERT_EQ(single_object.ratios.size(), 3u);
     for (const RatioRow& ratio : single_object.ratios) {

@@ -48,7 +48,7 @@ TEST(MakeTechniqueCommand, WritesACollectionWithItsTruth) {
     }
 }
 
-TEST(MakeTechniqueCommand, SameBytesAgainAndForAnyNumberOfThreads) {
+TEST(MakeTechniqueCommand, GivesTheSameBytesInEveryRunAndForAnyNumberOfThreads) {
     Scratch scratch;
     const std::string words = " --objects 2 --vertices 4000 --holes 2 --level 3 --seed 9";
     ASSERT_EQ(run_command("study make technique " + (scratch / "a").string() + words + " --threads 1").code, 0);
@@ -57,7 +57,7 @@ TEST(MakeTechniqueCommand, SameBytesAgainAndForAnyNumberOfThreads) {
         EXPECT_EQ(read_file(scratch / "a" / name), read_file(scratch / "b" / name)) << name;
 }
 
-TEST(MakeTechniqueCommand, RefusesWhatMakesNoSense) {
+TEST(MakeTechniqueCommand, RefusesInvalidOptions) {
     Scratch scratch;
     const std::string folder = (scratch / "p").string();
     EXPECT_EQ(run_command("study make technique " + folder + " --level 6").code, 2);
@@ -88,7 +88,7 @@ TEST(MakeCollections, InMemory) {
     }
 }
 
-TEST(MakeCollections, DoNotMixWithWhatIsThere) {
+TEST(MakeCollections, DoNotMixWithExistingFiles) {
     Scratch scratch;
     for (const char* name : {"old.ply", "old.OBJ", "old.ant.json", "truth.csv"}) {
         const Path folder = scratch / (std::string("with ") + name);

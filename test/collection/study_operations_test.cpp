@@ -62,7 +62,7 @@ TEST(StudyOperations, ReadAndWriteFoldersInMemory) {
     }
 }
 
-TEST(StudyOperations, TheFolderOfTheCollectionIsNoOutput) {
+TEST(StudyOperations, TheFolderOfTheCollectionIsNotAnOutput) {
     const MemoryFolder folder;
     write_file(folder.path / "a.mrk.json", markups(1));
     Context context;
@@ -94,7 +94,7 @@ TEST(StudyOperations, ShardsAreGatheredToTheResultOfOneRun) {
     EXPECT_THROW(run(parts, "all"), Error);
 }
 
-TEST(LandmarkShapes, AreOfTheLandmarksInCommon) {
+TEST(LandmarkShapes, UseTheCommonLandmarks) {
     const MemoryFolder folder;
     write_file(folder.path / "a.mrk.json", markups(1));
     write_file(folder.path / "b.mrk.json", markups(2, "cm"));

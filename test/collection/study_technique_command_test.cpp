@@ -108,7 +108,7 @@ TEST(StudyTechniqueCommand, ReportsTheNumberOfKnownAnswers) {
     EXPECT_NE(none.err.find("'statuette-1.ply'"), std::string::npos) << none.err;
 }
 
-TEST(StudyTechniqueCommand, RefusesWhatMakesNoSense) {
+TEST(StudyTechniqueCommand, RefusesInvalidOptions) {
     Scratch scratch;
     const std::string start = "study technique " + population().string() + " --output " + (scratch / "out").string();
     EXPECT_EQ(run_command(start + " --answer-by weight").code, 2);
@@ -149,7 +149,7 @@ TEST(StudyTechniqueCommand, OutOfClassObjectsGetNoAnswer) {
     EXPECT_NE(read_file(out / "roundness.svg").find("<svg"), std::string::npos);
 }
 
-TEST(StudyTechniqueCommand, SaysWhereTheOptionOverridesTheAnnotations) {
+TEST(StudyTechniqueCommand, ReportsThatTheOptionOverridesTheAnnotations) {
     Scratch scratch;
     const std::string start = "study technique " + population().string() + " --output ";
     const auto same = run_command(start + (scratch / "same").string() + " --up 0,0,2");
@@ -161,7 +161,7 @@ TEST(StudyTechniqueCommand, SaysWhereTheOptionOverridesTheAnnotations) {
     }
 }
 
-TEST(StudySegmentsCommand, SaysWhichClustersHaveNoSegment) {
+TEST(StudySegmentsCommand, ReportsClustersWithoutSegments) {
     Scratch scratch;
     const Path mesh = population() / "statuette-1.ply", out = scratch / "segments.ant.json";
     for (const int minimum : {1, 30}) {

@@ -34,7 +34,7 @@ TEST(Technique, ARoundBodyIsRoundAndStraight) {
     EXPECT_TRUE(std::isnan(m.value("wall variation")));
 }
 
-TEST(Technique, DescriptorsOfAnOvalBodyAreThoseOfTheFormula) {
+TEST(Technique, DescriptorsOfAnOvalBodyMatchTheFormula) {
     StatuetteParameters p = fine_parameters();
     p.ovality = 0.05;
     const TechniqueMeasures m = measure_technique(generate_statuette(p).mesh, up);
@@ -51,7 +51,7 @@ TEST(Technique, DescriptorsOfAnOvalBodyAreThoseOfTheFormula) {
     EXPECT_NEAR(rotated.value("coherence"), std::sin(half) / half, 0.01);
 }
 
-TEST(Technique, AnOffCentreCavityHasTheVariationOfTheFormula) {
+TEST(Technique, WallVariationOfAnOffCentreCavityMatchesTheFormula) {
     StatuetteParameters p = fine_parameters();
     p.wall = 5;
     p.off_centre = 0.3;
@@ -133,7 +133,7 @@ TEST(Technique, KeptMeasuresAreTheSame) {
     }
 }
 
-TEST(Technique, NonsenseIsRefused) {
+TEST(Technique, InvalidInputIsRefused) {
     const Mesh mesh = generate_statuette(fine_parameters()).mesh;
     TechniqueOptions options;
     options.from = 0.5;
@@ -328,7 +328,7 @@ TEST(TechniqueStudy, FewOrEqualObjectsAreNoFailure) {
     EXPECT_NO_THROW(study_technique(drawn(1, 0, false)));
 }
 
-TEST(TechniqueStudy, ObjectsWithoutADescriptorAreLeftOutOfItOnly) {
+TEST(TechniqueStudy, ObjectsWithoutADescriptorAreSkippedOnlyForIt) {
     auto objects = drawn(40, 6, true);
     objects[3].measures.descriptors.back().value = TechniqueSlice::unknown;  // wall variation
     TechniqueStudyOptions options;
@@ -341,7 +341,7 @@ TEST(TechniqueStudy, ObjectsWithoutADescriptorAreLeftOutOfItOnly) {
     EXPECT_EQ(study.answers[4].answer, "wheel");
 }
 
-TEST(TechniqueStudy, NonsenseIsRefused) {
+TEST(TechniqueStudy, InvalidInputIsRefused) {
     auto objects = drawn(10, 1, true);
     TechniqueStudyOptions options;
     options.answer_by = "weight";

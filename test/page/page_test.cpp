@@ -319,7 +319,7 @@ TEST(Page, HoldsSlicesConstraintsAndPartsInTheFrameOfTheObject) {
     EXPECT_EQ(object_entry["parts"].Size(), 2U);
 }
 
-TEST(Page, OfACollectionReadsItsObjectsFromFilesBesideIt) {
+TEST(Page, PageOfACollectionLoadsObjectsFromItsFolder) {
     const Annotated annotated;
     Page alone("sphere");
     alone.add(annotated.object());
@@ -484,7 +484,7 @@ TEST(ReportCommand, MakesTheSamePageTwiceAndRefusesWrongInput) {
     EXPECT_NE(std::string(folder.data["notes"][0].GetString()).find("broken.json"), std::string::npos);
 }
 
-TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
+TEST(ReportCommand, ShowsOutputsOfOtherCommands) {
     const Scratch scratch;
     const std::string data = std::string(OSTRAKA_SOURCE_DIR) + "/data/", vase = data + "vase.ply ";
     const auto file = [&](const std::string& name) { return (scratch / name).string(); };
@@ -573,7 +573,7 @@ TEST(ReportCommand, ShowsWhatOtherCommandsWrote) {
     EXPECT_EQ(all_objects.data["tables"][0]["objects"][1].GetInt(), 1);
 }
 
-TEST(Publish, TakesAddressesOfTheWebOnly) {
+TEST(Publish, AcceptsOnlyWebAddresses) {
     const Scratch scratch;
     const std::string mesh = (scratch / "vase.ply").string(), set = (scratch / "vase.ant.json").string();
     ASSERT_EQ(run_command("mesh make vase " + mesh + " --vertices 2500 --quiet").code, 0);

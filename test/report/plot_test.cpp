@@ -90,7 +90,7 @@ TEST(Plot, ShowsPointsOfEachClassInItsColour) {
     EXPECT_GT(count(picture, {0, 158, 115}), 2 * 20u) << "two series have this colour";
 }
 
-TEST(Plot, OfOnePointOfHugeAndOfMissingNumbers) {
+TEST(Plot, HandlesSinglePointsHugeAndMissingNumbers) {
     EXPECT_NO_THROW(svg_bytes(Plot{"", {"x"}, {"y"}, {{"", {{3, 3}}}}}));
     EXPECT_NO_THROW(svg_bytes(Plot{"", {"x"}, {"y"}, {{"", {{-1e300, 1e-300}, {1e300, 2e-300}}}}}));
     const double none = std::nan("");
@@ -150,14 +150,14 @@ TEST(Plot, EscapesMarkupInNames) {
     EXPECT_EQ(svg.find("script"), std::string::npos);
 }
 
-TEST(Plot, IsWrittenAsItsNameEnds) {
+TEST(Plot, FormatFollowsTheFileEnding) {
     const Scratch scratch;
     EXPECT_THROW(write_plot(scratch / "plot.gif", simple()), Error);
     write_plot(scratch / "plot.png", simple());
     EXPECT_EQ(test::read_png(scratch / "plot.png").width, 2 * 760);
 }
 
-TEST(Plot, OfARateAgainstARateIsSquare) {
+TEST(Plot, RateAgainstRateIsSquare) {
     Plot plot{
         "", {"false positive rate", false, 0.0, 1.0}, {"true positive rate", false, 0.0, 1.0}, {{"", {{0, 0}, {1, 1}}, false}}};
     plot.square = true;
@@ -172,7 +172,7 @@ TEST(Plot, OfARateAgainstARateIsSquare) {
     EXPECT_NEAR(right - left, bottom - top, 6);
 }
 
-TEST(HeatMap, FieldsHaveTheColoursOfTheirNumbers) {
+TEST(HeatMap, CellsHaveTheColoursOfTheirValues) {
     HeatMap map{"", Eigen::MatrixXd(2, 2), {"a", "b"}, {"c", "d"}, "distance"};
     map.values << 0, 1, 0.25, 0.5;
     const Picture picture = picture_of(map);
@@ -198,7 +198,7 @@ TEST(HeatMap, RefusesMismatchedSizes) {
     EXPECT_THROW(svg_bytes(HeatMap{}), Error);
 }
 
-TEST(DendrogramPicture, OfTreesOfAnySize) {
+TEST(DendrogramPicture, HandlesTreesOfAnySize) {
     Eigen::MatrixXd places(4, 1);
     places << 0, 5, 1, 7;
     Dendrogram tree{"tree", linkage(distance_matrix(places)), {"a", "b", "c", "d"}};

@@ -39,7 +39,7 @@ double width_of(const std::string& svg) {
 
 }  // namespace
 
-TEST(SliceSheet, OfOneAndOfManySlices) {
+TEST(SliceSheet, HandlesOneAndManySlices) {
     const Scratch scratch;
     const Cut cut;
     for (const std::size_t count : {1UL, 7UL, 30UL}) {

@@ -119,7 +119,7 @@ TEST(LandmarkClass, MissingLandmarksAreNamed) {
     EXPECT_NE(drawn.err.find("landmarks"), std::string::npos) << drawn.err;
 }
 
-TEST(LandmarkClass, MeanOfTheMouseSkullsIsThePublishedOne) {
+TEST(LandmarkClass, MeanOfTheMouseSkullsMatchesThePublishedMean) {
     const Path folder = Path(OSTRAKA_SHARED_DATA) / "landmarks-mouse-skulls" / "LMs";
     if (!std::filesystem::is_directory(folder)) {
         std::cerr << "SKIPPED: " << folder << " is not there, the mean of the mouse skulls is not compared\n";

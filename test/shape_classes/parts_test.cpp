@@ -26,7 +26,7 @@ double value_of(const std::vector<ClassQuantity>& quantities, int id, const std:
     return -1;
 }
 
-TEST(Parts, OfATowerAreThoseOfTwoOpenBoxes) {
+TEST(Parts, OfATowerMatchTwoOpenBoxes) {
     // Each half is a box 1 x 1 x 1/2 without one of its square faces: area 1 + 4/2 of 6 in all.
     const Tower template_tower = tower();
     const auto quantities = part_quantities(template_tower.known(), points_in(template_tower.mesh));

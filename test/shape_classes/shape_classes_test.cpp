@@ -126,7 +126,7 @@ std::vector<WholeObject> one_alone(const Tower& template_tower) {
     return members;
 }
 
-TEST(ShapeClass, LearnsTheRangesThatItsMembersHave) {
+TEST(ShapeClass, LearnsTheRangesOfItsMembers) {
     const Tower template_tower = tower();
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const LearntRange* ratio = learnt.find("proportion 7 ");
@@ -367,7 +367,7 @@ TEST(MemberFit, AHollowMemberIsMeasuredAsASolidOne) {
     EXPECT_NE(explained_text(hollow_member.fit)[1].find("it is hollow: 20"), std::string::npos);
 }
 
-TEST(MemberFit, DistortionIsThatOfTheMap) {
+TEST(MemberFit, DistortionMatchesTheMap) {
     const Tower template_tower = tower();
     const WholeObject wide = member_of(template_tower, "wide", 1, 1, 2);
     std::vector<Point> points(wide.mesh.points().begin(), wide.mesh.points().end());
@@ -379,7 +379,7 @@ TEST(MemberFit, DistortionIsThatOfTheMap) {
     EXPECT_NEAR(residuals.stretch, std::log(2.0), 1e-9);
 }
 
-TEST(ClassSample, HoldsTheConstraintsAndTheRanges) {
+TEST(ClassSample, SatisfiesTheConstraintsAndTheRanges) {
     const Tower template_tower = tower();
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     SampleOptions options;
@@ -425,7 +425,7 @@ TEST(ClassSample, RestoresAStatedProportionOrRejects) {
     EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);
 }
 
-TEST(ClassSample, DiversityIsTheMeanDistanceOfTwo) {
+TEST(ClassSample, DiversityIsTheMeanPairwiseDistance) {
     const Tower template_tower = tower();
     const ShapeClass learnt = class_of(template_tower, usual(template_tower));
     const ShapeModes& modes = learnt.modes;

@@ -16,7 +16,7 @@ std::vector<double> draws(Random& random, std::size_t count, double deviation = 
     return values;
 }
 
-TEST(Predict, IsTheTabulatedIntervalOfStudent) {
+TEST(Predict, MatchesTheTabulatedStudentInterval) {
     // Student's t, 97.5 %, nine degrees of freedom: 2.26216; 95 %: 1.83311.
     const SampleMoments moments{10, 3, 4, 9};
     const PredictionInterval two_sided = predict(moments, false, 0.05);

@@ -28,7 +28,7 @@ std::vector<std::optional<double>> logs(double a, double b, double c) {
     return {0.1 * std::exp(a), 0.1 * std::exp(b), 0.1 * std::exp(c)};
 }
 
-TEST(Unlikeness, CountsDeviationsOfOneMoreMember) {
+TEST(Unlikeness, IsTheMeanDeviationOfAFurtherMember) {
     const ShapeClass learnt = synthetic_class();
     const double deviation = 0.1 * std::sqrt(4.0 / 3);
     EXPECT_NEAR(unlikeness(learnt, logs(0, 0, 0))->value, 0, 1e-9);

@@ -52,7 +52,7 @@ TEST(Dbscan, OfARingInsideARing) {
     for (int i = 0; i < 120; ++i) ASSERT_EQ(labels[i], i < 60 ? 0 : 1);
 }
 
-TEST(Dbscan, OfIdenticalSamplesAndBadInput) {
+TEST(Dbscan, HandlesIdenticalSamplesAndInvalidInput) {
     EXPECT_EQ(dbscan(Eigen::MatrixXd::Constant(4, 3, 2.0), 0, 4), std::vector<int>(4, 0));
     EXPECT_EQ(dbscan(column({1}), 0, 1), std::vector<int>{0});
     EXPECT_THROW(dbscan(Eigen::MatrixXd(0, 1), 1, 1), Error);
@@ -134,7 +134,7 @@ TEST(Linkage, SingleLinkageCutIsDbscanWithMinimumOne) {
     for (const double epsilon : {0.1, 0.3, 0.5, 1.0}) EXPECT_EQ(cut_at(tree, epsilon), dbscan(samples, epsilon, 1));
 }
 
-TEST(Linkage, OfOneOfIdenticalAndOfBadInput) {
+TEST(Linkage, HandlesSingleAndIdenticalSamplesAndInvalidInput) {
     const Linkage single_sample = linkage(Eigen::MatrixXd::Zero(1, 1));
     EXPECT_TRUE(single_sample.merges.empty());
     EXPECT_EQ(leaf_order(single_sample), std::vector<int>{0});

@@ -68,7 +68,7 @@ TEST(KMeans, NoSampleLiesNearerToAnotherCentre) {
     }
 }
 
-TEST(KMeans, OfIdenticalAndOfFewSamples) {
+TEST(KMeans, HandlesIdenticalAndFewSamples) {
     const KMeansResult same = k_means(Eigen::MatrixXd::Constant(6, 2, 0.3), {.clusters = 3});
     EXPECT_EQ(same.labels, std::vector<int>(6, 0));
     EXPECT_EQ(same.centres.rows(), 1);
@@ -187,7 +187,7 @@ TEST(ClusterCount, GapDetectsTheAbsenceOfClusters) {
     EXPECT_GT(proposed.by_silhouette, 1) << "which the silhouette cannot";
 }
 
-TEST(ClusterCount, OfFewAndIdenticalSamples) {
+TEST(ClusterCount, HandlesFewAndIdenticalSamples) {
     EXPECT_EQ(propose_cluster_count(Eigen::MatrixXd::Constant(5, 2, 1.0)).proposed, 1);
     EXPECT_EQ(propose_cluster_count(column({3})).proposed, 1);
     EXPECT_EQ(propose_cluster_count(column({3, 4})).rows.size(), 1u) << "a sample each is no clustering";

@@ -112,7 +112,7 @@ TEST(BestThreshold, LiesInTheMiddleOfTheWidestGap) {
     EXPECT_EQ(either.scores.f1(), 1);
 }
 
-TEST(BestThreshold, OfTiesAndOfTheWrongSide) {
+TEST(BestThreshold, HandlesTiesAndTheWrongSide) {
     // All the same: all positive is the best that can be.
     const Threshold same = best_threshold({3, 3, 3}, {true, false, true});
     EXPECT_DOUBLE_EQ(same.scores.f1(), 0.8);
@@ -291,7 +291,7 @@ TEST(DeviationInterval, HasTheValuesUnit) {
     EXPECT_THROW(deviation_interval(values, false, 1), Error);
 }
 
-TEST(ClusterStability, OfRealAndOfArbitraryClusters) {
+TEST(ClusterStability, DistinguishesRealFromArbitraryClusters) {
     Random random(9);
     std::vector<double> values;
     std::vector<int> labels;

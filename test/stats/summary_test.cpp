@@ -24,7 +24,7 @@ TEST(Summary, OfNumbersByHand) {
     EXPECT_EQ(s.max, 9);
 }
 
-TEST(Summary, OfOneValueAndOfEqualOnes) {
+TEST(Summary, HandlesSingleAndEqualValues) {
     const Summary single_value = summarise({3});
     EXPECT_EQ(single_value.mean, 3);
     EXPECT_EQ(single_value.median, 3);
@@ -118,7 +118,7 @@ TEST(RandomNumbers, OfACounterAreFixed) {
     EXPECT_NEAR(sum / 10000, 0.5, 4 / std::sqrt(12.0 * 10000));
 }
 
-TEST(RandomNumbers, AreThoseOfTheStandardsEngine) {
+TEST(RandomNumbers, MatchTheStandardEngine) {
     // The engine's numbers are fixed by the standard; these laws would not hold if draws were mapped badly.
     Random random(42);
     double sum = 0, square = 0, cube = 0;
