@@ -205,7 +205,7 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
     evidence.widths = std::abs(std::log(a.width / b.width));
     evidence.noise = std::hypot(a.noise, b.noise) / tolerance;
     evidence.edge = std::max(a.edge, b.edge) / tolerance;
-    evidence.fracture_relief = std::min(a.relief, b.relief) / tolerance;
+    evidence.roughness = std::min(a.relief, b.relief) / tolerance;
     evidence.axis = off_common_axis(a, b, pose) / std::min(a.size, b.size);
     evidence.own_axis = std::hypot(a.off_axis, b.off_axis) / std::min(a.size, b.size);
     return evidence;
@@ -270,7 +270,7 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             logarithm(side_length, 0.5, 500) - 3,
             logarithm(noise, 0.003, 3) + 3,
             logarithm(edge, 0.1, 20),
-            logarithm(fracture_relief, 0.1, 30),
+            logarithm(roughness, 0.1, 30),
             -logarithm(std::max(residual, 0.02) / std::hypot(0.1, noise, 0.1 * edge), 0.1, 10),
             -logarithm(0.003 + axis, 0.003, 1) - 4,
             -logarithm(0.003 + own_axis, 0.003, 1) - 3};

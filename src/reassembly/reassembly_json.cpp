@@ -12,14 +12,12 @@ namespace ostraka {
 namespace {
 
 constexpr double JoinEvidence::*evidence_members[] = {
-    &JoinEvidence::area,        &JoinEvidence::share,        &JoinEvidence::coverage,
-    &JoinEvidence::residual,    &JoinEvidence::relief,       &JoinEvidence::bending,
-    &JoinEvidence::grip,        &JoinEvidence::facing,       &JoinEvidence::rim,
-    &JoinEvidence::rim_share,   &JoinEvidence::rim_coverage, &JoinEvidence::rim_step,
-    &JoinEvidence::penetration, &JoinEvidence::depth,        &JoinEvidence::widths,
-    &JoinEvidence::side_turn,   &JoinEvidence::side_step,    &JoinEvidence::side_length,
-    &JoinEvidence::noise,       &JoinEvidence::edge,         &JoinEvidence::fracture_relief,
-    &JoinEvidence::axis,        &JoinEvidence::own_axis};
+    &JoinEvidence::area,        &JoinEvidence::share,       &JoinEvidence::coverage,     &JoinEvidence::residual,
+    &JoinEvidence::relief,      &JoinEvidence::bending,     &JoinEvidence::grip,         &JoinEvidence::facing,
+    &JoinEvidence::rim,         &JoinEvidence::rim_share,   &JoinEvidence::rim_coverage, &JoinEvidence::rim_step,
+    &JoinEvidence::penetration, &JoinEvidence::depth,       &JoinEvidence::widths,       &JoinEvidence::side_turn,
+    &JoinEvidence::side_step,   &JoinEvidence::side_length, &JoinEvidence::noise,        &JoinEvidence::edge,
+    &JoinEvidence::roughness,   &JoinEvidence::axis,        &JoinEvidence::own_axis};
 static_assert(std::size(evidence_members) == JoinEvidence::numbers, "what is not kept would be lost in a run that goes on");
 
 double number_of(const JsonValue& value) {

@@ -33,9 +33,9 @@ struct JoinEvidence {
     double side_length = 0;  ///< length of the rim over which this is measured
 
     // Quality of the data, independent of the pose.
-    double noise = 0;  ///< noise of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
-    double edge = 0;   ///< mean edge length of the coarser mesh
-    double fracture_relief = 0;  ///< root mean square deviation of the smoother fracture from a quadric
+    double noise = 0;      ///< noise of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
+    double edge = 0;       ///< mean edge length of the coarser mesh
+    double roughness = 0;  ///< root mean square deviation of the smoother fracture from a quadric
 
     // On a vessel the normals of the intact surfaces meet its axis, however worn the fractures are: root mean square distances
     // of the normals from the best axis, as shares of the smaller fragment's size.
