@@ -12,11 +12,11 @@ namespace ostraka {
 class FragmentGroups {
 public:
     /// Starts with single fragments.
-    FragmentGroups(const LooseFragments& loose, const PairGraph& graph, const ReassemblyOptions& options);
+    FragmentGroups(const LooseFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options);
 
-    /// Joins groups while the probability is high enough. `all`: few fragments, all edges are re-evaluated after each join;
+    /// Joins groups while the probability is high enough. `all_pairs`: few fragments, all edges are re-evaluated after each join;
     /// otherwise edges are re-evaluated lazily.
-    void merge(bool all);
+    void merge(bool all_pairs);
     /// Likely poses that were rejected.
     [[nodiscard]] std::vector<UndoneJoin> undone() const;
 
@@ -50,7 +50,7 @@ private:
     void join_lazily();
     void join(const PairEdge& edge, const Motion& move);
 
-    const LooseFragments& loose_;
+    const LooseFragments& fragments_;
     const PairGraph& graph_;
     double min_log_odds_;             ///< min log odds of a join
     std::vector<std::size_t> order_;  ///< edges, most certain first
