@@ -202,7 +202,7 @@ TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
         const CompletedObject object = complete(ball, {*one});
         EXPECT_EQ(object.mesh.number_of_faces(), ball.number_of_faces());
         ASSERT_EQ(object.notes.size(), 1U);
-        EXPECT_NE(object.notes[0].text.find("nothing of it lies on the fitted template"), std::string::npos);
+        EXPECT_NE(object.notes[0].text.find("no part of it lies on the fitted template"), std::string::npos);
         for (const Origin origin : object.origin) EXPECT_EQ(origin, Origin::hypothesis);
         for (const double d : object.distance) EXPECT_EQ(d, -1);
     }

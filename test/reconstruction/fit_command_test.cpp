@@ -109,7 +109,7 @@ TEST_F(FitCommand, WhatNothingSupportsIsNotCompatible) {
     const auto twice = fit(quoted(scratch / "top.ply") + " " + quoted(scratch / "again.ply"));
     EXPECT_EQ(twice.code, 3);
     EXPECT_NE(twice.out.find("against again: "), std::string::npos) << twice.out;
-    EXPECT_NE(twice.out.find("where fragments before it are seen"), std::string::npos) << twice.out;
+    EXPECT_NE(twice.out.find("where earlier fragments are observed"), std::string::npos) << twice.out;
     EXPECT_NE(twice.out.find("incompatible"), std::string::npos);
     // Another unit, stated.
     Json annotations = read_json(scratch / "again.ant.json");

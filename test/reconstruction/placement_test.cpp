@@ -182,7 +182,7 @@ TEST(Placement, CommonLandmarksAreThoseOfOneTagOnEitherSide) {
     EXPECT_EQ(pairs[1].on_fragment, Vector3d(0, -1, 0));
     ASSERT_EQ(notes.size(), 3U);
     EXPECT_NE(notes[0].find("'ear' is not on the template, which has 'Ear'"), std::string::npos);
-    EXPECT_NE(notes[1].find("'eye' is there more than once"), std::string::npos);
+    EXPECT_NE(notes[1].find("'eye' occurs more than once"), std::string::npos);
     EXPECT_NE(notes[2].find("'horn' is not on the template"), std::string::npos);
     AnnotationSet path = set_of({{"chin", 5}, {"nose", 3}});
     path.annotations[0].points.push_back(4);

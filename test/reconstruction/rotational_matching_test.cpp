@@ -182,7 +182,7 @@ TEST(RotationMatch, OneSherdAndNoBreaks) {
     for (Fragment& one : whole.fragments) one.facets.assign(one.mesh.number_of_faces(), Facet::outer);
     const RotationMatch none = whole.match();
     EXPECT_TRUE(none.joints.empty());
-    for (const std::string& note : none.notes) EXPECT_NE(note.find("no break"), std::string::npos);
+    for (const std::string& note : none.notes) EXPECT_NE(note.find("no fracture surface"), std::string::npos);
 
     EXPECT_THROW((void)match_rotations(whole.whole, Vector3d::Zero(), Vector3d::UnitZ(), {}), Error);
     EXPECT_THROW((void)match_rotations(whole.whole, Vector3d::Zero(), Vector3d::Zero(), whole.sherds), Error);

@@ -81,7 +81,7 @@ TEST(SearchPlacement, IsAskedOnlyWhereItShould) {
     placed[0].landmarks.clear();
     one.fragment.facets.assign(one.fragment.mesh.number_of_faces(), Facet::fracture);
     EXPECT_FALSE(place_by_search(mesh, {&one.fragment}, options, scale, placed)[0].has_value());
-    EXPECT_NE(placed[0].problem.find("break"), std::string::npos);
+    EXPECT_NE(placed[0].problem.find("fracture"), std::string::npos);
 }
 
 TEST(SearchPlacement, TakesTheScaleOfLandmarks) {
