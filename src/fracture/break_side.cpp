@@ -59,7 +59,7 @@ Motion RimFrame::onto(const RimFrame& other) const {
 
 namespace {
 
-/// The loop with positions and sides averaged over a length of about `reach`, so that the zigzag of the faces does not lengthen
+/// The loop with positions and sides averaged over a length of about `radius`, so that the zigzag of the faces does not lengthen
 /// it.
 RimLoop smoothed(const RimLoop& loop, double radius) {
     const std::size_t n = loop.places.size();

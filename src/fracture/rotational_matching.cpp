@@ -299,7 +299,7 @@ void RotationMatchOptions::describe(OptionList& visit) {
     visit("turn-candidates", candidates, "number of best rotations of two sherds that are refined", Range{1, 1000});
     visit("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
     visit("turn-hold", hold, "weight of a sherd's place on the template against the fracture surfaces", Range{0, 1000});
-    visit("min-joint", min_joint, "minimum confidence of a joint; below it is not decided", Range{0, 1});
+    visit("min-joint", min_joint, "minimum confidence of a joint; below it the joint is not decided", Range{0, 1});
 }
 
 }  // namespace ostraka

@@ -63,8 +63,8 @@ public:
     /// Enables the detection of fragments whose faces are the template's: their vertices are identified with the template's,
     /// and their landmarks, which would count twice, are no correspondences.
     void recognise_shared_faces();
-    /// The nearest match on all fragments for each vertex at `now`; fragment -1 if there is none within `search_radius` with a
-    /// compatible normal that is not at a border.
+    /// The nearest match on all fragments for each vertex at `current`; fragment -1 if there is none within `search_radius` with
+    /// a compatible normal that is not at a border.
     [[nodiscard]] std::vector<VertexMatch> matches(const Points& current, const Mesh& connectivity, const Labels& labels,
                                                    double search_radius, double min_cosine) const;
     /// As `matches`, with a projection per vertex onto the directions in which it may slide from there: those of the surface;

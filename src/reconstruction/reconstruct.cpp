@@ -426,7 +426,7 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
 void ReconstructOptions::describe(OptionList& visit) {
     placement.describe(visit);
     search.describe(visit);
-    visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
+    visit("refine", refine, "refine poses by closest points of the surface, with landmarks as anchors", Anything{});
     alignment.describe(visit);
     rotations.describe(visit);
     annotations.describe(visit);

@@ -113,7 +113,7 @@ std::vector<std::optional<PoseSearchResult>> place_by_search(const Mesh& mesh, c
 }
 
 void SearchOptions::describe(OptionList& visit) {
-    visit("search", search, "poses are searched without landmarks: auto is where a fragment has fewer than three",
+    visit("search", search, "search poses without landmarks; auto: where a fragment has fewer than three",
           Choices{"auto", "always", "never"});
     poses.describe(visit);
 }

@@ -169,7 +169,7 @@ double rotation_angle_between(const Motion& a, const Motion& b) {
     return std::acos(std::clamp(((a.rotation.transpose() * b.rotation).trace() - 1) / 2, -1.0, 1.0));
 }
 
-/// Poses in the order of their scores, best first, each at least `apart` from the previous ones.
+/// Poses in the order of their scores, best first, each at least `min_angle` from the previous ones.
 std::vector<Motion> best_distinct(const std::vector<Motion>& poses, const std::vector<double>& scores, std::size_t count,
                                   double min_angle) {
     std::vector<std::size_t> order(poses.size());
@@ -518,7 +518,7 @@ std::vector<std::string> remarks_on(const MeshRegistration& registration) {
             fmt::format("{}{} poses fit equally: the object is symmetric; the one that rotates the source least was chosen",
                         registration.others.size() >= refined_on_faces - 1 ? "at least " : "", registration.others.size() + 1));
     if (registration.slippable.kind != SlippableKind::none)
-        remarks.push_back(fmt::format("the shape leaves a {} open: the displacement of the source along it is unknown",
+        remarks.push_back(fmt::format("the shape leaves a motion open ({}): the displacement of the source along it is unknown",
                                       registration.slippable.text()));
     return remarks;
 }

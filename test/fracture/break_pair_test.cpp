@@ -154,13 +154,13 @@ TEST(BreakPair, ThreadsDoNotMatter) {
 
 TEST(BreakPair, ReportsWhatCannotBeRegistered) {
     const Fragment a = fragment_of(synthetic_bar(), "a");
-    Fragment whole = fragment_of(synthetic_bar(1, true), "whole");
-    whole.facets.assign(whole.facets.size(), Facet::outer);
-    EXPECT_THROW(pair_breaks(a, whole, quick()), Error);
-    whole.facets.clear();
-    EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no facets: all outer";
-    whole.facets.assign(whole.mesh.number_of_faces(), Facet::fracture);
-    EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no rim";
+    Fragment unbroken = fragment_of(synthetic_bar(1, true), "whole");
+    unbroken.facets.assign(unbroken.facets.size(), Facet::outer);
+    EXPECT_THROW(pair_breaks(a, unbroken, quick()), Error);
+    unbroken.facets.clear();
+    EXPECT_THROW(pair_breaks(a, unbroken, quick()), Error) << "no facets: all outer";
+    unbroken.facets.assign(unbroken.mesh.number_of_faces(), Facet::fracture);
+    EXPECT_THROW(pair_breaks(a, unbroken, quick()), Error) << "no rim";
     EXPECT_THROW(pair_breaks(a, Fragment(), quick()), Error);
     PairOptions options;
     options.search_radius = 2;

@@ -128,10 +128,10 @@ TEST_F(CageFit, RefusesAnInvalidCage) {
         EXPECT_NE(std::string(error.what()).find("outside"), std::string::npos) << error.what();
     }
     EXPECT_THROW((void)TemplateFitter(mesh, set).fit(1, placed(original), in("cage")), Error);
-    ReconstructOptions how;
-    how.fit.space = NonRigidOptions::Space::both;
+    ReconstructOptions options_in_cage;
+    options_in_cage.fit.space = NonRigidOptions::Space::both;
     const RelationGraph graph;
-    EXPECT_THROW(Reconstructor(mesh, set, graph, how), Error);
+    EXPECT_THROW(Reconstructor(mesh, set, graph, options_in_cage), Error);
     const TemplateCage green{cage.cage, compute_coordinates("green", cage.cage, mesh)};
     EXPECT_THROW(TemplateFitter(mesh, set, &green), Error);
     const Mesh other = body(2);

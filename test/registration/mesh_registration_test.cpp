@@ -35,7 +35,7 @@ Mesh synthetic_mesh(const std::string& name, std::uint64_t vertices, std::uint64
     return make_mesh(synthetic_object(name), options).mesh;
 }
 
-Mesh turned_round(const Mesh& mesh, bool mirror) {
+Mesh flipped_mesh(const Mesh& mesh, bool mirror) {
     TriangleSoup soup = to_soup(mesh);
     if (mirror)
         for (auto& p : soup.points) p[0] = -p[0];
@@ -45,7 +45,7 @@ Mesh turned_round(const Mesh& mesh, bool mirror) {
 }
 
 /// Mirrored, its faces outward again.
-Mesh mirrored(const Mesh& mesh) { return turned_round(turned_round(mesh, true), false); }
+Mesh mirrored(const Mesh& mesh) { return flipped_mesh(flipped_mesh(mesh, true), false); }
 
 Motion any_similarity(const Mesh& mesh, std::uint64_t seed) {
     Random random(seed);
@@ -123,7 +123,7 @@ TEST(MeshRegistration, RefusesAndReportsMirrorImages) {
     EXPECT_EQ(registration.verdict, RegistrationVerdict::mirrored);
     EXPECT_LT(registration.mirrored.rms, 0.2 * registration.agreement.rms);
     // An axis turned over by an export, the faces as they were: mirrored and inside out.
-    EXPECT_EQ(register_mesh(turned_round(hand, true), other).verdict, RegistrationVerdict::mirrored);
+    EXPECT_EQ(register_mesh(flipped_mesh(hand, true), other).verdict, RegistrationVerdict::mirrored);
     // What is its own mirror image is aligned; but for the very triangles, by which it was mirrored.
     const Mesh pot = synthetic_mesh("teapot", 3000);
     EXPECT_EQ(register_mesh(mirrored(synthetic_mesh("teapot", 5000, 2)), pot).verdict, RegistrationVerdict::aligned);
@@ -132,7 +132,7 @@ TEST(MeshRegistration, RefusesAndReportsMirrorImages) {
 
 TEST(MeshRegistration, ReportsMeshesThatAreInsideOut) {
     const Mesh hand = synthetic_mesh("hand", 3000);
-    EXPECT_EQ(register_mesh(turned_round(hand, false), hand).verdict, RegistrationVerdict::inside_out);
+    EXPECT_EQ(register_mesh(flipped_mesh(hand, false), hand).verdict, RegistrationVerdict::inside_out);
 }
 
 TEST(MeshRegistration, CountsThePosesOfASymmetricObjectAndChoosesTheNearest) {
