@@ -31,7 +31,7 @@ void BreakAligner::for_each_continued(const Motion& pose, double search_radius, 
     }
 }
 
-Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, double hold) const {
+Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, double anchor_weight) const {
     Motion pose = start;
     const std::size_t count = std::min(samples, b_.fracture.places.size());
     for (int step = 0; step < steps; ++step) {
@@ -39,19 +39,19 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
         const double share = std::min(1.0, 1.5 * step / std::max(1, steps - 1));
         const double search_radius = search_radius_ * std::pow(last_search_radius_ / search_radius_, share);
         std::vector<PlanePoint> planes;
-        double all = 0;
+        double fracture_weight = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * b_.fracture.places.size() / (2 * count);
             const Vector3d p = pose(b_.fracture.places[k]), n = pose.rotation * b_.fracture.normals[k];
             const PointTree::Near near = fracture_.nearest(point_of(p), search_radius);
             if (near.index == no_index) continue;
             const Vector3d& normal = a_.fracture.normals[near.index];
-            const double against = -normal.dot(n);
-            if (against < min_facing) continue;
-            const double off = normal.dot(a_.fracture.places[near.index] - p),
-                         share_off = near.squared / (search_radius * search_radius);
-            planes.push_back({p, normal, off, (1 - share_off) * (1 - share_off)});
-            all += planes.back().weight;
+            const double facing = -normal.dot(n);
+            if (facing < min_facing) continue;
+            const double distance = normal.dot(a_.fracture.places[near.index] - p),
+                         ratio = near.squared / (search_radius * search_radius);
+            planes.push_back({p, normal, distance, (1 - ratio) * (1 - ratio)});
+            fracture_weight += planes.back().weight;
         }
         std::vector<PlanePoint> rims;
         double rim = 0;
@@ -62,18 +62,19 @@ Motion BreakAligner::align(const Motion& start, std::size_t samples, int steps, 
             rim += weight;
         });
         if (planes.size() + rims.size() < 6) break;
-        const double per_rim = rim > 0 ? edges_ * (all > 0 ? all : 1) / rim * 0.5 : 0;
+        const double per_rim = rim > 0 ? edges_ * (fracture_weight > 0 ? fracture_weight : 1) / rim * 0.5 : 0;
         for (PlanePoint& plane : rims) {
             plane.weight *= per_rim;
             planes.push_back(plane);
         }
         double total = 0;
         for (const PlanePoint& plane : planes) total += plane.weight;
-        const std::size_t held = hold > 0 ? std::min<std::size_t>(200, b_.intact.places.size()) : 0;
-        for (std::size_t i = 0; i < held; ++i) {
-            const std::size_t k = (2 * i + 1) * b_.intact.places.size() / (2 * held);
+        const std::size_t anchor_count = anchor_weight > 0 ? std::min<std::size_t>(200, b_.intact.places.size()) : 0;
+        for (std::size_t i = 0; i < anchor_count; ++i) {
+            const std::size_t k = (2 * i + 1) * b_.intact.places.size() / (2 * anchor_count);
             const Vector3d p = pose(b_.intact.places[k]), normal = start.rotation * b_.intact.normals[k];
-            planes.push_back({p, normal, normal.dot(start(b_.intact.places[k]) - p), hold * total / static_cast<double>(held)});
+            planes.push_back({p, normal, normal.dot(start(b_.intact.places[k]) - p),
+                              anchor_weight * total / static_cast<double>(anchor_count)});
         }
         const StepLength moved = step_onto_planes(planes, pose);
         if (!moved || (share >= 1 && *moved < 1e-7)) break;
@@ -85,14 +86,14 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
     PairCandidate result;
     result.pose = pose;
     const double smaller = std::min(a_.fracture.area, b_.fracture.area), shorter = std::min(a_.rim_length, b_.rim_length);
-    const auto over = [&](const SurfaceSamples& from, auto&& visit) {
+    const auto for_each_sample = [&](const SurfaceSamples& from, auto&& visit) {
         const std::size_t count = std::min(samples, from.places.size());
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * from.places.size() / (2 * count);
             visit(pose(from.places[k]), Vector3d(pose.rotation * from.normals[k]), from.area / static_cast<double>(count));
         }
     };
-    double touching = 0, square = 0, inside = 0;
+    double touching = 0, squared_sum = 0, inside = 0;
     const auto penetrates = [&](const Vector3d& p, double area) {
         if (!surface_) return;
         const SurfaceHit hit = surface_->closest(point_of(p));
@@ -102,22 +103,22 @@ PairCandidate BreakAligner::judge(const Motion& pose, std::size_t samples, doubl
         inside += area;
         result.depth = std::max(result.depth, hit.distance);
     };
-    over(b_.fracture, [&](const Vector3d& p, const Vector3d& n, double area) {
+    for_each_sample(b_.fracture, [&](const Vector3d& p, const Vector3d& n, double area) {
         const PointTree::Near near = fracture_.nearest(point_of(p), last_search_radius_);
         if (near.index != no_index) {
-            const double against = -a_.fracture.normals[near.index].dot(n);
-            if (against > min_facing) {
-                const double off = a_.fracture.normals[near.index].dot(p - a_.fracture.places[near.index]),
-                             share = off / (close * last_search_radius_);
-                touching += area * std::exp(-share * share / 2);
-                square += area * off * off;
+            const double facing = -a_.fracture.normals[near.index].dot(n);
+            if (facing > min_facing) {
+                const double offset = a_.fracture.normals[near.index].dot(p - a_.fracture.places[near.index]),
+                             ratio = offset / (close * last_search_radius_);
+                touching += area * std::exp(-ratio * ratio / 2);
+                squared_sum += area * offset * offset;
                 result.contact += area;
             }
         }
         penetrates(p, area);
     });
-    over(b_.intact, [&](const Vector3d& p, const Vector3d&, double area) { penetrates(p, area); });
-    result.residual = result.contact > 0 ? std::sqrt(square / result.contact) : 0;
+    for_each_sample(b_.intact, [&](const Vector3d& p, const Vector3d&, double area) { penetrates(p, area); });
+    result.residual = result.contact > 0 ? std::sqrt(squared_sum / result.contact) : 0;
     double rim = 0;
     for_each_continued(pose, last_search_radius_, [&](const Vector3d& p, const RimFrame& other, double) {
         // Only the offset across the side's plane counts, not along the rim.

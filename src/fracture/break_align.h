@@ -27,8 +27,8 @@ public:
           surface_(a.surface) {}
 
     /// ICP, point to plane, with at most `samples` points of the fracture; the search radius falls over `steps` steps. With
-    /// `hold`, a constraint of that weight keeps the intact surface where `start` has it, up to sliding along itself.
-    [[nodiscard]] Motion align(const Motion& start, std::size_t samples, int steps, double hold = 0) const;
+    /// `anchor_weight`, a constraint of that weight keeps the intact surface where `start` has it, up to sliding along itself.
+    [[nodiscard]] Motion align(const Motion& start, std::size_t samples, int steps, double anchor_weight = 0) const;
     /// Contact is weighted by its distance, with a standard deviation of `close` times the last search radius.
     [[nodiscard]] PairCandidate judge(const Motion& pose, std::size_t samples, double close) const;
 

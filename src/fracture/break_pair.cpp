@@ -10,6 +10,8 @@
 #include "ostraka/registration/pose_json.h"
 #include "rim_stretches.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,39 +26,40 @@ namespace {
 
 /// Indices of about `count` elements at equal steps.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
-    std::vector<std::size_t> list;
+    std::vector<std::size_t> indices;
     const std::size_t wanted = std::min(size, count);
-    for (std::size_t i = 0; i < wanted; ++i) list.push_back((2 * i + 1) * size / (2 * wanted));
-    return list;
+    for (std::size_t i = 0; i < wanted; ++i) indices.push_back((2 * i + 1) * size / (2 * wanted));
+    return indices;
 }
 
 /// Whether two poses are similar: small relative rotation, and a small displacement at the second fragment.
-bool alike(const Motion& a, const Motion& b, const Vector3d& middle, double shift, double angle) {
+bool similar_poses(const Motion& a, const Motion& b, const Vector3d& middle, double shift, double angle) {
     if ((a(middle) - b(middle)).norm() > shift) return false;
     return Eigen::AngleAxisd(a.rotation.transpose() * b.rotation).angle() < angle;
 }
 
-struct Scored {
+struct ScoredPose {
     Motion pose;
     double score;
 };
 
 /// The best poses that are pairwise dissimilar.
-std::vector<Scored> distinct(std::vector<Scored> list, std::size_t count, const Vector3d& middle, double shift, double angle) {
-    std::stable_sort(list.begin(), list.end(), [](const Scored& x, const Scored& y) { return x.score > y.score; });
-    std::vector<Scored> kept;
+std::vector<ScoredPose> distinct(std::vector<ScoredPose> poses, std::size_t count, const Vector3d& middle, double shift,
+                                 double angle) {
+    std::stable_sort(poses.begin(), poses.end(), [](const ScoredPose& x, const ScoredPose& y) { return x.score > y.score; });
+    std::vector<ScoredPose> kept;
     std::vector<Vector3d> middles;
     const double trace = 1 + 2 * std::cos(angle);  // of a rotation by the angle
-    for (const Scored& one : list) {
+    for (const ScoredPose& candidate : poses) {
         if (kept.size() == count) break;
-        const Vector3d here = one.pose(middle);
-        bool known = false;
-        for (std::size_t k = 0; k < kept.size() && !known; ++k)
-            known = (middles[k] - here).squaredNorm() <= shift * shift &&
-                    kept[k].pose.rotation.cwiseProduct(one.pose.rotation).sum() > trace;
-        if (known) continue;
-        kept.push_back(one);
-        middles.push_back(here);
+        const Vector3d position = candidate.pose(middle);
+        bool is_duplicate = false;
+        for (std::size_t k = 0; k < kept.size() && !is_duplicate; ++k)
+            is_duplicate = (middles[k] - position).squaredNorm() <= shift * shift &&
+                           kept[k].pose.rotation.cwiseProduct(candidate.pose.rotation).sum() > trace;
+        if (is_duplicate) continue;
+        kept.push_back(candidate);
+        middles.push_back(position);
     }
     return kept;
 }
@@ -67,37 +70,38 @@ public:
     QuickScore(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius)
         : on_(on),
           from_(from),
-          fractures_on_(on.side.fracture.places.size()),
-          of_(from.side),
+          fracture_count_on_(on.side.fracture.places.size()),
+          side_(from.side),
           search_radius_(search_radius),
-          fractures_(thinned(of_.fracture.places.size(), 160)),
-          others_(thinned(of_.intact.places.size(), 120)),
-          each_fracture_(fractures_.empty() ? 0 : of_.fracture.area / static_cast<double>(fractures_.size())),
-          each_other_(others_.empty() ? 0 : of_.intact.area / static_cast<double>(others_.size())) {}
+          fracture_samples_(thinned(side_.fracture.places.size(), 160)),
+          intact_samples_(thinned(side_.intact.places.size(), 120)),
+          fracture_sample_area_(fracture_samples_.empty() ? 0
+                                                          : side_.fracture.area / static_cast<double>(fracture_samples_.size())),
+          intact_sample_area_(intact_samples_.empty() ? 0 : side_.intact.area / static_cast<double>(intact_samples_.size())) {}
 
     [[nodiscard]] double operator()(const Motion& pose) const {
-        const auto [touching, inside] = look_at(pose);
+        const auto [touching, inside] = touching_and_inside(pose);
         return touching - inside;
     }
     /// A few ICP steps with few points while the search radius falls to `close`, and the score of the result, where contact is
     /// measured within `close` across the surface.
-    [[nodiscard]] Scored settled(Motion pose, const PointTree& frames, double close) const {
+    [[nodiscard]] ScoredPose refined_coarsely(Motion pose, const PointTree& frames, double close) const {
         constexpr int steps = 6;
         for (int step = 0; step < steps; ++step) {
             const double radius = search_radius_ * std::pow(close / search_radius_, static_cast<double>(step) / (steps - 1));
             std::vector<PlanePoint> planes;
-            for (const std::size_t i : fractures_) {
-                const Vector3d p = pose(of_.fracture.places[i]);
+            for (const std::size_t i : fracture_samples_) {
+                const Vector3d p = pose(side_.fracture.places[i]);
                 const Index k = on_.grid->near(p);
-                if (k == no_index || k >= fractures_on_) continue;
-                const double off = on_.normals[k].dot(on_.places[k] - p), share = off * off / (radius * radius);
-                if (share >= 1 || (on_.places[k] - p).squaredNorm() > search_radius_ * search_radius_ ||
-                    -on_.normals[k].dot(pose.rotation * of_.fracture.normals[i]) < 0.3)
+                if (k == no_index || k >= fracture_count_on_) continue;
+                const double distance = on_.normals[k].dot(on_.places[k] - p), ratio = distance * distance / (radius * radius);
+                if (ratio >= 1 || (on_.places[k] - p).squaredNorm() > search_radius_ * search_radius_ ||
+                    -on_.normals[k].dot(pose.rotation * side_.fracture.normals[i]) < 0.3)
                     continue;
-                planes.push_back({p, on_.normals[k], off, (1 - share) * (1 - share)});
+                planes.push_back({p, on_.normals[k], distance, (1 - ratio) * (1 - ratio)});
             }
-            for (std::size_t i = 0; i < of_.frames.size(); i += 3) {
-                const RimFrame& frame = of_.frames[i];
+            for (std::size_t i = 0; i < side_.frames.size(); i += 3) {
+                const RimFrame& frame = side_.frames[i];
                 const Vector3d p = pose(frame.place);
                 const PointTree::Near near = frames.nearest(point_of(p), 1.5 * radius);
                 if (near.index == no_index) continue;
@@ -112,86 +116,89 @@ public:
             if (planes.size() < 6 || !step_onto_planes(planes, pose)) break;
         }
         double touching = 0;
-        for (const std::size_t i : fractures_) {
-            const Vector3d p = pose(of_.fracture.places[i]);
+        for (const std::size_t i : fracture_samples_) {
+            const Vector3d p = pose(side_.fracture.places[i]);
             const Index k = on_.grid->near(p);
-            if (k == no_index || k >= fractures_on_) continue;
-            const double off = on_.normals[k].dot(p - on_.places[k]) / close,
-                         against = -on_.normals[k].dot(pose.rotation * of_.fracture.normals[i]);
-            if (std::abs(off) < 1 && against > 0.3 && (on_.places[k] - p).squaredNorm() < search_radius_ * search_radius_)
-                touching += each_fracture_ * (1 - off * off) * against;
+            if (k == no_index || k >= fracture_count_on_) continue;
+            const double ratio = on_.normals[k].dot(p - on_.places[k]) / close,
+                         facing = -on_.normals[k].dot(pose.rotation * side_.fracture.normals[i]);
+            if (std::abs(ratio) < 1 && facing > 0.3 && (on_.places[k] - p).squaredNorm() < search_radius_ * search_radius_)
+                touching += fracture_sample_area_ * (1 - ratio * ratio) * facing;
         }
-        const double score = touching - look_at(pose).second;
+        const double score = touching - touching_and_inside(pose).second;
         return {pose, score > 0 ? score * shares_axis(pose) : score};
     }
 
 private:
-    [[nodiscard]] std::pair<double, double> look_at(const Motion& pose) const {
+    [[nodiscard]] std::pair<double, double> touching_and_inside(const Motion& pose) const {
         double touching = 0, inside = 0;
-        const auto look = [&](const Vector3d& place, const Vector3d& normal, double area, bool fracture) {
+        const auto add_sample = [&](const Vector3d& place, const Vector3d& normal, double area, bool fracture) {
             const Vector3d p = pose(place);
             const Index i = on_.grid->near(p);
             if (i == no_index) return;
-            const Vector3d off = p - on_.places[i];
-            const double above = on_.normals[i].dot(off), squared = off.squaredNorm() / (search_radius_ * search_radius_);
-            if (fracture && i < fractures_on_ && squared < 1) {
-                const double against = -on_.normals[i].dot(pose.rotation * normal);
-                if (against > 0.3) touching += area * (1 - squared) * against;
+            const Vector3d offset = p - on_.places[i];
+            const double above = on_.normals[i].dot(offset), squared = offset.squaredNorm() / (search_radius_ * search_radius_);
+            if (fracture && i < fracture_count_on_ && squared < 1) {
+                const double facing = -on_.normals[i].dot(pose.rotation * normal);
+                if (facing > 0.3) touching += area * (1 - squared) * facing;
             }
             // Far from its nearest sample a point counts as inside only if it lies straight below it, as the normals are
             // inexact.
-            if (above < -0.5 * search_radius_ && above < -0.9 * off.norm())
+            if (above < -0.5 * search_radius_ && above < -0.9 * offset.norm())
                 inside += area * std::min(1.0, -above / search_radius_ - 0.5);
         };
-        for (const std::size_t i : fractures_) look(of_.fracture.places[i], of_.fracture.normals[i], each_fracture_, true);
-        for (const std::size_t i : others_) look(of_.intact.places[i], of_.intact.normals[i], each_other_, false);
+        for (const std::size_t i : fracture_samples_)
+            add_sample(side_.fracture.places[i], side_.fracture.normals[i], fracture_sample_area_, true);
+        for (const std::size_t i : intact_samples_)
+            add_sample(side_.intact.places[i], side_.intact.normals[i], intact_sample_area_, false);
         return {touching, inside};
     }
 
     /// 1 if the normals of both fragments meet a common axis as well as each fragment's its own; less otherwise.
     [[nodiscard]] double shares_axis(const Motion& pose) const {
-        const double off = off_common_axis(on_, from_, pose) / std::min(on_.size, from_.size);
-        return std::sqrt(0.02 / (0.02 + off));
+        const double deviation = off_common_axis(on_, from_, pose) / std::min(on_.size, from_.size);
+        return std::sqrt(0.02 / (0.02 + deviation));
     }
 
     const PreparedBreak::Parts &on_, &from_;
-    std::size_t fractures_on_;  ///< number of fracture samples, the first of the places
-    const BreakSide& of_;
+    std::size_t fracture_count_on_;  ///< number of fracture samples, the first of the places
+    const BreakSide& side_;
     double search_radius_;
-    std::vector<std::size_t> fractures_, others_;
-    double each_fracture_, each_other_;
+    std::vector<std::size_t> fracture_samples_, intact_samples_;
+    double fracture_sample_area_, intact_sample_area_;
 };
 
 /// The best of all poses that map a frame onto a frame; `tried` counts them.
-std::vector<Scored> best_of_frames(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius,
-                                   std::size_t count, std::size_t& tried) {
+std::vector<ScoredPose> best_frame_poses(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, double search_radius,
+                                         std::size_t count, std::size_t& tried) {
     const QuickScore quick_score(on, from, search_radius);
     const BreakSide &a = on.side, &b = from.side;
     const std::size_t columns = b.frames.size();
     std::vector<double> scores(a.frames.size() * columns);
-    const double none = -std::numeric_limits<double>::infinity();
+    const double not_tried = -std::numeric_limits<double>::infinity();
     parallel_for(scores.size(), [&](std::size_t k) {
         const RimFrame &f = a.frames[k / columns], &g = b.frames[k % columns];
-        scores[k] = f.facet == g.facet ? quick_score(g.onto(f)) : none;
+        scores[k] = f.facet == g.facet ? quick_score(g.onto(f)) : not_tried;
     });
-    tried = static_cast<std::size_t>(std::count_if(scores.begin(), scores.end(), [&](double s) { return s > none; }));
+    tried = static_cast<std::size_t>(std::count_if(scores.begin(), scores.end(), [&](double s) { return s > not_tried; }));
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < scores.size(); ++k)
         if (scores[k] > 0) order.push_back(k);
     std::sort(order.begin(), order.end(),
               [&](std::size_t x, std::size_t y) { return std::pair(-scores[x], x) < std::pair(-scores[y], y); });
     if (order.size() > count) order.resize(count);
-    std::vector<Scored> poses;
+    std::vector<ScoredPose> poses;
     for (const std::size_t k : order) poses.push_back({b.frames[k % columns].onto(a.frames[k / columns]), scores[k]});
     return poses;
 }
 
 /// Poses that register stretches of the rims, most informative first.
-std::vector<Scored> best_of_stretches(const PreparedBreak::Parts& on, const BreakSide& b, double tolerance, std::size_t count) {
+std::vector<ScoredPose> best_stretch_poses(const PreparedBreak::Parts& on, const BreakSide& b, double tolerance,
+                                           std::size_t count) {
     const double shortest = 0.05 * std::min(on.side.rim_length, b.rim_length);
-    std::vector<Scored> poses;
+    std::vector<ScoredPose> poses;
     for (const StretchFit& fit : matching_stretches(on.side.loops, b.loops, shortest, tolerance, count))
-        poses.push_back({fit.pose, fit.told});
+        poses.push_back({fit.pose, fit.information});
     return poses;
 }
 
@@ -205,8 +212,8 @@ void decide(BreakPair& result, const PairOptions& options) {
     result.confidence = join_probability(
         best, result.candidates.size() > 1 ? best - result.candidates[1].log_odds : std::numeric_limits<double>::infinity());
     if (result.confidence < options.min_confidence)
-        result.undecided = "as much is seen of fragments that do not belong together, or of another pose: " +
-                           weakest_evidence(result.candidates.front().evidence);
+        result.undecided = fmt::format("the evidence is as strong for unrelated fragments or for another pose: {}",
+                                       weakest_evidence(result.candidates.front().evidence));
 }
 
 }  // namespace
@@ -217,7 +224,7 @@ PreparedBreak::PreparedBreak(const Fragment& fragment, const PairOptions& option
     parts.mesh = fragment.mesh;
     parts.name = fragment.name;
     parts.size = fragment_size(parts.mesh);
-    if (!(parts.size > 0)) fail_input("fragment " + fragment.name, "has no area", "look at its faces");
+    if (!(parts.size > 0)) fail_input("fragment " + fragment.name, "has no area", "check its faces");
     const double search_radius = options.search_radius * parts.size;
     parts.side = BreakSide(fragment, 0.75 * search_radius, options.frames, options.samples);
     parts.width = 2 * parts.side.fracture.area / parts.side.rim_length;
@@ -256,42 +263,43 @@ double PreparedBreak::relief() const { return parts_->relief; }
 std::size_t PreparedBreak::fracture_faces() const { return parts_->faces; }
 
 double join_scale(const PreparedBreak& a, const PreparedBreak& b) {
-    constexpr double by_noise = 240;  // the tolerance, a fortieth, is six times the noise
+    constexpr double noise_factor = 240;  // the tolerance, a fortieth, is six times the noise
     const double smaller = std::min(a.size(), b.size()), noise = std::hypot(a.parts().noise, b.parts().noise);
-    return std::min(smaller, std::max(std::min(6 * a.width(), 6 * b.width()), by_noise * noise));
+    return std::min(smaller, std::max(std::min(6 * a.width(), 6 * b.width()), noise_factor * noise));
 }
 
 namespace {
 
 /// An order that depends neither on the arguments' order nor on the poses.
 bool goes_first(const PreparedBreak& a, const PreparedBreak& b) {
-    const auto key = [](const PreparedBreak& one) {
-        return std::tuple(one.fracture_area(), one.size(), one.rim_length(), one.name());
+    const auto key = [](const PreparedBreak& fragment) {
+        return std::tuple(fragment.fracture_area(), fragment.size(), fragment.rim_length(), fragment.name());
     };
     return key(a) > key(b);
 }
 
 /// Candidates ordered by their evidence from at most `samples` points; `aligned` refines a pose before it is measured.
 template <class Align>
-std::vector<PairCandidate> seen_candidates(const PreparedBreak& a, const PreparedBreak& b, const std::vector<Scored>& poses,
-                                           double tolerance, std::size_t samples, Align&& aligned) {
-    std::vector<PairCandidate> list(poses.size());
+std::vector<PairCandidate> measured_candidates(const PreparedBreak& a, const PreparedBreak& b,
+                                               const std::vector<ScoredPose>& poses, double tolerance, std::size_t samples,
+                                               Align&& aligned) {
+    std::vector<PairCandidate> candidates(poses.size());
     parallel_for(
         poses.size(),
         [&](std::size_t i) {
-            list[i].pose = aligned(poses[i].pose);
-            list[i].evidence = measure_join(a, b, list[i].pose, tolerance, samples);
-            list[i].log_odds = join_log_odds(list[i].evidence);
+            candidates[i].pose = aligned(poses[i].pose);
+            candidates[i].evidence = measure_join(a, b, candidates[i].pose, tolerance, samples);
+            candidates[i].log_odds = join_log_odds(candidates[i].evidence);
         },
         1);
-    std::stable_sort(list.begin(), list.end(),
+    std::stable_sort(candidates.begin(), candidates.end(),
                      [](const PairCandidate& x, const PairCandidate& y) { return x.log_odds > y.log_odds; });
-    return list;
+    return candidates;
 }
 
-std::vector<Scored> scored(const std::vector<PairCandidate>& list) {
-    std::vector<Scored> result;
-    for (const PairCandidate& one : list) result.push_back({one.pose, one.log_odds});
+std::vector<ScoredPose> scored(const std::vector<PairCandidate>& candidates) {
+    std::vector<ScoredPose> result;
+    for (const PairCandidate& candidate : candidates) result.push_back({candidate.pose, candidate.log_odds});
     return result;
 }
 
@@ -307,54 +315,59 @@ BreakPair search(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
     for (const Vector3d& p : second.side.fracture.places) middle += p / static_cast<double>(second.side.fracture.places.size());
     const auto starts = static_cast<std::size_t>(options.starts), samples = static_cast<std::size_t>(options.samples),
                refined = static_cast<std::size_t>(options.refined);
-    const auto unlike = [&](std::vector<Scored> list, std::size_t count, double degrees) {
-        return distinct(std::move(list), count, middle, 0.5 * search_radius, degrees * pi / 180);
+    const auto distinct_poses = [&](std::vector<ScoredPose> candidates, std::size_t count, double degrees) {
+        return distinct(std::move(candidates), count, middle, 0.5 * search_radius, degrees * pi / 180);
     };
     // Briefly refines the best poses of each kind and keeps the best of them.
-    std::vector<Scored> by_stretches = unlike(best_of_stretches(first, second.side, tolerance, 20 * starts), starts, 6),
-                        by_frames =
-                            unlike(best_of_frames(first, second, search_radius, 40 * starts, result.tried), 6 * starts, 6);
-    std::vector<Scored> settled = by_stretches;
-    settled.insert(settled.end(), by_frames.begin(), by_frames.end());
+    std::vector<ScoredPose> by_stretches =
+                                distinct_poses(best_stretch_poses(first, second.side, tolerance, 20 * starts), starts, 6),
+                            by_frames = distinct_poses(best_frame_poses(first, second, search_radius, 40 * starts, result.tried),
+                                                       6 * starts, 6);
+    std::vector<ScoredPose> coarse = by_stretches;
+    coarse.insert(coarse.end(), by_frames.begin(), by_frames.end());
     const QuickScore quick_score(first, second, search_radius);
     parallel_for(
-        settled.size(),
+        coarse.size(),
         [&](std::size_t k) {
-            settled[k] = quick_score.settled(settled[k].pose, first.frames, std::max(0.4 * search_radius, 1.5 * tolerance));
+            coarse[k] =
+                quick_score.refined_coarsely(coarse[k].pose, first.frames, std::max(0.4 * search_radius, 1.5 * tolerance));
         },
         8);
-    settled = unlike(std::move(settled), starts + starts / 2, 5);
-    std::vector<Scored> poses, others;
-    for (std::size_t k = 0; k < settled.size(); ++k) (k < starts / 2 ? poses : others).push_back(settled[k]);
+    coarse = distinct_poses(std::move(coarse), starts + starts / 2, 5);
+    std::vector<ScoredPose> poses, reserve;
+    for (std::size_t k = 0; k < coarse.size(); ++k) (k < starts / 2 ? poses : reserve).push_back(coarse[k]);
 
     // Refines the best: quickly, better, then to the end, each time ranked by their evidence.
     const BreakAligner::Target target{first.side, first.fracture, first.frames, first.surface.get()};
     const BreakAligner rough(target, second.side, search_radius, tolerance, options.edges);
-    constexpr double near = 4;  // in tolerances
-    const BreakAligner fine(target, second.side, std::min(search_radius, near * tolerance), tolerance, options.edges);
-    const auto few = std::min<std::size_t>(300, samples), some = std::min<std::size_t>(800, samples);
-    const auto quickly = [&](const Motion& pose) { return rough.align(pose, few, 10); };
-    std::vector<Scored> quick = scored(seen_candidates(a, b, poses, tolerance, few, quickly));
+    constexpr double fine_radius = 4;  // in tolerances
+    const BreakAligner fine(target, second.side, std::min(search_radius, fine_radius * tolerance), tolerance, options.edges);
+    const auto few_samples = std::min<std::size_t>(300, samples), more_samples = std::min<std::size_t>(800, samples);
+    const auto align_quickly = [&](const Motion& pose) { return rough.align(pose, few_samples, 10); };
+    std::vector<ScoredPose> ranked = scored(measured_candidates(a, b, poses, tolerance, few_samples, align_quickly));
     // If the best of them are hopeless, so are the others; one is still reported, to give the reason.
-    constexpr double least = -7;  // log odds
-    const bool hopeless = quick.empty() || quick.front().score < least;
+    constexpr double min_log_odds = -7;  // log odds
+    const bool hopeless = ranked.empty() || ranked.front().score < min_log_odds;
     if (!hopeless) {
-        const std::vector<Scored> more = scored(seen_candidates(a, b, others, tolerance, few, quickly));
-        quick.insert(quick.end(), more.begin(), more.end());
-        quick = scored(seen_candidates(a, b, unlike(quick, refined, 5), tolerance, some,
-                                       [&](const Motion& pose) { return rough.align(pose, some, 20); }));
+        const std::vector<ScoredPose> ranked_reserve =
+            scored(measured_candidates(a, b, reserve, tolerance, few_samples, align_quickly));
+        ranked.insert(ranked.end(), ranked_reserve.begin(), ranked_reserve.end());
+        ranked = scored(measured_candidates(a, b, distinct_poses(ranked, refined, 5), tolerance, more_samples,
+                                            [&](const Motion& pose) { return rough.align(pose, more_samples, 20); }));
     }
-    const std::size_t last = hopeless ? 1 : std::max<std::size_t>(static_cast<std::size_t>(options.candidates), refined / 3);
-    for (PairCandidate& one : seen_candidates(a, b, unlike(quick, last, 5), tolerance, samples,
-                                              [&](const Motion& pose) { return fine.align(pose, samples, 30); })) {
+    const std::size_t final_count =
+        hopeless ? 1 : std::max<std::size_t>(static_cast<std::size_t>(options.candidates), refined / 3);
+    for (PairCandidate& candidate : measured_candidates(a, b, distinct_poses(ranked, final_count, 5), tolerance, samples,
+                                                        [&](const Motion& pose) { return fine.align(pose, samples, 30); })) {
         if (result.candidates.size() == static_cast<std::size_t>(options.candidates)) break;
-        if (!(one.evidence.area > 0) ||
-            std::any_of(result.candidates.begin(), result.candidates.end(),
-                        [&](const PairCandidate& k) { return alike(k.pose, one.pose, middle, search_radius, 10 * pi / 180); }))
+        if (!(candidate.evidence.area > 0) ||
+            std::any_of(result.candidates.begin(), result.candidates.end(), [&](const PairCandidate& accepted) {
+                return similar_poses(accepted.pose, candidate.pose, middle, search_radius, 10 * pi / 180);
+            }))
             continue;
-        PairCandidate judged = fine.judge(one.pose, samples, 0.25);
-        judged.evidence = one.evidence;
-        judged.log_odds = one.log_odds;
+        PairCandidate judged = fine.judge(candidate.pose, samples, 0.25);
+        judged.evidence = candidate.evidence;
+        judged.log_odds = candidate.log_odds;
         result.candidates.push_back(std::move(judged));
     }
     decide(result, options);
@@ -368,7 +381,7 @@ BreakPair pair_breaks(const PreparedBreak& a, const PreparedBreak& b, const Pair
     if (!goes_first(b, a)) return search(a, b, options);
     BreakPair result = search(b, a, options);
     std::swap(result.fracture_a, result.fracture_b);
-    for (PairCandidate& one : result.candidates) one.pose = one.pose.inverse();
+    for (PairCandidate& candidate : result.candidates) candidate.pose = candidate.pose.inverse();
     return result;
 }
 
@@ -389,8 +402,8 @@ double quick_fit(const PreparedBreak& a, const PreparedBreak& b, const PairOptio
             }
         },
         4);
-    const double most = best.empty() ? 0 : *std::max_element(best.begin(), best.end());
-    return most / std::min(first.side.fracture.area, second.side.fracture.area);
+    const double max_score = best.empty() ? 0 : *std::max_element(best.begin(), best.end());
+    return max_score / std::min(first.side.fracture.area, second.side.fracture.area);
 }
 
 BreakPair pair_breaks(const Fragment& a, const Fragment& b, const PairOptions& options) {
@@ -401,13 +414,14 @@ JsonValue pair_to_json(const BreakPair& pair, const std::string& a, const std::s
     JsonValue result = json_object(allocator, "format", "ostraka-pair", "version", 1, "first", a, "second", b, "verdict",
                                    pair.decided() ? "together" : "undecided");
     if (!pair.decided()) add_members(result, allocator, "because", pair.undecided);
-    const auto of_candidate = [&](const PairCandidate& one) {
-        return json_object(allocator, "pose", pose_to_json(one.pose, allocator), "score", one.score, "contact", one.contact,
-                           "rim", one.rim, "residual", one.residual, "penetration", one.penetration, "depth", one.depth);
+    const auto candidate_to_json = [&](const PairCandidate& candidate) {
+        return json_object(allocator, "pose", pose_to_json(candidate.pose, allocator), "score", candidate.score, "contact",
+                           candidate.contact, "rim", candidate.rim, "residual", candidate.residual, "penetration",
+                           candidate.penetration, "depth", candidate.depth);
     };
     add_members(result, allocator, "confidence", pair.confidence, "size", pair.size, "fractureOfFirst", pair.fracture_a,
                 "fractureOfSecond", pair.fracture_b, "tried", pair.tried, "candidates",
-                json_list(pair.candidates, allocator, of_candidate));
+                json_list(pair.candidates, allocator, candidate_to_json));
     return result;
 }
 

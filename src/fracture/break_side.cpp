@@ -59,37 +59,37 @@ Motion RimFrame::onto(const RimFrame& other) const {
 
 namespace {
 
-/// The loop with positions and sides averaged over a length of about `reach`, so that the zigzag of the faces does not lengthen
+/// The loop with positions and sides averaged over a length of about `radius`, so that the zigzag of the faces does not lengthen
 /// it.
-RimLoop smoothed(const RimLoop& loop, double reach) {
+RimLoop smoothed(const RimLoop& loop, double radius) {
     const std::size_t n = loop.places.size();
     RimLoop result = loop;
     const auto step = [&](std::size_t k) { return (loop.places[(k + 1) % n] - loop.places[k]).norm(); };
     for (std::size_t k = 0; k < n; ++k) {
         Vector3d place = Vector3d::Zero(), side = Vector3d::Zero();
-        double all = 0;
-        const auto add = [&](std::size_t i, double far) {
-            const double weight = std::pow(1 - far / reach, 2) * 0.5 * (step(i) + step((i + n - 1) % n));
+        double total = 0;
+        const auto add = [&](std::size_t i, double distance) {
+            const double weight = std::pow(1 - distance / radius, 2) * 0.5 * (step(i) + step((i + n - 1) % n));
             place += weight * loop.places[i];
             side += weight * loop.sides[i];
-            all += weight;
+            total += weight;
         };
         add(k, 0);
-        double far = 0;
+        double distance = 0;
         for (std::size_t i = 1; i < n; ++i) {
             if (!loop.closed && k + i >= n) break;
-            far += step((k + i - 1) % n);
-            if (far >= reach) break;
-            add((k + i) % n, far);
+            distance += step((k + i - 1) % n);
+            if (distance >= radius) break;
+            add((k + i) % n, distance);
         }
-        far = 0;
+        distance = 0;
         for (std::size_t i = 1; i < n; ++i) {
             if (!loop.closed && i > k) break;
-            far += step((k + n - i) % n);
-            if (far >= reach) break;
-            add((k + n - i) % n, far);
+            distance += step((k + n - i) % n);
+            if (distance >= radius) break;
+            add((k + n - i) % n, distance);
         }
-        if (all > 0) result.places[k] = place / all;
+        if (total > 0) result.places[k] = place / total;
         if (side.norm() > 0) result.sides[k] = side.normalized();
     }
     return result;
@@ -97,13 +97,13 @@ RimLoop smoothed(const RimLoop& loop, double reach) {
 
 /// The rim as ordered loops: edges between fracture and intact faces, followed around their ends.
 std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken, const std::vector<Vector>& normals,
-                              const std::vector<Facet>& facets, double reach) {
+                              const std::vector<Facet>& facets, double smoothing_radius) {
     const auto on_rim = [&](Halfedge h) {
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
         return f != Mesh::null_face() && g != Mesh::null_face() && broken[f] && !broken[g];
     };
     // The next or previous edge of the rim: around the shared end, through fracture faces.
-    const auto beside = [&](Halfedge h, bool after) {
+    const auto adjacent_rim_edge = [&](Halfedge h, bool after) {
         const auto step = [&](Halfedge g) { return after ? mesh.next(g) : mesh.prev(g); };
         Halfedge g = step(h);
         while (!on_rim(g)) {
@@ -113,13 +113,13 @@ std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken,
         }
         return g;
     };
-    std::vector<bool> seen(mesh.num_halfedges(), false);
+    std::vector<bool> visited(mesh.num_halfedges(), false);
     std::vector<RimLoop> loops;
     for (const Halfedge start : mesh.halfedges()) {
-        if (seen[start] || !on_rim(start)) continue;
+        if (visited[start] || !on_rim(start)) continue;
         RimLoop loop;
         Halfedge first = start;
-        for (Halfedge h = beside(start, false); h != start; h = beside(h, false)) {
+        for (Halfedge h = adjacent_rim_edge(start, false); h != start; h = adjacent_rim_edge(h, false)) {
             if (h == Mesh::null_halfedge()) {
                 loop.closed = false;
                 break;
@@ -127,14 +127,14 @@ std::vector<RimLoop> loops_of(const Mesh& mesh, const std::vector<bool>& broken,
             first = h;
         }
         if (loop.closed) first = start;
-        for (Halfedge h = first; h != Mesh::null_halfedge() && !seen[h]; h = beside(h, true)) {
-            seen[h] = true;
+        for (Halfedge h = first; h != Mesh::null_halfedge() && !visited[h]; h = adjacent_rim_edge(h, true)) {
+            visited[h] = true;
             const Face side = mesh.face(mesh.opposite(h));
             loop.places.push_back(0.5 * (eigen(mesh.point(mesh.source(h))) + eigen(mesh.point(mesh.target(h)))));
             loop.sides.push_back(eigen(normals[side]));
             loop.facets.push_back(facets[side]);
         }
-        if (loop.places.size() >= 3) loops.push_back(smoothed(loop, reach));
+        if (loop.places.size() >= 3) loops.push_back(smoothed(loop, smoothing_radius));
     }
     return loops;
 }
@@ -147,15 +147,15 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
     const Mesh& mesh = fragment.mesh;
     const std::string where = "fragment " + fragment.name;
     const std::vector<Vector> normals = filtered_normals(mesh, 0.01 * fragment_size(mesh));
-    std::vector<bool> whole = not_broken(fragment.facets);
-    whole.resize(mesh.number_of_faces(), true);
-    std::vector<bool> broken = whole;
-    broken.flip();
-    fracture = sample_faces(mesh, normals, broken, sample_count);
+    std::vector<bool> is_intact = not_broken(fragment.facets);
+    is_intact.resize(mesh.number_of_faces(), true);
+    std::vector<bool> is_fracture = is_intact;
+    is_fracture.flip();
+    fracture = sample_faces(mesh, normals, is_fracture, sample_count);
     if (fracture.places.empty())
-        fail_input(where, "has no fracture that could be laid against another one",
-                   "annotate a region \"fracture\", or look for it with --facets auto");
-    intact = sample_faces(mesh, normals, whole, sample_count);
+        fail_input(where, "has no fracture surface to match with another one",
+                   "annotate a region \"fracture\", or detect it with --facets auto");
+    intact = sample_faces(mesh, normals, is_intact, sample_count);
 
     std::vector<Point> centroids;
     for (const Face face : mesh.faces()) centroids.push_back(centroid(mesh, face));
@@ -169,17 +169,18 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
     for (const Edge e : mesh.edges()) {
         const Halfedge h = mesh.halfedge(e);
         Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
-        if (f == Mesh::null_face() || g == Mesh::null_face() || broken[f] == broken[g]) continue;
-        if (broken[g]) std::swap(f, g);
+        if (f == Mesh::null_face() || g == Mesh::null_face() || is_fracture[f] == is_fracture[g]) continue;
+        if (is_fracture[g]) std::swap(f, g);
         const double length = std::sqrt(CGAL::squared_distance(mesh.point(mesh.vertex(e, 0)), mesh.point(mesh.vertex(e, 1))));
         rim.push_back({e, f, g, length});
         rim_length += length;
     }
     // On a wide fracture the radius of a frame grows, so that neither relief nor rounded edges tilt it.
-    const double broad = rim_length > 0 ? 2 * fracture.area / rim_length : 0, size = fragment_size(mesh),
-                 about = std::max(radius, std::min(0.25 * broad, 0.1 * size));
+    const double fracture_width = rim_length > 0 ? 2 * fracture.area / rim_length : 0, size = fragment_size(mesh),
+                 frame_radius = std::max(radius, std::min(0.25 * fracture_width, 0.1 * size));
     if (rim.empty())
-        fail_input(where, "has a fracture without a rim: all of it is broken", "annotate what of it is \"outer\" surface");
+        fail_input(where, "has a fracture surface without a rim: it covers the whole fragment",
+                   "annotate its intact surface as \"outer\"");
     std::vector<RimEdge> places;
     double sum = 0, next = 0.5 * rim_length / frame_count;
     for (const RimEdge& edge : rim) {
@@ -188,29 +189,29 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
         places.push_back(edge);
         while (next < sum) next += rim_length / frame_count;
     }
-    std::vector<RimFrame> found(places.size());
-    std::vector<char> sound(places.size(), 0);
+    std::vector<RimFrame> candidate_frames(places.size());
+    std::vector<char> valid(places.size(), 0);
     parallel_for(
         places.size(),
         [&](std::size_t i) {
             const RimEdge& edge = places[i];
-            RimFrame& frame = found[i];
+            RimFrame& frame = candidate_frames[i];
             frame.facet = fragment.facets[edge.side];
             frame.place = 0.5 * (eigen(mesh.point(mesh.vertex(edge.edge, 0))) + eigen(mesh.point(mesh.vertex(edge.edge, 1))));
             Vector3d side = Vector3d::Zero(), across = Vector3d::Zero(), beside = Vector3d::Zero();
             double area = 0;
-            std::vector<Index> near;
-            tree.within(point_of(frame.place), about, near);
-            near.push_back(edge.side);
-            near.push_back(edge.broken);
-            for (const Index f : near) {
+            std::vector<Index> near_faces;
+            tree.within(point_of(frame.place), frame_radius, near_faces);
+            near_faces.push_back(edge.side);
+            near_faces.push_back(edge.broken);
+            for (const Index f : near_faces) {
                 // Ignores the other side of a thin wall.
                 if (fragment.facets[f] == frame.facet && normals[f] * normals[edge.side] > 0) {
-                    const double here = face_area(mesh, Face(f));
-                    side += here * eigen(normals[f]);
-                    beside += here * eigen(centroids[f]);
-                    area += here;
-                } else if (broken[f] && normals[f] * normals[edge.broken] > 0)
+                    const double weight = face_area(mesh, Face(f));
+                    side += weight * eigen(normals[f]);
+                    beside += weight * eigen(centroids[f]);
+                    area += weight;
+                } else if (is_fracture[f] && normals[f] * normals[edge.broken] > 0)
                     across += face_area(mesh, Face(f)) * eigen(normals[f]);
             }
             if (!(side.norm() > 0)) return;
@@ -219,12 +220,12 @@ BreakSide::BreakSide(const Fragment& fragment, double radius, int frame_count, i
             across -= across.dot(frame.side) * frame.side;
             if (!(across.norm() > 0)) return;
             frame.fracture = across.normalized();
-            sound[i] = 1;
+            valid[i] = 1;
         },
         16);
-    for (std::size_t i = 0; i < found.size(); ++i)
-        if (sound[i] != 0) frames.push_back(found[i]);
-    loops = loops_of(mesh, broken, normals, fragment.facets, 0.4 * radius);
+    for (std::size_t i = 0; i < candidate_frames.size(); ++i)
+        if (valid[i] != 0) frames.push_back(candidate_frames[i]);
+    loops = loops_of(mesh, is_fracture, normals, fragment.facets, 0.4 * radius);
     if (frames.empty()) fail_input(where, "has a rim whose surfaces have no normals", "repair it: run 'ostraka mesh repair'");
 }
 
@@ -259,12 +260,12 @@ SampleGrid::SampleGrid(const std::vector<Vector3d>& places, double margin, int c
     for (std::size_t k = 0; k < 3; ++k) count_[k] = static_cast<std::size_t>(extent[static_cast<Eigen::Index>(k)] / width_) + 1;
     nearest_.resize(count_[0] * count_[1] * count_[2]);
     const PointTree tree(points_of(places));
-    const double far = 4 * extent.sum();
+    const double max_distance = 4 * extent.sum();
     parallel_for(
         count_[1] * count_[2],
         [&](std::size_t row) {
             // The nearest sample of the previous cell bounds the distance for this cell.
-            double bound = far;
+            double bound = max_distance;
             for (std::size_t x = 0; x < count_[0]; ++x) {
                 const Vector3d middle =
                     low_ + width_ * Vector3d(static_cast<double>(x) + 0.5, static_cast<double>(row % count_[1]) + 0.5,

@@ -15,12 +15,12 @@ namespace ostraka {
 class FeatureColumns {
 public:
     explicit FeatureColumns(std::size_t rows) : rows_(rows) {}
-    template <class Of>
-    void add(const std::string& name, Of&& of) {
+    template <class Value>
+    void add(const std::string& name, Value&& value_of) {
         names.push_back(name);
         auto& column = columns_.emplace_back(rows_);
         for (std::size_t r = 0; r < rows_; ++r) {
-            const double value = of(r);
+            const double value = value_of(r);
             column[r] = static_cast<float>(std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 1e6);
         }
     }

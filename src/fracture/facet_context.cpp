@@ -48,44 +48,45 @@ private:
         };
         std::size_t count = 0;
         for (const std::size_t p : part) count = std::max(count, p + 1);
-        std::vector<Part> list(count);
+        std::vector<Part> summaries(count);
         for (std::size_t p = 0; p < part.size(); ++p) {
-            Part& one = list[part[p]];
-            one.area += graph_.areas[p];
-            one.likely += graph_.areas[p] * likely_[p];
-            one.spread += graph_.areas[p] * likely_[p] * likely_[p];
+            Part& summary = summaries[part[p]];
+            summary.area += graph_.areas[p];
+            summary.likely += graph_.areas[p] * likely_[p];
+            summary.spread += graph_.areas[p] * likely_[p] * likely_[p];
         }
-        for (Part& one : list) {
-            const double area = one.area > 0 ? one.area : 1;
-            one.likely /= area;
-            one.spread = std::sqrt(std::max(0.0, one.spread / area - one.likely * one.likely));
+        for (Part& summary : summaries) {
+            const double area = summary.area > 0 ? summary.area : 1;
+            summary.likely /= area;
+            summary.spread = std::sqrt(std::max(0.0, summary.spread / area - summary.likely * summary.likely));
         }
         for (const auto& c : graph_.contacts) {
             if (part[c.a] == part[c.b]) continue;
-            for (const auto& [here, there] : {std::pair(c.a, c.b), std::pair(c.b, c.a)}) {
-                Part& one = list[part[here]];
-                one.length += c.length;
-                one.rim += c.length * likely_[here];
-                one.across += c.length * list[part[there]].likely;
+            for (const auto& [inner, outer] : {std::pair(c.a, c.b), std::pair(c.b, c.a)}) {
+                Part& summary = summaries[part[inner]];
+                summary.length += c.length;
+                summary.rim += c.length * likely_[inner];
+                summary.across += c.length * summaries[part[outer]].likely;
             }
         }
         std::vector<double> likely, areas;
-        for (const Part& one : list) {
-            likely.push_back(one.likely);
-            areas.push_back(one.area);
+        for (const Part& summary : summaries) {
+            likely.push_back(summary.likely);
+            areas.push_back(summary.area);
         }
         const std::vector<double> rank = area_ranks(likely, areas);
         const double low = area_quantile(likely, areas, 0.05), high = area_quantile(likely, areas, 0.95);
-        const auto add = [&](const std::string& what, auto&& value) {
-            columns_.add(name + ": " + what, [&](std::size_t p) { return value(list[part[p]]); });
+        const auto add = [&](const std::string& feature, auto&& value) {
+            columns_.add(name + ": " + feature, [&](std::size_t p) { return value(summaries[part[p]]); });
         };
-        add("likely", [](const Part& one) { return one.likely; });
+        add("likely", [](const Part& summary) { return summary.likely; });
         columns_.add(name + ": rank of likely", [&](std::size_t p) { return rank[part[p]]; });
-        add("over the least likely", [&](const Part& one) { return one.likely - low; });
-        add("under the most likely", [&](const Part& one) { return high - one.likely; });
-        add("spread of likely", [](const Part& one) { return one.spread; });
-        add("likely across its boundary", [](const Part& one) { return one.length > 0 ? one.across / one.length : -1; });
-        add("likely at its boundary", [](const Part& one) { return one.length > 0 ? one.rim / one.length : -1; });
+        add("over the least likely", [&](const Part& summary) { return summary.likely - low; });
+        add("under the most likely", [&](const Part& summary) { return high - summary.likely; });
+        add("spread of likely", [](const Part& summary) { return summary.spread; });
+        add("likely across its boundary",
+            [](const Part& summary) { return summary.length > 0 ? summary.across / summary.length : -1; });
+        add("likely at its boundary", [](const Part& summary) { return summary.length > 0 ? summary.rim / summary.length : -1; });
     }
 
     const FacetEvidence& evidence_;
@@ -107,9 +108,9 @@ FeatureTable with_context(const FacetEvidence& evidence, const std::vector<doubl
     result.columns = evidence.features.columns + context.columns;
     result.values.reserve(context.rows() * result.columns);
     for (std::size_t r = 0; r < context.rows(); ++r) {
-        const auto own = evidence.features.row(r), more = context.row(r);
-        result.values.insert(result.values.end(), own.begin(), own.end());
-        result.values.insert(result.values.end(), more.begin(), more.end());
+        const auto own_features = evidence.features.row(r), context_features = context.row(r);
+        result.values.insert(result.values.end(), own_features.begin(), own_features.end());
+        result.values.insert(result.values.end(), context_features.begin(), context_features.end());
     }
     return result;
 }

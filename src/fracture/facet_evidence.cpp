@@ -50,9 +50,9 @@ Shape shape_about(const Vector3d& place, const Vector3d& normal, double radius, 
         square += z * z;
         ++count;
     }
-    const double all = static_cast<double>(points.size());
-    shape.side = side / all;
-    shape.bend = 1 - mean.norm() / all;
+    const double total = static_cast<double>(points.size());
+    shape.side = side / total;
+    shape.bend = 1 - mean.norm() / total;
     if (count < 4) return shape;
     const Eigen::Matrix3d flat = matrix.topLeftCorner<3, 3>() + 1e-9 * count * Matrix3d::Identity();
     const Vector3d plane = solve_ldlt<3>(flat, right.head<3>());
@@ -111,18 +111,18 @@ private:
         }
         // Means over the next two larger neighbourhoods describe the surroundings.
         for (std::size_t s = 0; s < scale_count; ++s) {
-            const std::string at = " at " + std::to_string(s);
-            const auto& here = shapes[s];
-            columns_.add("plane" + at, [&](std::size_t p) { return feature_level(here[p].plane); });
-            columns_.add("quadric" + at, [&](std::size_t p) { return feature_level(here[p].quadric); });
-            columns_.add("bend" + at, [&](std::size_t p) { return here[p].bend; });
-            columns_.add("side" + at, [&](std::size_t p) { return here[p].side; });
+            const std::string suffix = " at " + std::to_string(s);
+            const auto& scale_shapes = shapes[s];
+            columns_.add("plane" + suffix, [&](std::size_t p) { return feature_level(scale_shapes[p].plane); });
+            columns_.add("quadric" + suffix, [&](std::size_t p) { return feature_level(scale_shapes[p].quadric); });
+            columns_.add("bend" + suffix, [&](std::size_t p) { return scale_shapes[p].bend; });
+            columns_.add("side" + suffix, [&](std::size_t p) { return scale_shapes[p].side; });
         }
         const std::vector<double>& areas = graph_.areas;
         std::array<std::vector<double>, 3> roughs;
         for (std::size_t s = 0; s < 3; ++s) {
-            const std::string at = " at " + std::to_string(s);
-            const auto& here = shapes[s];
+            const std::string suffix = " at " + std::to_string(s);
+            const auto& scale_shapes = shapes[s];
             std::vector<double> rough(n), bent(n);
             const std::vector<double> mean_rough = [&] {
                 std::vector<double> values(n);
@@ -133,12 +133,12 @@ private:
             bent = averaged(bent, s);
             const double low = area_quantile(rough, areas, 0.2), middle = area_quantile(rough, areas, 0.5);
             const std::vector<double> rank = area_ranks(rough, areas), bend_rank = area_ranks(bent, areas);
-            columns_.add("roughness" + at, [&](std::size_t p) { return rough[p]; });
-            columns_.add("roughness over the smooth" + at, [&](std::size_t p) { return rough[p] - low; });
-            columns_.add("roughness over the usual" + at, [&](std::size_t p) { return rough[p] - middle; });
-            columns_.add("rank of roughness" + at, [&](std::size_t p) { return rank[p]; });
-            columns_.add("mean bend" + at, [&](std::size_t p) { return bent[p]; });
-            columns_.add("rank of bend" + at, [&](std::size_t p) { return bend_rank[p]; });
+            columns_.add("roughness" + suffix, [&](std::size_t p) { return rough[p]; });
+            columns_.add("roughness over the smooth" + suffix, [&](std::size_t p) { return rough[p] - low; });
+            columns_.add("roughness over the usual" + suffix, [&](std::size_t p) { return rough[p] - middle; });
+            columns_.add("rank of roughness" + suffix, [&](std::size_t p) { return rank[p]; });
+            columns_.add("mean bend" + suffix, [&](std::size_t p) { return bent[p]; });
+            columns_.add("rank of bend" + suffix, [&](std::size_t p) { return bend_rank[p]; });
             roughs[s] = rough;
             if (s == 1) {
                 values_.rough = rough, values_.bent = bent;
@@ -146,9 +146,9 @@ private:
                 columns_.add("spread of roughness in the fragment", [&](std::size_t) { return spread; });
             }
             if (s == 2)
-                for (std::size_t p = 0; p < n; ++p) values_.side.push_back(here[p].side);
+                for (std::size_t p = 0; p < n; ++p) values_.side.push_back(scale_shapes[p].side);
             if (s == 0)
-                for (std::size_t p = 0; p < n; ++p) evidence_.convexity.push_back(std::max(0.0, -here[p].side));
+                for (std::size_t p = 0; p < n; ++p) evidence_.convexity.push_back(std::max(0.0, -scale_shapes[p].side));
         }
         for (std::size_t s = 0; s < 2; ++s)
             columns_.add("grain at " + std::to_string(s), [&](std::size_t p) { return roughs[s][p] - roughs[s + 1][p]; });
@@ -158,7 +158,7 @@ private:
     /// Relief finer than the patches, or noise of the scan.
     void ruffle() {
         std::vector<double> ruffle = mean_about(evidence_, 1, graph_.ruffle);
-        for (double& one : ruffle) one = feature_level(one);
+        for (double& value : ruffle) value = feature_level(value);
         const double usual = area_quantile(ruffle, graph_.areas, 0.5);
         const std::vector<double> rank = area_ranks(ruffle, graph_.areas);
         columns_.add("ruffle", [&](std::size_t p) { return ruffle[p]; });
@@ -186,7 +186,7 @@ private:
         thin_walls();
         // Direction through the wall nearby: the main direction of the normals of patches over a wall.
         const std::size_t n = graph_.count();
-        std::vector<double> along(n, -1), sides(n, 0), reach(n, 1);
+        std::vector<double> along(n, -1), sides(n, 0), nearest_side(n, 1);
         const double radius = std::min(1.6 * typical, 0.3 * graph_.size);
         const Neighbourhoods around = neighbourhoods(graph_, samples_, radius);
         parallel_for(
@@ -202,9 +202,9 @@ private:
                     ++count;
                     nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(graph_.places[p], graph_.places[q])));
                 }
-                const auto all = static_cast<double>(around.first[p + 1] - around.first[p]);
-                if (all > 0) sides[p] = count / all;
-                reach[p] = nearest / radius;
+                const auto total = static_cast<double>(around.first[p + 1] - around.first[p]);
+                if (total > 0) sides[p] = count / total;
+                nearest_side[p] = nearest / radius;
                 if (count < 3) return;
                 const SymmetricEigen<3> main(sum);
                 along[p] = std::abs(main.eigenvectors().col(2).dot(eigen(graph_.normals[p])));
@@ -213,7 +213,7 @@ private:
         columns_.add("along the wall's normal", [&](std::size_t p) { return along[p]; });
         for (std::size_t p = 0; p < n; ++p) values_.over_wall.push_back(over_wall(p));
         columns_.add("share of sides nearby", [&](std::size_t p) { return sides[p]; });
-        columns_.add("distance to a side", [&](std::size_t p) { return reach[p]; });
+        columns_.add("distance to a side", [&](std::size_t p) { return nearest_side[p]; });
     }
 
     /// A wall is thin relative to the fragment. If most of the area lies over a wall, the rest is fracture or lip.
@@ -240,14 +240,14 @@ private:
         parallel_for(
             places.size(),
             [&](std::size_t k) {
-                std::vector<Index> found;
-                tree.within(places[k], radius, found);
-                if (found.size() < 4) return;
+                std::vector<Index> neighbours;
+                tree.within(places[k], radius, neighbours);
+                if (neighbours.size() < 4) return;
                 Vector3d mean = Vector3d::Zero();
-                for (const Index q : found) mean += eigen(places[q]);
-                mean /= static_cast<double>(found.size());
+                for (const Index q : neighbours) mean += eigen(places[q]);
+                mean /= static_cast<double>(neighbours.size());
                 Matrix3d spread = Matrix3d::Zero();
-                for (const Index q : found) spread += (eigen(places[q]) - mean) * (eigen(places[q]) - mean).transpose();
+                for (const Index q : neighbours) spread += (eigen(places[q]) - mean) * (eigen(places[q]) - mean).transpose();
                 const Vector3d main = SymmetricEigen<3>(spread).eigenvalues();
                 if (main[2] > 0) result[k] = std::sqrt(std::max(0.0, main[0] + main[1]) / main[2]);
             },
@@ -286,16 +286,16 @@ private:
                     nearest[p] = std::sqrt(near.squared) / graph_.size;
                     if (outward) jagged[p] = jagged_here[near.index], sharp[p] = graph_.contacts[contacts[near.index]].turn;
                     if (nearest[p] > 0.1) return;
-                    std::vector<Index> found;
-                    tree.within(graph_.places[p], radius, found);
-                    for (const Index k : found) density[p] += lengths[k] / radius;
+                    std::vector<Index> near_edges;
+                    tree.within(graph_.places[p], radius, near_edges);
+                    for (const Index k : near_edges) density[p] += lengths[k] / radius;
                 },
                 64);
             const std::string name = outward ? "outward edges" : "inward edges";
             columns_.add("distance to " + name, [&](std::size_t p) { return nearest[p]; });
             columns_.add("density of " + name, [&](std::size_t p) { return density[p]; });
             double length = 0;
-            for (const double one : lengths) length += one / graph_.size;
+            for (const double edge_length : lengths) length += edge_length / graph_.size;
             columns_.add("length of " + name, [&](std::size_t) { return length; });
             if (!outward) continue;
             columns_.add("jaggedness of the edge", [&](std::size_t p) { return jagged[p]; });
@@ -327,11 +327,11 @@ std::vector<double> area_ranks(const std::vector<double>& values, const std::vec
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return std::pair(values[a], a) < std::pair(values[b], b); });
-    double all = 0, below = 0;
-    for (const double a : areas) all += a;
+    double total = 0, below = 0;
+    for (const double a : areas) total += a;
     std::vector<double> result(values.size());
     for (const std::size_t k : order) {
-        result[k] = (below + areas[k] / 2) / all;
+        result[k] = (below + areas[k] / 2) / total;
         below += areas[k];
     }
     return result;
@@ -339,15 +339,15 @@ std::vector<double> area_ranks(const std::vector<double>& values, const std::vec
 
 double area_quantile(const std::vector<double>& values, const std::vector<double>& areas, double share) {
     std::vector<std::pair<double, double>> sorted;
-    double all = 0;
+    double total = 0;
     for (std::size_t k = 0; k < values.size(); ++k) {
         sorted.emplace_back(values[k], areas[k]);
-        all += areas[k];
+        total += areas[k];
     }
     std::sort(sorted.begin(), sorted.end());
     double below = 0;
     for (const auto& [value, area] : sorted)
-        if ((below += area) >= share * all) return value;
+        if ((below += area) >= share * total) return value;
     return 0;
 }
 

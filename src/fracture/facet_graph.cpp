@@ -28,26 +28,26 @@ std::vector<Index> grouped_faces(const Mesh& mesh, const std::vector<Vector>& ar
         const Point c = centroid(mesh, f);
         const auto step = [&](double x, double low) { return static_cast<std::uint64_t>((x - low) / cell) & 0x1fffffU; };
         const std::uint64_t key = step(c.x(), box.xmin()) << 42 | step(c.y(), box.ymin()) << 21 | step(c.z(), box.zmin());
-        auto& here = cells[key];
+        auto& cell_groups = cells[key];
         const Vector& a = areas[f];
-        constexpr double alike = 0.4;
+        constexpr double min_cosine = 0.4;
         const auto fits = [&](const Group& g) {
-            return g.area * a >= alike * std::sqrt(g.area.squared_length() * a.squared_length());
+            return g.area * a >= min_cosine * std::sqrt(g.area.squared_length() * a.squared_length());
         };
-        const auto found = std::find_if(here.begin(), here.end(), fits);
-        if (found == here.end()) {
+        const auto match = std::find_if(cell_groups.begin(), cell_groups.end(), fits);
+        if (match == cell_groups.end()) {
             groups[f] = static_cast<Index>(count++);
-            here.push_back({a, groups[f]});
+            cell_groups.push_back({a, groups[f]});
         } else {
-            groups[f] = found->number;
-            found->area = found->area + a;
+            groups[f] = match->number;
+            match->area = match->area + a;
         }
     }
     return groups;
 }
 
 void join_contacts(const Mesh& mesh, FacetGraph& graph) {
-    std::vector<FacetGraph::Contact> all;
+    std::vector<FacetGraph::Contact> edge_contacts;
     for (const Edge e : mesh.edges()) {
         const Halfedge h = mesh.halfedge(e);
         const Face f = mesh.face(h), g = mesh.face(mesh.opposite(h));
@@ -58,54 +58,55 @@ void join_contacts(const Mesh& mesh, FacetGraph& graph) {
             continue;
         }
         const auto [a, b] = std::minmax(graph.patch_of_face[f], graph.patch_of_face[g]);
-        if (a != b) all.push_back({a, b, length, 0, CGAL::midpoint(p, q)});
+        if (a != b) edge_contacts.push_back({a, b, length, 0, CGAL::midpoint(p, q)});
     }
-    std::stable_sort(all.begin(), all.end(),
+    std::stable_sort(edge_contacts.begin(), edge_contacts.end(),
                      [](const auto& x, const auto& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
-    for (const auto& one : all) {
-        if (graph.contacts.empty() || graph.contacts.back().a != one.a || graph.contacts.back().b != one.b) {
-            graph.contacts.push_back(one);
+    for (const auto& contact : edge_contacts) {
+        if (graph.contacts.empty() || graph.contacts.back().a != contact.a || graph.contacts.back().b != contact.b) {
+            graph.contacts.push_back(contact);
             continue;
         }
-        auto& known = graph.contacts.back();
-        const double sum = known.length + one.length;
-        if (sum > 0) known.middle = known.middle + (one.length / sum) * (one.middle - known.middle);
-        known.length = sum;
+        auto& merged = graph.contacts.back();
+        const double sum = merged.length + contact.length;
+        if (sum > 0) merged.middle = merged.middle + (contact.length / sum) * (contact.middle - merged.middle);
+        merged.length = sum;
     }
 }
 
 }  // namespace
 
-FacetGraph facet_graph(const Mesh& mesh, std::size_t most) {
+FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches) {
     FacetGraph graph;
     const std::size_t faces = mesh.number_of_faces();
     std::vector<Vector> areas(faces);
     parallel_for(faces, [&](std::size_t f) { areas[f] = area_vector(mesh, Face(static_cast<Index>(f))); });
     for (const Vector& a : areas) graph.area += std::sqrt(a.squared_length());
-    if (!(graph.area > 0)) fail_input("fragment", "has no area whose facets could be told", "look at its faces");
+    if (!(graph.area > 0)) fail_input("fragment", "has no area, so its facets cannot be classified", "check its faces");
     graph.size = std::sqrt(graph.area);
     graph.edge = mean_edge_length(mesh);
     std::size_t count = faces;
-    if (faces <= most) {
+    if (faces <= max_patches) {
         graph.patch_of_face.resize(faces);
         std::iota(graph.patch_of_face.begin(), graph.patch_of_face.end(), Index{0});
     } else {
         // A smooth surface crosses about 1.5 cells per area of a cell's side.
-        graph.patch_of_face = grouped_faces(mesh, areas, std::sqrt(2 * graph.area / static_cast<double>(most)), count);
+        graph.patch_of_face = grouped_faces(mesh, areas, std::sqrt(2 * graph.area / static_cast<double>(max_patches)), count);
     }
     std::vector<Vector> sum(count, Vector(0, 0, 0)), place(count, Vector(0, 0, 0));
-    std::vector<Point> any(count);
+    std::vector<Point> some_centroid(count);
     graph.areas.assign(count, 0);
     for (const Face f : mesh.faces()) {
         const Index p = graph.patch_of_face[f];
         const double a = std::sqrt(areas[f].squared_length());
-        any[p] = centroid(mesh, f);
+        some_centroid[p] = centroid(mesh, f);
         sum[p] = sum[p] + areas[f];
-        place[p] = place[p] + a * (any[p] - CGAL::ORIGIN);
+        place[p] = place[p] + a * (some_centroid[p] - CGAL::ORIGIN);
         graph.areas[p] += a;
     }
     for (std::size_t p = 0; p < count; ++p)
-        graph.places.push_back(faces > most && graph.areas[p] > 0 ? CGAL::ORIGIN + place[p] / graph.areas[p] : any[p]);
+        graph.places.push_back(faces > max_patches && graph.areas[p] > 0 ? CGAL::ORIGIN + place[p] / graph.areas[p]
+                                                                         : some_centroid[p]);
     join_contacts(mesh, graph);
     graph.closed = graph.border < 0.05 * graph.size;  // a pinhole lets few rays out
     std::vector<std::pair<Index, Index>> neighbours;

@@ -13,7 +13,7 @@ std::vector<double> log_odds_of(const BoostedTrees& trees, const FeatureTable& r
 
 std::vector<double> FacetModel::log_odds(const FacetEvidence& evidence) const {
     std::vector<double> result = log_odds_of(trees, with_context(evidence, log_odds_of(alone, evidence.features)));
-    for (double& one : result) one = shift + slope * one;
+    for (double& value : result) value = shift + slope * value;
     return result;
 }
 
@@ -21,9 +21,9 @@ const FacetModel& facet_model() {
     static const FacetModel model = [] {
         const Json document = built_in_document("facets.model");
         FacetModel result;
-        const std::size_t own = facet_feature_names().size();
-        result.alone = BoostedTrees::from_json(document["alone"], own);
-        result.trees = BoostedTrees::from_json(document["trees"], own + facet_context_names().size());
+        const std::size_t feature_count = facet_feature_names().size();
+        result.alone = BoostedTrees::from_json(document["alone"], feature_count);
+        result.trees = BoostedTrees::from_json(document["trees"], feature_count + facet_context_names().size());
         result.shift = document["shift"].GetDouble();
         result.slope = document["slope"].GetDouble();
         return result;

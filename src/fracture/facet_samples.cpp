@@ -15,8 +15,8 @@ PatchSamples patch_samples(const Mesh& mesh, const FacetGraph& graph) {
         sum += face_area(mesh, f);
         for (; k < count && (static_cast<double>(k) + 0.5) * step < sum; ++k) {
             // The R2 sequence (Roberts 2018), folded into the triangle.
-            const auto share = [&](double rate) { return std::fmod(0.5 + rate * static_cast<double>(k + 1), 1.0); };
-            double u = share(0.7548776662466927), v = share(0.5698402909980532);
+            const auto fraction = [&](double rate) { return std::fmod(0.5 + rate * static_cast<double>(k + 1), 1.0); };
+            double u = fraction(0.7548776662466927), v = fraction(0.5698402909980532);
             if (u + v > 1) u = 1 - u, v = 1 - v;
             const auto [a, b, c] = corners(mesh, f);
             const Point &p = mesh.point(a), &q = mesh.point(b), &r = mesh.point(c);
@@ -28,19 +28,19 @@ PatchSamples patch_samples(const Mesh& mesh, const FacetGraph& graph) {
 }
 
 Neighbourhoods neighbourhoods(const FacetGraph& graph, const PatchSamples& samples, double radius) {
-    const double held = static_cast<double>(samples.points.size()) * pi * radius * radius / graph.area;
-    const auto stride = static_cast<std::size_t>(std::clamp(held / 80, 1.0, 40.0));
+    const double expected_count = static_cast<double>(samples.points.size()) * pi * radius * radius / graph.area;
+    const auto stride = static_cast<std::size_t>(std::clamp(expected_count / 80, 1.0, 40.0));
     std::vector<Point> points;
     for (std::size_t k = stride / 2; k < samples.points.size(); k += stride) points.push_back(samples.points[k]);
     const PointTree tree(points);
-    std::vector<std::vector<Index>> lists(graph.count());
+    std::vector<std::vector<Index>> neighbour_lists(graph.count());
     parallel_for(
-        lists.size(), [&](std::size_t p) { tree.within(graph.places[p], radius, lists[p]); }, 64);
+        neighbour_lists.size(), [&](std::size_t p) { tree.within(graph.places[p], radius, neighbour_lists[p]); }, 64);
     Neighbourhoods result;
     result.radius = radius;
-    for (const auto& list : lists) {
+    for (const auto& neighbour_list : neighbour_lists) {
         result.first.push_back(result.samples.size());
-        for (const Index k : list) result.samples.push_back(static_cast<Index>(stride / 2 + k * stride));
+        for (const Index k : neighbour_list) result.samples.push_back(static_cast<Index>(stride / 2 + k * stride));
     }
     result.first.push_back(result.samples.size());
     return result;

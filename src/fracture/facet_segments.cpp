@@ -58,7 +58,7 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
     };
     std::priority_queue<Pair> queue;
     std::vector<unsigned> changes(n, 0);
-    const auto offer = [&](std::size_t a, std::size_t b, const Boundary& boundary) {
+    const auto enqueue = [&](std::size_t a, std::size_t b, const Boundary& boundary) {
         if (b < a) std::swap(a, b);
         // The boundary of a tiny part is not significant.
         const double weight = std::min(1.0, std::min(size[a], size[b]) / (patch / 4 * graph.area));
@@ -67,7 +67,7 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
     };
     for (std::size_t a = 0; a < n; ++a)
         for (const auto& [b, boundary] : around[a])
-            if (a < b) offer(a, b, boundary);
+            if (a < b) enqueue(a, b, boundary);
     CancelCheck check;
     while (!queue.empty()) {
         check();
@@ -76,22 +76,22 @@ std::vector<std::size_t> convex_parts(const FacetGraph& graph, double sharpest) 
         if (changes[pair.a] != pair.when_a || changes[pair.b] != pair.when_b || sets.find(pair.a) != pair.a ||
             sets.find(pair.b) != pair.b)
             continue;
-        std::size_t keep = pair.a, gone = pair.b;
-        if (around[keep].size() < around[gone].size()) std::swap(keep, gone);
-        sets.unite_into(keep, gone);
-        size[keep] += size[gone];
-        around[keep].erase(gone);
-        around[gone].erase(keep);
-        for (const auto& [other, boundary] : around[gone]) {
-            around[other].erase(gone);
-            Boundary& mine = around[keep][other];
-            mine.length += boundary.length;
-            mine.turn += boundary.turn;
-            around[other][keep] = mine;
+        std::size_t kept = pair.a, absorbed = pair.b;
+        if (around[kept].size() < around[absorbed].size()) std::swap(kept, absorbed);
+        sets.unite_into(kept, absorbed);
+        size[kept] += size[absorbed];
+        around[kept].erase(absorbed);
+        around[absorbed].erase(kept);
+        for (const auto& [other, boundary] : around[absorbed]) {
+            around[other].erase(absorbed);
+            Boundary& merged = around[kept][other];
+            merged.length += boundary.length;
+            merged.turn += boundary.turn;
+            around[other][kept] = merged;
         }
-        around[gone].clear();
-        ++changes[keep];
-        for (const auto& [other, boundary] : around[keep]) offer(keep, other, boundary);
+        around[absorbed].clear();
+        ++changes[kept];
+        for (const auto& [other, boundary] : around[kept]) enqueue(kept, other, boundary);
     }
     std::vector<std::size_t> part(n), number(n, n);
     std::size_t count = 0;

@@ -19,16 +19,16 @@ std::vector<double> outwardness(const Mesh& mesh, const FacetGraph& graph, const
     std::vector<Index> faces;
     for (std::size_t f = 0; f < graph.patch_of_face.size(); ++f)
         if (side[graph.patch_of_face[f]]) faces.push_back(static_cast<Index>(f));
-    constexpr std::size_t enough = 50000;
-    const std::size_t step = faces.size() / enough + 1;
+    constexpr std::size_t max_faces = 50000;
+    const std::size_t step = faces.size() / max_faces + 1;
     for (std::size_t k = 0; k * step < faces.size(); ++k) faces[k] = faces[k * step];
     faces.resize((faces.size() + step - 1) / step);
-    AxisOptions how;
-    how.tolerance = 0.03;
-    how.min_quality = 0.5;
-    const Axis axis = find_axis(mesh, faces, how);
+    AxisOptions axis_options;
+    axis_options.tolerance = 0.03;
+    axis_options.min_quality = 0.5;
+    const Axis axis = find_axis(mesh, faces, axis_options);
     if (axis.found) {
-        notes.emplace_back("outer and inner are told by an axis of rotation");
+        notes.emplace_back("outer and inner surface are distinguished by an axis of rotation");
         const Vector3d place = eigen(axis.point), along = eigen(axis.direction);
         for (std::size_t p = 0; p < result.size(); ++p) {
             Vector3d away = eigen(graph.places[p]) - place;
@@ -54,7 +54,8 @@ std::vector<double> outwardness(const Mesh& mesh, const FacetGraph& graph, const
         right += across * (eigen(graph.places[p]) - middle);
     }
     const Vector3d focus = middle + solve_ldlt<3>(matrix, right);
-    notes.emplace_back("outer and inner are told by where normals meet: there is no axis of rotation");
+    notes.emplace_back(
+        "outer and inner surface are distinguished by the point where the normals meet: there is no axis of rotation");
     for (std::size_t p = 0; p < result.size(); ++p) {
         const Vector3d away = eigen(graph.places[p]) - focus;
         if (away.norm() > 0) result[p] = away.normalized().dot(eigen(graph.normals[p]));

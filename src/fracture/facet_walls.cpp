@@ -29,34 +29,34 @@ Walls walls_under(const Mesh& mesh, const FacetGraph& graph) {
             const Vector across = std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
             const Vector u = across / std::sqrt(across.squared_length()), w = CGAL::cross_product(axis, u);
             const Point& origin = graph.places[p];
-            std::vector<double> ways;
+            std::vector<double> distances;
             double opposite = 0;
             for (int i = 0; i < count; ++i) {
                 // Evenly spread over the cone (Vogel's spiral).
                 const double z = 1 - (1 - std::cos(half)) * (i + 0.5) / count, r = std::sqrt(1 - z * z),
                              turn = i * pi * (3 - std::sqrt(5.0));
                 const Vector direction = r * std::cos(turn) * u + r * std::sin(turn) * w + z * axis;
-                bool met = false;
-                for (double range = diagonal / 32; !met; range *= 4) {
+                bool has_hit = false;
+                for (double range = diagonal / 32; !has_hit; range *= 4) {
                     range = std::min(range, 1.01 * diagonal);
                     // The query segment extends in both directions: its middle is half way along the ray.
                     for (const SurfaceHit& hit : search.line_hits(origin + direction * (range / 2), direction, range / 2)) {
-                        const double way = hit.distance + range / 2;
-                        if (graph.patch_of_face[hit.face] == p || way <= 1e-9 * diagonal ||
+                        const double distance = hit.distance + range / 2;
+                        if (graph.patch_of_face[hit.face] == p || distance <= 1e-9 * diagonal ||
                             search.normal(hit.face) * direction <= 0)
                             continue;
-                        ways.push_back(way);
+                        distances.push_back(distance);
                         if (walls.behind[p] == no_index) walls.behind[p] = graph.patch_of_face[hit.face];
                         opposite -= graph.normals[graph.patch_of_face[hit.face]] * normal;
-                        met = true;
+                        has_hit = true;
                         break;
                     }
                     if (range > diagonal) break;
                 }
             }
-            if (2 * ways.size() < count) return;
-            walls.opposite[p] = opposite / static_cast<double>(ways.size());
-            walls.depth[p] = upper_median(std::move(ways));
+            if (2 * distances.size() < count) return;
+            walls.opposite[p] = opposite / static_cast<double>(distances.size());
+            walls.depth[p] = upper_median(std::move(distances));
         },
         64);
     std::vector<std::pair<double, double>> depths;

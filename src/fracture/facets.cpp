@@ -19,12 +19,12 @@ class Finder {
 public:
     Finder(const Mesh& mesh, const FacetEvidence& evidence, const std::vector<double>& log_odds, const FacetOptions& options)
         : mesh_(mesh), graph_(evidence.graph), walls_(evidence.walls), convexity_(evidence.convexity), options_(options) {
-        for (const double odds : log_odds) shown_.push_back(1 / (1 + std::exp(-std::clamp(odds, -limit, limit))));
+        for (const double odds : log_odds) probability_.push_back(1 / (1 + std::exp(-std::clamp(odds, -limit, limit))));
     }
 
     Facets run() {
-        tell_breaks();
-        tell_sides();
+        classify_fractures();
+        classify_sides();
         answer();
         finish();
         return std::move(result_);
@@ -48,9 +48,9 @@ private:
     }
 
     /// Once a fracture is found, the probability threshold is lowered: most missed area is at worn edges.
-    void tell_breaks() {
+    void classify_fractures() {
         constexpr double even = 0, likely = 0.4;  // added to log odds
-        if (label_breaks(even)) label_breaks(likely);
+        if (label_fractures(even)) label_fractures(likely);
         double intact = 0;
         for (std::size_t p = 0; p < labels_.size(); ++p) intact += labels_[p] == broken ? 0 : graph_.areas[p];
         constexpr double little = 0.02;  // share of the area: a fracture is recognised by contrast with intact surface
@@ -58,11 +58,11 @@ private:
         std::fill(labels_.begin(), labels_.end(), 0);
     }
 
-    bool label_breaks(double shift) {
+    bool label_fractures(double shift) {
         const std::size_t n = graph_.count();
         std::vector<std::vector<double>> costs(2, std::vector<double>(n));
         for (std::size_t p = 0; p < n; ++p) {
-            const double odds = shift + std::log(shown_[p] / (1 - shown_[p]));
+            const double odds = shift + std::log(probability_[p] / (1 - probability_[p]));
             costs[0][p] = graph_.areas[p] * std::log1p(std::exp(odds));
             costs[1][p] = graph_.areas[p] * std::log1p(std::exp(-odds));
         }
@@ -73,25 +73,25 @@ private:
 
     /// Whether most of the intact surface is a wall with two intact sides.
     [[nodiscard]] bool is_shell(const std::vector<Index>& intact) {
-        double all = 0, over = 0, even = 0;
+        double total = 0, over_wall = 0, typical = 0;
         std::vector<std::pair<double, double>> depths;
         for (const Index p : intact) {
-            all += graph_.areas[p];
+            total += graph_.areas[p];
             const Index behind = walls_.behind[p];
             if (!(walls_.opposite[p] > 0.7 && walls_.depth[p] < options_.wall * graph_.size) || behind == no_index ||
                 labels_[behind] == broken)
                 continue;
-            over += graph_.areas[p];
+            over_wall += graph_.areas[p];
             depths.emplace_back(walls_.depth[p], graph_.areas[p]);
         }
-        if (!graph_.closed || !(over > 0.5 * all)) return false;
+        if (!graph_.closed || !(over_wall > 0.5 * total)) return false;
         result_.thickness = weighted_median(depths);
         for (const auto& [depth, area] : depths)
-            if (depth > 0.5 * result_.thickness && depth < 2 * result_.thickness) even += area;
-        return even > 0.7 * over;
+            if (depth > 0.5 * result_.thickness && depth < 2 * result_.thickness) typical += area;
+        return typical > 0.7 * over_wall;
     }
 
-    void tell_sides() {
+    void classify_sides() {
         std::vector<Index> intact;
         for (std::size_t p = 0; p < labels_.size(); ++p)
             if (labels_[p] != broken) intact.push_back(static_cast<Index>(p));
@@ -118,19 +118,21 @@ private:
     [[nodiscard]] double outside(std::size_t p) const { return std::clamp((outward_[p] + 0.3) / 0.6, 0.0, 1.0); }
 
     void answer() {
-        double found = 0, seen = 0, expected = 0;
+        double fracture_area = 0, supported_area = 0, expected = 0;
         for (std::size_t p = 0; p < labels_.size(); ++p) {
-            if (labels_[p] == broken) found += graph_.areas[p], seen += graph_.areas[p] * shown_[p];
-            expected += graph_.areas[p] * shown_[p];
+            if (labels_[p] == broken) fracture_area += graph_.areas[p], supported_area += graph_.areas[p] * probability_[p];
+            expected += graph_.areas[p] * probability_[p];
         }
         constexpr double little = 0.05;  // share of the area
-        constexpr double sure = 0.65;
-        result_.answer = found > 0 ? (seen > sure * found ? Facets::Answer::broken : Facets::Answer::unclear)
-                                   : (expected < little * graph_.area ? Facets::Answer::whole : Facets::Answer::unclear);
+        constexpr double min_support = 0.65;
+        result_.answer = fracture_area > 0
+                             ? (supported_area > min_support * fracture_area ? Facets::Answer::broken : Facets::Answer::unclear)
+                             : (expected < little * graph_.area ? Facets::Answer::whole : Facets::Answer::unclear);
         if (result_.answer == Facets::Answer::unclear)
-            result_.notes.emplace_back(found > 0 ? "what is called fracture may be a rough or formed surface: look at it"
-                                                 : "whether there is a fracture cannot be told: some of the surface may be one");
-        if (!graph_.closed) result_.notes.emplace_back("the mesh is open: walls show only where rays meet another side");
+            result_.notes.emplace_back(
+                fracture_area > 0 ? "the surface classified as fracture may be a rough or shaped surface: inspect it"
+                                  : "it cannot be determined whether there is a fracture: part of the surface may be one");
+        if (!graph_.closed) result_.notes.emplace_back("the mesh is open: walls are detected only where rays hit another side");
     }
 
     void finish() {
@@ -141,7 +143,7 @@ private:
         result_.segments.resize(pieces.count);
         for (const Face f : mesh_.faces()) {
             const Index p = graph_.patch_of_face[f];
-            const double area = face_area(mesh_, f), sure = labels_[p] == broken ? shown_[p] : 1 - shown_[p];
+            const double area = face_area(mesh_, f), sure = labels_[p] == broken ? probability_[p] : 1 - probability_[p];
             const double side = labels_[p] == 0 ? outside(p) : labels_[p] == broken ? 1 : 1 - outside(p);
             FacetSegment& segment = result_.segments[pieces.of_face[f]];
             segment.facet = static_cast<Facet>(labels_[p]);
@@ -149,7 +151,7 @@ private:
             segment.area += area;
             segment.confidence += area * std::min(sure, side);
             result_.of_face.push_back(segment.facet);
-            result_.probability.push_back(shown_[p]);
+            result_.probability.push_back(probability_[p]);
             result_.confidence += area * std::min(sure, side) / graph_.area;
         }
         for (FacetSegment& segment : result_.segments) segment.confidence /= segment.area > 0 ? segment.area : 1;
@@ -162,7 +164,7 @@ private:
     const Walls& walls_;
     const std::vector<double>& convexity_;
     const FacetOptions& options_;
-    std::vector<double> shown_;        ///< per patch: probability of being fracture
+    std::vector<double> probability_;  ///< per patch: probability of being fracture
     std::vector<std::size_t> labels_;  ///< per patch: a Facet
     std::vector<double> outward_;      ///< per patch: see outwardness
     Facets result_;
@@ -183,7 +185,7 @@ Facets find_facets(const Mesh& mesh, const FacetEvidence& evidence, const std::v
                    const FacetOptions& options) {
     check_options(options, "facets");
     if (log_odds.size() != evidence.graph.count() || evidence.graph.patch_of_face.size() != mesh.number_of_faces())
-        fail_usage("evidence and log odds are not those of the mesh", "take them from the same mesh");
+        fail_usage("the evidence and the log odds belong to another mesh", "compute them from this mesh");
     return Finder(mesh, evidence, log_odds, options).run();
 }
 

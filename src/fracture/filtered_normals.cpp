@@ -21,26 +21,26 @@ std::vector<Vector> filtered_normals(const std::vector<Vector>& areas, const std
     std::vector<Index> around(first.back());
     std::vector<std::size_t> place = first;
     for (const auto& [a, b] : neighbours) around[place[a]++] = b, around[place[b]++] = a;
-    std::vector<Vector> now(n), next(n);
+    std::vector<Vector> current(n), next(n);
     std::vector<double> weights(n);
     for (std::size_t k = 0; k < n; ++k) {
         weights[k] = std::sqrt(areas[k].squared_length());
-        now[k] = unit(areas[k]);
+        current[k] = unit(areas[k]);
     }
     for (int step = 0; step < steps; ++step) {
         parallel_for(n, [&](std::size_t k) {
-            Vector sum = weights[k] * now[k];
+            Vector sum = weights[k] * current[k];
             for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
                 const Index other = around[i];
-                constexpr double alike = 0.5;  // distance of unit vectors: 29 degrees
-                const double apart = (now[other] - now[k]).squared_length() / (alike * alike);
-                sum += std::exp(-apart) * weights[other] * now[other];
+                constexpr double width = 0.5;  // distance of unit vectors: 29 degrees
+                const double ratio = (current[other] - current[k]).squared_length() / (width * width);
+                sum += std::exp(-ratio) * weights[other] * current[other];
             }
             next[k] = unit(sum);
         });
-        std::swap(now, next);
+        std::swap(current, next);
     }
-    return now;
+    return current;
 }
 
 int filter_steps(double length, double spacing) {

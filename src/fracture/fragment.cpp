@@ -4,6 +4,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/geom/eigen.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -28,10 +30,10 @@ std::vector<Facet> facets_of(const Mesh& mesh, const AnnotationSet& set, Facet o
         if (!facet) continue;
         for (const Index face : annotation.faces) {
             if (owner[face] >= 0 && facets[face] != *facet)
-                fail_input("annotation " + std::to_string(annotation.id),
-                           "says of face " + std::to_string(face) + " that it is " + to_string(*facet) + ", and annotation " +
-                               std::to_string(owner[face]) + " that it is " + to_string(facets[face]),
-                           "take the face out of one of them");
+                fail_input(fmt::format("annotation {}", annotation.id),
+                           fmt::format("classifies face {} as {}, but annotation {} classifies it as {}", face, to_string(*facet),
+                                       owner[face], to_string(facets[face])),
+                           "remove the face from one of them");
             facets[face] = *facet;
             owner[face] = annotation.id;
         }

@@ -23,23 +23,23 @@ struct Contact {
 };
 
 Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
-                std::size_t most) {
+                std::size_t max_samples) {
     Contact result;
     const SurfaceSamples& samples = from.side.fracture;
-    const std::size_t count = std::min(most, samples.places.size());
+    const std::size_t count = std::min(max_samples, samples.places.size());
     const double each = samples.area / static_cast<double>(count);
     for (std::size_t s = 0; s < count; ++s) {
         const std::size_t i = (2 * s + 1) * samples.places.size() / (2 * count);
         const Vector3d p = pose(samples.places[i]);
-        const PointTree::Near found = on.fracture.nearest(point_of(p), could_touch * tolerance);
-        if (found.index == no_index) continue;
+        const PointTree::Near nearest = on.fracture.nearest(point_of(p), could_touch * tolerance);
+        if (nearest.index == no_index) continue;
         result.could += each;
-        const Vector3d& normal = on.side.fracture.normals[found.index];
+        const Vector3d& normal = on.side.fracture.normals[nearest.index];
         const double facing = -normal.dot(pose.rotation * samples.normals[i]);
-        if (found.squared > tolerance * tolerance || facing < min_facing) continue;
-        const double off = normal.dot(p - on.side.fracture.places[found.index]);
+        if (nearest.squared > tolerance * tolerance || facing < min_facing) continue;
+        const double distance = normal.dot(p - on.side.fracture.places[nearest.index]);
         result.area += each;
-        result.square += each * off * off;
+        result.square += each * distance * distance;
         result.facing += each * facing;
         result.places.push_back(p);
         result.normals.push_back(normal);
@@ -49,9 +49,9 @@ Contact contact(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from
 
 /// Area of `from` that lies deeper inside `on` than the tolerance.
 void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from, const Motion& pose, double tolerance,
-               std::size_t most, double& area, double& depth) {
-    const auto over = [&](const SurfaceSamples& samples) {
-        const std::size_t count = std::min<std::size_t>({600, most / 3, samples.places.size()});
+               std::size_t max_samples, double& area, double& depth) {
+    const auto add_samples = [&](const SurfaceSamples& samples) {
+        const std::size_t count = std::min<std::size_t>({600, max_samples / 3, samples.places.size()});
         const double each = count > 0 ? samples.area / static_cast<double>(count) : 0;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = (2 * i + 1) * samples.places.size() / (2 * count);
@@ -70,8 +70,8 @@ void penetrate(const PreparedBreak::Parts& on, const PreparedBreak::Parts& from,
             depth = std::max(depth, hit.distance);
         }
     };
-    over(from.side.fracture);
-    over(from.side.intact);
+    add_samples(from.side.fracture);
+    add_samples(from.side.intact);
 }
 
 }  // namespace
@@ -106,82 +106,82 @@ double surface_noise(const SurfaceSamples& intact) {
     if (n < 10) return 0;
     const PointTree tree(points_of(intact.places));
     const double radius = 3 * std::sqrt(intact.area / static_cast<double>(n));
-    constexpr std::size_t looked_at = 200;
-    std::vector<double> found;
-    for (std::size_t k = 0; k < std::min(n, looked_at); ++k) {
-        const std::size_t i = (2 * k + 1) * n / (2 * std::min(n, looked_at));
-        std::vector<Index> near;
-        tree.within(point_of(intact.places[i]), radius, near);
+    constexpr std::size_t max_places = 200;
+    std::vector<double> residuals;
+    for (std::size_t k = 0; k < std::min(n, max_places); ++k) {
+        const std::size_t i = (2 * k + 1) * n / (2 * std::min(n, max_places));
+        std::vector<Index> neighbours;
+        tree.within(point_of(intact.places[i]), radius, neighbours);
         std::vector<Vector3d> places;
-        for (const Index j : near)
+        for (const Index j : neighbours)
             if (intact.normals[j].dot(intact.normals[i]) > 0.7) places.push_back(intact.places[j]);
-        if (places.size() >= 12) found.push_back(deviations(places).second);
+        if (places.size() >= 12) residuals.push_back(deviations(places).second);
     }
-    return found.empty() ? 0 : upper_median(std::move(found));
+    return residuals.empty() ? 0 : upper_median(std::move(residuals));
 }
 
 double off_common_axis(const PreparedBreak::Parts& a, const PreparedBreak::Parts& b, const Motion& pose) {
     Motion about_middles = pose;
     about_middles.translation = pose(b.middle) - a.middle;
-    LineComplex together = b.lines.moved(about_middles);
-    together.add(a.lines);
-    const double both = together.off_axis(), alone = (a.off_axis * a.off_axis + b.off_axis * b.off_axis) / 2;
+    LineComplex joint_lines = b.lines.moved(about_middles);
+    joint_lines.add(a.lines);
+    const double both = joint_lines.off_axis(), alone = (a.off_axis * a.off_axis + b.off_axis * b.off_axis) / 2;
     return std::sqrt(std::max(0.0, both * both - alone));
 }
 
 JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose, double tolerance,
                           std::size_t samples) {
     const PreparedBreak::Parts &a = first.parts(), &b = second.parts();
-    JoinEvidence seen;
+    JoinEvidence evidence;
     const Motion back = pose.inverse();
     const Contact on_a = contact(a, b, pose, tolerance, samples), on_b = contact(b, a, back, tolerance, samples);
     const double area = 0.5 * (on_a.area + on_b.area), both = on_a.area + on_b.area,
                  smaller = std::min(a.side.fracture.area, b.side.fracture.area);
-    seen.area = area / (tolerance * tolerance);
-    seen.share = area / smaller;
-    seen.coverage = both / std::max(1e-300, on_a.could + on_b.could);
+    evidence.area = area / (tolerance * tolerance);
+    evidence.share = area / smaller;
+    evidence.coverage = both / std::max(1e-300, on_a.could + on_b.could);
     if (both > 0) {
-        seen.residual = std::sqrt((on_a.square + on_b.square) / both) / tolerance;
-        seen.facing = (on_a.facing + on_b.facing) / both;
+        evidence.residual = std::sqrt((on_a.square + on_b.square) / both) / tolerance;
+        evidence.facing = (on_a.facing + on_b.facing) / both;
     }
     const auto [plane, quadric] = deviations(on_a.places);
-    seen.bending = plane / tolerance;
-    seen.relief = quadric / tolerance;
+    evidence.bending = plane / tolerance;
+    evidence.relief = quadric / tolerance;
 
     std::vector<Vector3d> places = on_a.places, normals = on_a.normals;
-    double could = 0, square = 0, turns = 0, steps = 0, seen_sides = 0;
+    double could = 0, square = 0, turns = 0, steps = 0, side_count = 0;
     const double each = b.side.frames.empty() ? 0 : b.side.rim_length / static_cast<double>(b.side.frames.size());
     for (const RimFrame& frame : b.side.frames) {
         const Vector3d p = pose(frame.place);
-        const PointTree::Near found = a.frames.nearest(point_of(p), could_touch * tolerance);
-        if (found.index == no_index) continue;
+        const PointTree::Near nearest = a.frames.nearest(point_of(p), could_touch * tolerance);
+        if (nearest.index == no_index) continue;
         could += each;
-        const RimFrame& other = a.side.frames[found.index];
+        const RimFrame& other = a.side.frames[nearest.index];
         if (other.facet != frame.facet || other.fracture.dot(pose.rotation * frame.fracture) > -min_facing) continue;
         const Vector3d side = pose.rotation * frame.side, across = pose(frame.beside) - other.beside;
         const double cosine = other.side.dot(side), apart = across.norm();
         // Sides that face each other, or are perpendicular, do not continue each other.
         turns += cosine > 0 ? 1 - cosine * cosine : 1;
         steps += cosine > 0 && apart > 0 ? std::pow(0.5 * (side + other.side).dot(across) / apart, 2) : 1;
-        ++seen_sides;
+        ++side_count;
         if (cosine < continued) continue;
         const double step = other.side.dot(p - other.place);
         if (std::abs(step) > tolerance) continue;
-        seen.rim += each;
+        evidence.rim += each;
         square += each * step * step;
         places.push_back(p);
         normals.push_back(other.side);
     }
-    if (seen_sides > 0) {
-        seen.side_turn = std::sqrt(turns / seen_sides);
-        seen.side_step = std::sqrt(steps / seen_sides);
-        seen.side_length = seen_sides * each / tolerance;
+    if (side_count > 0) {
+        evidence.side_turn = std::sqrt(turns / side_count);
+        evidence.side_step = std::sqrt(steps / side_count);
+        evidence.side_length = side_count * each / tolerance;
     }
     const double shorter = std::min(a.side.rim_length, b.side.rim_length);
-    seen.rim_coverage = could > 0 ? seen.rim / could : 0;
-    seen.rim_step = seen.rim > 0 ? std::sqrt(square / seen.rim) / tolerance : 1;
-    seen.rim_share = seen.rim / shorter;
-    seen.rim /= tolerance;
+    evidence.rim_coverage = could > 0 ? evidence.rim / could : 0;
+    evidence.rim_step = evidence.rim > 0 ? std::sqrt(square / evidence.rim) / tolerance : 1;
+    evidence.rim_share = evidence.rim / shorter;
+    evidence.rim /= tolerance;
 
     if (places.size() >= 6) {
         Vector3d middle = Vector3d::Zero();
@@ -195,20 +195,20 @@ JoinEvidence measure_join(const PreparedBreak& first, const PreparedBreak& secon
             row << ((places[i] - middle) / unit).cross(normals[i]), normals[i];
             system += row * row.transpose();
         }
-        seen.grip = std::max(0.0, SymmetricEigenX(system).eigenvalues()[0]) / std::max(1e-300, system.trace() / 6);
+        evidence.grip = std::max(0.0, SymmetricEigenX(system).eigenvalues()[0]) / std::max(1e-300, system.trace() / 6);
     }
     double inside = 0, depth = 0;
     penetrate(a, b, pose, tolerance, samples, inside, depth);
     penetrate(b, a, back, tolerance, samples, inside, depth);
-    seen.penetration = inside / std::max(area, 0.01 * smaller);
-    seen.depth = depth / tolerance;
-    seen.widths = std::abs(std::log(a.width / b.width));
-    seen.noise = std::hypot(a.noise, b.noise) / tolerance;
-    seen.edge = std::max(a.edge, b.edge) / tolerance;
-    seen.breaks = std::min(a.relief, b.relief) / tolerance;
-    seen.axis = off_common_axis(a, b, pose) / std::min(a.size, b.size);
-    seen.own_axis = std::hypot(a.off_axis, b.off_axis) / std::min(a.size, b.size);
-    return seen;
+    evidence.penetration = inside / std::max(area, 0.01 * smaller);
+    evidence.depth = depth / tolerance;
+    evidence.widths = std::abs(std::log(a.width / b.width));
+    evidence.noise = std::hypot(a.noise, b.noise) / tolerance;
+    evidence.edge = std::max(a.edge, b.edge) / tolerance;
+    evidence.roughness = std::min(a.relief, b.relief) / tolerance;
+    evidence.axis = off_common_axis(a, b, pose) / std::min(a.size, b.size);
+    evidence.own_axis = std::hypot(a.off_axis, b.off_axis) / std::min(a.size, b.size);
+    return evidence;
 }
 
 std::vector<ContactPoint> contact_points(const PreparedBreak& first, const PreparedBreak& second, const Motion& pose,
@@ -217,34 +217,34 @@ std::vector<ContactPoint> contact_points(const PreparedBreak& first, const Prepa
     std::vector<ContactPoint> result;
     const SurfaceSamples& from = b.side.fracture;
     const std::size_t count = std::min(samples, from.places.size());
-    double all = 0;
+    double fracture_weight = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = (2 * i + 1) * from.places.size() / (2 * count);
-        const PointTree::Near found = a.fracture.nearest(point_of(pose(from.places[k])), search_radius);
-        if (found.index == no_index) continue;
-        const Vector3d& normal = a.side.fracture.normals[found.index];
+        const PointTree::Near nearest = a.fracture.nearest(point_of(pose(from.places[k])), search_radius);
+        if (nearest.index == no_index) continue;
+        const Vector3d& normal = a.side.fracture.normals[nearest.index];
         if (-normal.dot(pose.rotation * from.normals[k]) < min_facing) continue;
-        const double share = found.squared / (search_radius * search_radius);
-        result.push_back({a.side.fracture.places[found.index], normal, from.places[k], (1 - share) * (1 - share)});
-        all += result.back().weight;
+        const double ratio = nearest.squared / (search_radius * search_radius);
+        result.push_back({a.side.fracture.places[nearest.index], normal, from.places[k], (1 - ratio) * (1 - ratio)});
+        fracture_weight += result.back().weight;
     }
     const std::size_t fractures = result.size();
     double rim = 0;
     for (const RimFrame& frame : b.side.frames) {
-        const PointTree::Near found = a.frames.nearest(point_of(pose(frame.place)), search_radius);
-        if (found.index == no_index) continue;
-        const RimFrame& other = a.side.frames[found.index];
+        const PointTree::Near nearest = a.frames.nearest(point_of(pose(frame.place)), search_radius);
+        if (nearest.index == no_index) continue;
+        const RimFrame& other = a.side.frames[nearest.index];
         if (other.facet != frame.facet || other.side.dot(pose.rotation * frame.side) < continued ||
             other.fracture.dot(pose.rotation * frame.fracture) > -min_facing)
             continue;
-        const double share = found.squared / (search_radius * search_radius), weight = (1 - share) * (1 - share);
+        const double ratio = nearest.squared / (search_radius * search_radius), weight = (1 - ratio) * (1 - ratio);
         result.push_back({other.place, other.side, frame.place, weight});
         result.push_back({other.place, other.fracture, frame.place, weight});
         rim += 2 * weight;
     }
     // The rims get the same total weight as the fractures.
-    if (rim > 0 && all > 0)
-        for (std::size_t k = fractures; k < result.size(); ++k) result[k].weight *= all / rim;
+    if (rim > 0 && fracture_weight > 0)
+        for (std::size_t k = fractures; k < result.size(); ++k) result[k].weight *= fracture_weight / rim;
     return result;
 }
 
@@ -270,7 +270,7 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
             logarithm(side_length, 0.5, 500) - 3,
             logarithm(noise, 0.003, 3) + 3,
             logarithm(edge, 0.1, 20),
-            logarithm(breaks, 0.1, 30),
+            logarithm(roughness, 0.1, 30),
             -logarithm(std::max(residual, 0.02) / std::hypot(0.1, noise, 0.1 * edge), 0.1, 10),
             -logarithm(0.003 + axis, 0.003, 1) - 4,
             -logarithm(0.003 + own_axis, 0.003, 1) - 3};
@@ -278,28 +278,28 @@ std::array<double, JoinEvidence::count> JoinEvidence::features() const {
 
 const std::array<std::string, JoinEvidence::count>& JoinEvidence::names() {
     static const std::array<std::string, count> names{"area in contact",
-                                                      "share of the smaller break in contact",
-                                                      "what could touch does touch",
+                                                      "share of the smaller fracture in contact",
+                                                      "contact where contact is possible",
                                                       "close contact",
                                                       "matching relief",
-                                                      "matching form",
-                                                      "firm hold",
+                                                      "matching shape",
+                                                      "firmly constrained pose",
                                                       "facing normals",
                                                       "length of common rim",
                                                       "share of the shorter rim",
-                                                      "rim continues where it could",
-                                                      "sides without step",
+                                                      "rim continued where possible",
+                                                      "sides without a step",
                                                       "no penetration",
-                                                      "no depth",
-                                                      "breaks as wide",
-                                                      "sides as steep beside the rim",
+                                                      "no depth of penetration",
+                                                      "fractures of equal width",
+                                                      "sides of equal slope beside the rim",
                                                       "sides that continue beside the rim",
                                                       "length of sides that could continue",
                                                       "noise of the surfaces",
                                                       "coarseness of the meshes",
-                                                      "relief of the breaks",
-                                                      "contact as close as noise allows",
-                                                      "sides that share an axis",
+                                                      "relief of the fractures",
+                                                      "contact as close as the noise allows",
+                                                      "sides with a common axis",
                                                       "roundness of the sides"};
     return names;
 }

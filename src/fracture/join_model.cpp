@@ -4,6 +4,8 @@
 #include "ostraka/core/json.h"
 #include "ostraka/stats/boosted_trees.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -26,9 +28,9 @@ const JoinModel& join_model() {
     static const JoinModel model = [] {
         JoinModel result;
         const Json document = built_in_document("joins.model");
-        const auto read = [&](const char* name, auto& to) {
-            const JsonValue& list = document[name];
-            for (std::size_t k = 0; k < to.size(); ++k) to[k] = list[static_cast<rapidjson::SizeType>(k)].GetDouble();
+        const auto read = [&](const char* name, auto& values) {
+            const JsonValue& numbers = document[name];
+            for (std::size_t k = 0; k < values.size(); ++k) values[k] = numbers[static_cast<rapidjson::SizeType>(k)].GetDouble();
         };
         result.trees = BoostedTrees::from_json(document["trees"], JoinEvidence::count);
         result.joined = document["joined"].GetDouble();
@@ -42,8 +44,8 @@ const JoinModel& join_model() {
 
 }  // namespace
 
-double join_log_odds(const JoinEvidence& seen) {
-    const auto features = seen.features();
+double join_log_odds(const JoinEvidence& evidence) {
+    const auto features = evidence.features();
     const std::vector<float> row(features.begin(), features.end());
     return join_model().trees.log_odds(row);
 }
@@ -57,8 +59,8 @@ double join_probability(double log_odds, double lead) {
 double log_odds_of_a_join_among(std::size_t fragments) {
     constexpr double neighbours = 4;  // of a sherd, about
     const double usual = join_model().joined,
-                 here = std::min(usual, neighbours / std::max(1.0, static_cast<double>(fragments) - 1));
-    return std::log(here / (1 - here)) - std::log(usual / (1 - usual));
+                 joined_share = std::min(usual, neighbours / std::max(1.0, static_cast<double>(fragments) - 1));
+    return std::log(joined_share / (1 - joined_share)) - std::log(usual / (1 - usual));
 }
 
 std::string join_model_version() {
@@ -66,14 +68,14 @@ std::string join_model_version() {
     return version;
 }
 
-std::string weakest_evidence(const JoinEvidence& seen) {
+std::string weakest_evidence(const JoinEvidence& evidence) {
     const JoinModel& model = join_model();
-    const auto features = seen.features();
+    const auto features = evidence.features();
     std::size_t worst = 0;
     const auto below = [&](std::size_t k) { return (model.usual[k] - features[k]) / model.spread[k]; };
     for (std::size_t k = 1; k < features.size(); ++k)
         if (JoinEvidence::of_the_join(k) && below(k) > below(worst)) worst = k;
-    return "there is too little of \"" + JoinEvidence::names()[worst] + '"';
+    return fmt::format("there is too little evidence of \"{}\"", JoinEvidence::names()[worst]);
 }
 
 }  // namespace ostraka

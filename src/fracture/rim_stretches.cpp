@@ -36,9 +36,10 @@ EvenLoop evenly(const RimLoop& loop, double spacing) {
     const double step = length / static_cast<double>(count);
     std::size_t k = 0;
     for (std::size_t i = 0; i < (loop.closed ? count : count + 1); ++i) {
-        const double at = std::min(length, step * static_cast<double>(i));
-        while (k + 1 < segments && along[k + 1] < at) ++k;
-        const double whole = along[k + 1] - along[k], t = whole > 0 ? (at - along[k]) / whole : 0;
+        const double position = std::min(length, step * static_cast<double>(i));
+        while (k + 1 < segments && along[k + 1] < position) ++k;
+        const double segment_length = along[k + 1] - along[k],
+                     t = segment_length > 0 ? (position - along[k]) / segment_length : 0;
         const std::size_t next = (k + 1) % n;
         result.places.push_back((1 - t) * loop.places[k] + t * loop.places[next]);
         result.sides.push_back(((1 - t) * loop.sides[k] + t * loop.sides[next]).normalized());
@@ -50,43 +51,46 @@ EvenLoop evenly(const RimLoop& loop, double spacing) {
 class StretchSearch {
 public:
     StretchSearch(const std::vector<RimLoop>& first, const std::vector<RimLoop>& second, double shortest, double tolerance)
-        : tolerance_(tolerance), spacing_(shortest / static_cast<double>(few)) {
+        : tolerance_(tolerance), spacing_(shortest / static_cast<double>(samples_per_shortest)) {
         for (const RimLoop& loop : first) a_.push_back(evenly(loop, spacing_));
         for (const RimLoop& loop : second) b_.push_back(evenly(loop, spacing_));
     }
 
     std::vector<StretchFit> run(std::size_t count) {
-        std::vector<StretchFit> found;
+        std::vector<StretchFit> fits;
         for (const std::size_t length : {8, 11, 16, 23, 32, 45, 64})
             for (std::size_t i = 0; i < a_.size(); ++i)
-                for (std::size_t j = 0; j < b_.size(); ++j) compare(i, j, length, found);
-        std::stable_sort(found.begin(), found.end(), [](const StretchFit& x, const StretchFit& y) { return x.told > y.told; });
-        if (found.size() > count) found.resize(count);
-        return found;
+                for (std::size_t j = 0; j < b_.size(); ++j) compare(i, j, length, fits);
+        std::stable_sort(fits.begin(), fits.end(),
+                         [](const StretchFit& x, const StretchFit& y) { return x.information > y.information; });
+        if (fits.size() > count) fits.resize(count);
+        return fits;
     }
 
 private:
-    static constexpr std::size_t few = 8;
+    static constexpr std::size_t samples_per_shortest = 8;
     static constexpr double widest = 1.5, noise = 0.2, straight = 0.5;  // in tolerances
 
-    void compare(std::size_t i, std::size_t j, std::size_t count, std::vector<StretchFit>& found) const {
+    void compare(std::size_t i, std::size_t j, std::size_t count, std::vector<StretchFit>& fits) const {
         const EvenLoop &a = a_[i], &b = b_[j];
         const std::size_t rows = a.starts(count), columns = b.starts(count), n = a.places.size(), m = b.places.size();
         if (rows == 0 || columns == 0) return;
         // Chord lengths are invariant under rigid motion.
         const std::size_t half = count / 2, last = count - 1;
-        std::vector<std::vector<StretchFit>> of_row(rows);
+        std::vector<std::vector<StretchFit>> row_fits(rows);
         parallel_for(
             rows,
             [&](std::size_t r) {
-                const auto at = [&](std::size_t t) -> const Vector3d& { return a.places[(r + t) % n]; };
-                const double whole = (at(last) - at(0)).norm(), left = (at(half) - at(0)).norm(),
-                             right = (at(last) - at(half)).norm();
+                const auto place_a = [&](std::size_t t) -> const Vector3d& { return a.places[(r + t) % n]; };
+                const double chord_length = (place_a(last) - place_a(0)).norm(),
+                             first_chord = (place_a(half) - place_a(0)).norm(),
+                             second_chord = (place_a(last) - place_a(half)).norm();
                 double bend = 0;
-                const Vector3d chord = whole > 0 ? Vector3d((at(last) - at(0)) / whole) : Vector3d(Vector3d::UnitX());
+                const Vector3d chord =
+                    chord_length > 0 ? Vector3d((place_a(last) - place_a(0)) / chord_length) : Vector3d(Vector3d::UnitX());
                 for (std::size_t t = 0; t < count; ++t) {
-                    const Vector3d off = at(t) - at(0);
-                    bend += (off - off.dot(chord) * chord).squaredNorm() / static_cast<double>(count);
+                    const Vector3d offset = place_a(t) - place_a(0);
+                    bend += (offset - offset.dot(chord) * chord).squaredNorm() / static_cast<double>(count);
                 }
                 bend = std::sqrt(bend);
                 if (bend < straight * tolerance_) return;  // too straight: it matches any straight stretch
@@ -96,18 +100,18 @@ private:
                 for (std::size_t t = count; t < 2 * count; ++t) weights[t] = 0.3;
                 for (std::size_t c = 0; c < columns; ++c) {
                     // The second rim is traversed backwards from the end of its stretch.
-                    const auto other = [&](std::size_t t) -> const Vector3d& { return b.places[(c + last - t) % m]; };
+                    const auto place_b = [&](std::size_t t) -> const Vector3d& { return b.places[(c + last - t) % m]; };
                     if (a.facets[(r + half) % n] != b.facets[(c + half) % m]) continue;
                     const double slack = 2 * tolerance_;
-                    if (std::abs((other(last) - other(0)).norm() - whole) > slack ||
-                        std::abs((other(half) - other(0)).norm() - left) > slack ||
-                        std::abs((other(last) - other(half)).norm() - right) > slack)
+                    if (std::abs((place_b(last) - place_b(0)).norm() - chord_length) > slack ||
+                        std::abs((place_b(half) - place_b(0)).norm() - first_chord) > slack ||
+                        std::abs((place_b(last) - place_b(half)).norm() - second_chord) > slack)
                         continue;
                     for (std::size_t t = 0; t < count; ++t) {
-                        from[t] = other(t);
-                        to[t] = at(t);
-                        from[count + t] = other(t) + lever * b.sides[(c + last - t) % m];
-                        to[count + t] = at(t) + lever * a.sides[(r + t) % n];
+                        from[t] = place_b(t);
+                        to[t] = place_a(t);
+                        from[count + t] = place_b(t) + lever * b.sides[(c + last - t) % m];
+                        to[count + t] = place_a(t) + lever * a.sides[(r + t) % n];
                     }
                     StretchFit fit;
                     fit.pose = fit_motion(from, to, weights);
@@ -119,17 +123,17 @@ private:
                     fit.length = spacing_ * static_cast<double>(count);
                     fit.bend = bend;
                     // Information of the match: each position is known to the deviation within a range of the bend.
-                    fit.told =
+                    fit.information =
                         static_cast<double>(count) * std::log((noise * tolerance_ + bend) / (noise * tolerance_ + fit.deviation));
-                    if (fit.told > 0) of_row[r].push_back(fit);
+                    if (fit.information > 0) row_fits[r].push_back(fit);
                 }
                 // Keeps the best ten of a row: neighbouring rows give the same matches.
-                std::stable_sort(of_row[r].begin(), of_row[r].end(),
-                                 [](const auto& x, const auto& y) { return x.told > y.told; });
-                if (of_row[r].size() > 10) of_row[r].resize(10);
+                std::stable_sort(row_fits[r].begin(), row_fits[r].end(),
+                                 [](const auto& x, const auto& y) { return x.information > y.information; });
+                if (row_fits[r].size() > 10) row_fits[r].resize(10);
             },
             4);
-        for (const auto& row : of_row) found.insert(found.end(), row.begin(), row.end());
+        for (const auto& row : row_fits) fits.insert(fits.end(), row.begin(), row.end());
     }
 
     double tolerance_, spacing_;

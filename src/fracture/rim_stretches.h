@@ -8,10 +8,10 @@ namespace ostraka {
 /// A pose that registers a stretch of the second rim with a stretch of the first.
 struct StretchFit {
     Motion pose;
-    double length = 0;     ///< length of the stretch
-    double deviation = 0;  ///< root mean square distance between its matched points
-    double bend = 0;       ///< root mean square distance of its points from their straight line
-    double told = 0;       ///< information of the match: sum over the points of log(bend / deviation), above the noise
+    double length = 0;       ///< length of the stretch
+    double deviation = 0;    ///< root mean square distance between its matched points
+    double bend = 0;         ///< root mean square distance of its points from their straight line
+    double information = 0;  ///< of the match: sum over the points of log(bend / deviation), above the noise
 };
 
 /// All pairs of stretches of the two rims, of lengths from `shortest` on, doubling up to half of the shorter rim, whose points

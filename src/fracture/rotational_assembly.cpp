@@ -33,13 +33,13 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
     std::vector<State> states{first};
     while (!states.empty()) {
         std::vector<State> next;
-        std::set<std::vector<long>> known;
+        std::set<std::vector<long>> visited;
         for (const State& state : states)
             for (std::size_t u = 0; u < n; ++u) {
                 if (state.placed[u]) continue;
                 for (std::size_t p = 0; p < n; ++p) {
                     if (!state.placed[p]) continue;
-                    for (const MeetingRotation& meeting : pairs.of(p, u).meetings) {
+                    for (const MeetingRotation& meeting : pairs.at(p, u).meetings) {
                         const double rotation = state.rotations[p] + (p < u ? meeting.rotation : -meeting.rotation);
                         double gain = 0;
                         for (std::size_t q = 0; q < n; ++q)
@@ -49,7 +49,7 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
                         grown.rotations[u] = wrapped(rotation);
                         grown.placed[u] = true;
                         grown.value += gain;
-                        if (known.insert(signature(grown)).second) next.push_back(std::move(grown));
+                        if (visited.insert(signature(grown)).second) next.push_back(std::move(grown));
                     }
                 }
             }
@@ -78,17 +78,17 @@ RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rota
         for (std::size_t j = 0; j < rotations.size(); ++j)
             if (counts[i] && counts[j] && !side[i] && side[j]) {
                 across.emplace_back(i, j);
-                tolerance = std::max(tolerance, pairs.of(i, j).tolerance);
+                tolerance = std::max(tolerance, pairs.at(i, j).tolerance);
             }
-    for (const auto& [i, j] : across) lead.here += pairs.value(i, j, rotations[i], rotations[j]);
+    for (const auto& [i, j] : across) lead.current += pairs.value(i, j, rotations[i], rotations[j]);
     // Overlap does not count at other rotations: lack of room there is no evidence about the fractures.
     for (int k = 0; k < steps; ++k) {
         const double rotation = wrapped(2 * pi * k / steps);
         if (std::abs(rotation) < 2 * tolerance) continue;
         double sum = 0;
         for (const auto& [i, j] : across)
-            sum += pairs.of(i, j).met(RotationPairs::between(i, j, rotations[i], rotations[j] + rotation));
-        lead.elsewhere = std::max(lead.elsewhere, sum);
+            sum += pairs.at(i, j).met(RotationPairs::between(i, j, rotations[i], rotations[j] + rotation));
+        lead.best_other = std::max(lead.best_other, sum);
     }
     return lead;
 }
@@ -97,14 +97,14 @@ double least_shared_rotation(const RotationPairs& pairs, const std::vector<doubl
                              std::size_t sherd, double& shared) {
     std::size_t steps = 1;
     for (std::size_t q = 0; q < rotations.size(); ++q)
-        if (q != sherd) steps = std::max(steps, pairs.of(q, sherd).shared.size());
+        if (q != sherd) steps = std::max(steps, pairs.at(q, sherd).shared.size());
     // The middle of the widest interval of rotations with the least shared area.
     std::vector<double> area(steps, 0);
     for (std::size_t k = 0; k < steps; ++k) {
         const double rotation = 2 * pi * static_cast<double>(k) / static_cast<double>(steps);
         for (std::size_t q = 0; q < rotations.size(); ++q)
             if (q != sherd && counts[q])
-                area[k] += pairs.of(q, sherd).shared_at(RotationPairs::between(q, sherd, rotations[q], rotation));
+                area[k] += pairs.at(q, sherd).shared_at(RotationPairs::between(q, sherd, rotations[q], rotation));
     }
     const double minimum = *std::min_element(area.begin(), area.end());
     shared = minimum;

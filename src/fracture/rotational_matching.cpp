@@ -20,27 +20,27 @@ namespace {
 
 class RotationMatcher {
 public:
-    RotationMatcher(const Mesh& whole, const Vector3d& point, const Vector3d& direction, const std::vector<SherdOnAxis>& sherds,
+    RotationMatcher(const Mesh& vessel, const Vector3d& point, const Vector3d& direction, const std::vector<SherdOnAxis>& sherds,
                     const RotationMatchOptions& options)
         : given_(sherds), options_(options) {
         upright_.rotation = rotation_between(direction, Vector3d::UnitZ()).toRotationMatrix();
         upright_.translation = -(upright_.rotation * point);
-        whole_ = moved(whole, upright_);
+        vessel_ = moved(vessel, upright_);
     }
 
     RotationMatch run() {
         prepare();
         meet_all();
         std::vector<bool> fixed;
-        for (const SherdOnAxis& one : given_) fixed.push_back(one.fixed);
+        for (const SherdOnAxis& sherd : given_) fixed.push_back(sherd.fixed);
         assembly_ = assemble_rotations(*pairs_, fixed, largest(), options_.beam);
-        for (std::size_t k = 0; k < given_.size(); ++k) now_.push_back(rotated_by(assembly_.rotations[k]));
+        for (std::size_t k = 0; k < given_.size(); ++k) motions_.push_back(rotated_by(assembly_.rotations[k]));
         join(fixed);
         put_aside(fixed);
         refine(fixed);
         measure();
         for (std::size_t k = 0; k < given_.size(); ++k)
-            result_.poses.push_back(upright_.inverse().after(now_[k].after(upright_.after(given_[k].pose))));
+            result_.poses.push_back(upright_.inverse().after(motions_[k].after(upright_.after(given_[k].pose))));
         return std::move(result_);
     }
 
@@ -53,16 +53,16 @@ private:
         for (std::size_t k = 0; k < n; ++k) {
             const Fragment& fragment = *given_[k].fragment;
             const Motion pose = upright_.after(given_[k].pose);
-            UprightSherd& one = sherds_[k];
-            one.mesh = moved(fragment.mesh, pose);
+            UprightSherd& sherd = sherds_[k];
+            sherd.mesh = moved(fragment.mesh, pose);
             try {
                 const double radius = 0.04 * fragment_size(fragment.mesh);
-                one.side = BreakSide(fragment, radius, options_.frames, options_.samples).moved(pose);
-                walls.push_back(2 * one.side.fracture.area / one.side.rim_length);
+                sherd.side = BreakSide(fragment, radius, options_.frames, options_.samples).moved(pose);
+                walls.push_back(2 * sherd.side.fracture.area / sherd.side.rim_length);
             } catch (const Error& error) {  // without a fracture it meets nothing, but it covers area
                 if (error.kind() != ErrorKind::input) throw;
-                result_.notes[k] = "has no break that could meet another one";
-                one.side = BreakSide();
+                result_.notes[k] = "has no fracture surface that could meet another one";
+                sherd.side = BreakSide();
             }
         }
         if (walls.empty()) return;
@@ -72,33 +72,33 @@ private:
     void meet_all() {
         const std::size_t n = given_.size();
         double widest = 0;
-        for (const UprightSherd& one : sherds_)
-            for (const Vertex v : one.mesh.vertices())
-                widest = std::max(widest, std::hypot(one.mesh.point(v).x(), one.mesh.point(v).y()));
+        for (const UprightSherd& sherd : sherds_)
+            for (const Vertex v : sherd.mesh.vertices())
+                widest = std::max(widest, std::hypot(sherd.mesh.point(v).x(), sherd.mesh.point(v).y()));
         if (!(wall_ > 0)) wall_ = 0.1 * widest;
         steps_ = static_cast<int>(std::clamp(2 * pi * widest / (0.15 * wall_), 180.0, 3600.0));
-        const SurfaceSearch surface(whole_);
+        const SurfaceSearch surface(vessel_);
         const double width = 0.5 * wall_;
         ProfileCells cells(surface, width);
         for (std::size_t k = 0; k < n; ++k) {
-            UprightSherd& one = sherds_[k];
-            std::vector<bool> intact(one.mesh.number_of_faces(), true);
+            UprightSherd& sherd = sherds_[k];
+            std::vector<bool> intact(sherd.mesh.number_of_faces(), true);
             std::vector<Vector> normals;
             double area = 0;
-            for (const Face f : one.mesh.faces()) {
-                const Vector3d normal = eigen(area_vector(one.mesh, f));
+            for (const Face f : sherd.mesh.faces()) {
+                const Vector3d normal = eigen(area_vector(sherd.mesh, f));
                 normals.push_back(vector_of(normal.norm() > 0 ? normal.normalized() : normal));
                 const auto& facets = given_[k].fragment->facets;
                 intact[f] = (facets.empty() || facets[f] != Facet::fracture) && normal.norm() > 0;
-                if (intact[f]) area += face_area(one.mesh, f);
+                if (intact[f]) area += face_area(sherd.mesh, f);
             }
             const double count = std::clamp(area / (0.25 * width * width), 200.0, 20000.0);
-            const SurfaceSamples surface_samples = sample_faces(one.mesh, normals, intact, static_cast<int>(count));
+            const SurfaceSamples surface_samples = sample_faces(sherd.mesh, normals, intact, static_cast<int>(count));
             double squares = 0;
             for (const Vector3d& p : surface_samples.places) squares += p.head<2>().squaredNorm();
-            one.radius = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, surface_samples.places.size())));
-            one.map =
-                std::make_unique<RotationMap>(cells, surface_samples, one.side.fracture.places, steps_, 2 * width, 0.5 * wall_);
+            sherd.radius = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, surface_samples.places.size())));
+            sherd.map =
+                std::make_unique<RotationMap>(cells, surface_samples, sherd.side.fracture.places, steps_, 2 * width, 0.5 * wall_);
         }
         std::vector<RotationPair> pairs(n * n);
         for (std::size_t i = 0; i < n; ++i)
@@ -109,25 +109,26 @@ private:
     /// The joints of the assembly; the maximum spanning tree of them carries it.
     void join(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
-        std::vector<std::pair<double, BreakJoint>> list;
+        std::vector<std::pair<double, BreakJoint>> scored_joints;
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 1; j < n; ++j) {
                 if (!assembly_.joined[i] || !assembly_.joined[j]) continue;
                 const double rotation = assembly_.rotations[j] - assembly_.rotations[i];
-                const RotationPair& pair = pairs_->of(i, j);
+                const RotationPair& pair = pairs_->at(i, j);
                 const MeetingRotation* meeting = pair.meeting(rotation);
                 if (meeting == nullptr || !(pair.value(rotation) > 0)) continue;
                 BreakJoint joint;
                 joint.first = static_cast<int>(i), joint.second = static_cast<int>(j);
-                list.emplace_back(pair.value(rotation), joint);
+                scored_joints.emplace_back(pair.value(rotation), joint);
             }
-        std::stable_sort(list.begin(), list.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+        std::stable_sort(scored_joints.begin(), scored_joints.end(),
+                         [](const auto& x, const auto& y) { return x.first > y.first; });
         DisjointSets groups(n);
         const auto anchor = std::find(fixed.begin(), fixed.end(), true);
         for (std::size_t k = 0; k < n; ++k)
             if (fixed[k]) groups.unite(static_cast<std::size_t>(anchor - fixed.begin()), k);
         DisjointSets tree = groups;
-        for (auto& [value, joint] : list) {
+        for (auto& [value, joint] : scored_joints) {
             joint.carries = tree.unite(static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second));
             result_.joints.push_back(joint);
         }
@@ -164,8 +165,8 @@ private:
         for (std::size_t k = 0; k < side.size(); ++k)
             if (assembly_.joined[k]) fracture[side[k] ? 1 : 0] += sherds_[k].side.fracture.area;
         const double minimum = std::min(fracture[0], fracture[1]);
-        joint.lead = lead.here > 0 ? std::clamp(1 - lead.elsewhere / lead.here, 0.0, 1.0) : 0;
-        joint.share = minimum > 0 ? std::clamp(lead.here / minimum, 0.0, 2.0) : 0;
+        joint.lead = lead.current > 0 ? std::clamp(1 - lead.best_other / lead.current, 0.0, 1.0) : 0;
+        joint.share = minimum > 0 ? std::clamp(lead.current / minimum, 0.0, 2.0) : 0;
         joint.confidence = std::min(1.0, 2 * joint.share) * std::min(1.0, 3 * joint.lead);
         joint.decided = joint.confidence >= options_.min_joint;
     }
@@ -181,56 +182,57 @@ private:
             if (fixed[k] || n == 1) continue;
             if (size[static_cast<std::size_t>(result_.group[k])] > 1) {
                 if (result_.group[k] != largest && result_.notes[k].empty())
-                    result_.notes[k] = "no decided joint holds it and those with it to the largest group";
+                    result_.notes[k] = "no decided joint connects its group to the largest group";
                 continue;
             }
             std::string& note = result_.notes[k];
-            if (note.empty()) note = "no turn about the axis is decided by its break";
+            if (note.empty()) note = "its fracture surface decides no rotation about the axis";
             std::vector<bool> others(n, true);
             others[k] = false;
-            double here = shared_area(k, assembly_.rotations), minimum = 0;
-            const double rotation = least_shared_rotation(*pairs_, assembly_.rotations, others, k, minimum);
+            double overlap = shared_area(k, assembly_.rotations), min_overlap = 0;
+            const double rotation = least_shared_rotation(*pairs_, assembly_.rotations, others, k, min_overlap);
             const double little = 0.02 * sherds_[k].map->area();
-            if (here > little && minimum < here) {
+            if (overlap > little && min_overlap < overlap) {
                 assembly_.rotations[k] = rotation;
                 assembly_.joined[k] = false;
-                now_[k] = rotated_by(rotation);
-                here = minimum;
+                motions_[k] = rotated_by(rotation);
+                overlap = min_overlap;
             }
-            note += here > little ? "; wherever it stands it lies where others do" : "; it stands where it overlaps nothing";
+            note += overlap > little ? "; it overlaps other sherds at every rotation"
+                                     : "; it is placed where it overlaps no other sherd";
         }
-        std::erase_if(result_.joints, [&](const BreakJoint& one) {
-            return !assembly_.joined[static_cast<std::size_t>(one.first)] ||
-                   !assembly_.joined[static_cast<std::size_t>(one.second)];
+        std::erase_if(result_.joints, [&](const BreakJoint& joint) {
+            return !assembly_.joined[static_cast<std::size_t>(joint.first)] ||
+                   !assembly_.joined[static_cast<std::size_t>(joint.second)];
         });
     }
 
     /// Aligns one sherd after the other with all sherds joined to it, constrained to the template.
     void refine(const std::vector<bool>& fixed) {
         const std::size_t n = given_.size();
-        const std::size_t still = largest();
+        const std::size_t anchor = largest();
         constexpr int sweeps = 4;
         for (int sweep = 0; sweep < sweeps; ++sweep)
             for (std::size_t k = 0; k < n; ++k) {
-                if (fixed[k] || k == still || sherds_[k].side.frames.empty()) continue;
-                BreakSide around;
+                if (fixed[k] || k == anchor || sherds_[k].side.frames.empty()) continue;
+                BreakSide joined_side;
                 for (const BreakJoint& joint : result_.joints) {
                     const auto a = static_cast<std::size_t>(joint.first), b = static_cast<std::size_t>(joint.second);
                     if (a != k && b != k) continue;
                     const std::size_t q = a == k ? b : a;
                     if (result_.group[q] != result_.group[k]) continue;
-                    const BreakSide side = sherds_[q].side.moved(now_[q]);
-                    around.frames.insert(around.frames.end(), side.frames.begin(), side.frames.end());
-                    auto& to = around.fracture;
-                    to.places.insert(to.places.end(), side.fracture.places.begin(), side.fracture.places.end());
-                    to.normals.insert(to.normals.end(), side.fracture.normals.begin(), side.fracture.normals.end());
+                    const BreakSide side = sherds_[q].side.moved(motions_[q]);
+                    joined_side.frames.insert(joined_side.frames.end(), side.frames.begin(), side.frames.end());
+                    auto& target = joined_side.fracture;
+                    target.places.insert(target.places.end(), side.fracture.places.begin(), side.fracture.places.end());
+                    target.normals.insert(target.normals.end(), side.fracture.normals.begin(), side.fracture.normals.end());
                 }
-                if (around.frames.empty()) continue;
-                const BreakTrees trees(Mesh(), around);
+                if (joined_side.frames.empty()) continue;
+                const BreakTrees trees(Mesh(), joined_side);
                 const BreakAligner aligner(trees.target(), sherds_[k].side, wall_, 0.5 * wall_, 1);
                 // Starts from the rotation alone, so that offsets do not accumulate over the sweeps.
-                const double rotation = rotation_about_axis(now_[k]);
-                now_[k] = aligner.align(rotated_by(rotation), static_cast<std::size_t>(options_.samples), 16, options_.hold);
+                const double rotation = rotation_about_axis(motions_[k]);
+                motions_[k] = aligner.align(rotated_by(rotation), static_cast<std::size_t>(options_.samples), 16, options_.hold);
             }
     }
 
@@ -241,12 +243,12 @@ private:
             const BreakTrees trees(sherds_[a].mesh, sherds_[a].side);
             const BreakAligner aligner(trees.target(), sherds_[b].side, wall_, 0.5 * wall_, 1);
             const PairCandidate fit =
-                aligner.judge(now_[a].inverse().after(now_[b]), static_cast<std::size_t>(options_.samples), 0.6);
-            joint.rotation = 180 / pi * wrapped(rotation_about_axis(now_[b]) - rotation_about_axis(now_[a]));
+                aligner.judge(motions_[a].inverse().after(motions_[b]), static_cast<std::size_t>(options_.samples), 0.6);
+            joint.rotation = 180 / pi * wrapped(rotation_about_axis(motions_[b]) - rotation_about_axis(motions_[a]));
             joint.contact = fit.contact, joint.rim = fit.rim, joint.residual = fit.residual, joint.score = fit.score;
         }
         std::vector<double> rotations;
-        for (const Motion& motion : now_) rotations.push_back(rotation_about_axis(motion));
+        for (const Motion& motion : motions_) rotations.push_back(rotation_about_axis(motion));
         for (std::size_t k = 0; k < n; ++k) {
             const double area = sherds_[k].map->area();
             result_.overlap.push_back(area > 0 ? std::min(1.0, shared_area(k, rotations) / area) : 0);
@@ -262,31 +264,31 @@ private:
     [[nodiscard]] double shared_area(std::size_t k, const std::vector<double>& rotations) const {
         double area = 0;
         for (std::size_t q = 0; q < given_.size(); ++q)
-            if (q != k) area += pairs_->of(q, k).shared_at(RotationPairs::between(q, k, rotations[q], rotations[k]));
+            if (q != k) area += pairs_->at(q, k).shared_at(RotationPairs::between(q, k, rotations[q], rotations[k]));
         return area;
     }
 
     const std::vector<SherdOnAxis>& given_;
     const RotationMatchOptions& options_;
     Motion upright_;  ///< maps the axis to the vertical axis through the origin
-    Mesh whole_;
+    Mesh vessel_;
     double wall_ = 0;
     int steps_ = 0;
     std::vector<UprightSherd> sherds_;
     std::unique_ptr<RotationPairs> pairs_;
     RotationAssembly assembly_;
-    std::vector<Motion> now_;  ///< per sherd, relative to its given pose, in the upright frame
+    std::vector<Motion> motions_;  ///< per sherd, relative to its given pose, in the upright frame
     RotationMatch result_;
 };
 
 }  // namespace
 
-RotationMatch match_rotations(const Mesh& whole, const Vector3d& point, const Vector3d& direction,
+RotationMatch match_rotations(const Mesh& vessel, const Vector3d& point, const Vector3d& direction,
                               const std::vector<SherdOnAxis>& sherds, const RotationMatchOptions& options) {
-    check_options(options, "turns by breaks");
-    if (sherds.empty()) fail_usage("there is no sherd", "give one or more");
+    check_options(options, "rotations by fractures");
+    if (sherds.empty()) fail_usage("there are no sherds", "give one or more");
     if (!(direction.norm() > 0)) fail_usage("the axis has no direction", "give a vector that is not zero");
-    return RotationMatcher(whole, point, direction.normalized(), sherds, options).run();
+    return RotationMatcher(vessel, point, direction.normalized(), sherds, options).run();
 }
 
 void RotationMatchOptions::describe(OptionList& visit) {
@@ -297,7 +299,7 @@ void RotationMatchOptions::describe(OptionList& visit) {
     visit("turn-candidates", candidates, "number of best rotations of two sherds that are refined", Range{1, 1000});
     visit("turn-beam", beam, "beam width of the search over assemblies of all sherds", Range{1, 100000});
     visit("turn-hold", hold, "weight of a sherd's place on the template against the fracture surfaces", Range{0, 1000});
-    visit("min-joint", min_joint, "minimum confidence of a joint; below it is not decided", Range{0, 1});
+    visit("min-joint", min_joint, "minimum confidence of a joint; below it the joint is not decided", Range{0, 1});
 }
 
 }  // namespace ostraka

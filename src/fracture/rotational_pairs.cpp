@@ -33,9 +33,9 @@ std::vector<double> contacts(const UprightSherd& a, const UprightSherd& b, int s
                 const Vector3d p = motion(b.side.fracture.places[k]);
                 const Index near = grid.near(p);
                 if (near == no_index) continue;
-                const double share = (p - a.side.fracture.places[near]).squaredNorm() / (search_radius * search_radius),
+                const double ratio = (p - a.side.fracture.places[near]).squaredNorm() / (search_radius * search_radius),
                              facing = -a.side.fracture.normals[near].dot(motion.rotation * b.side.fracture.normals[k]);
-                if (share < 1 && facing > 0.3) area[t] += each * (1 - share) * facing;
+                if (ratio < 1 && facing > 0.3) area[t] += each * (1 - ratio) * facing;
             }
         },
         8);
@@ -60,9 +60,9 @@ double RotationPair::shared_at(double rotation) const { return shared.empty() ? 
 
 double RotationPair::met(double rotation) const {
     double best = 0;
-    for (const MeetingRotation& one : meetings) {
-        const double off = wrapped(rotation - one.rotation) / tolerance;
-        if (off * off < 1) best = std::max(best, one.value * (1 - off * off));
+    for (const MeetingRotation& candidate : meetings) {
+        const double deviation = wrapped(rotation - candidate.rotation) / tolerance;
+        if (deviation * deviation < 1) best = std::max(best, candidate.value * (1 - deviation * deviation));
     }
     return best;
 }
@@ -70,9 +70,10 @@ double RotationPair::met(double rotation) const {
 const MeetingRotation* RotationPair::meeting(double rotation) const {
     const MeetingRotation* best = nullptr;
     double maximum = 0;
-    for (const MeetingRotation& one : meetings) {
-        const double off = wrapped(rotation - one.rotation) / tolerance, value = one.value * (1 - off * off);
-        if (value > maximum) best = &one, maximum = value;
+    for (const MeetingRotation& candidate : meetings) {
+        const double deviation = wrapped(rotation - candidate.rotation) / tolerance,
+                     value = candidate.value * (1 - deviation * deviation);
+        if (value > maximum) best = &candidate, maximum = value;
     }
     return best;
 }
@@ -105,31 +106,32 @@ RotationPair meet(const UprightSherd& a, const UprightSherd& b, int steps, doubl
     const BreakTrees trees(a.mesh, a.side);
     const BreakAligner aligner(trees.target(), b.side, wall, 0.5 * wall, 1);
     const double area = std::min(a.side.fracture.area, b.side.fracture.area);
-    std::vector<MeetingRotation> found(tops.size());
+    std::vector<MeetingRotation> meetings(tops.size());
     parallel_for(
         tops.size(),
         [&](std::size_t i) {
             const Motion start = rotated_by(2 * pi * static_cast<double>(tops[i]) / steps);
             const auto samples = static_cast<std::size_t>(options.samples);
-            MeetingRotation& one = found[i];
-            one.fit = aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
-            one.rotation = rotation_about_axis(one.fit.pose);
-            one.value = one.fit.score * area;
+            MeetingRotation& meeting = meetings[i];
+            meeting.fit =
+                aligner.judge(aligner.align(start, std::min<std::size_t>(samples, 600), 16, options.hold), samples, 0.6);
+            meeting.rotation = rotation_about_axis(meeting.fit.pose);
+            meeting.value = meeting.fit.score * area;
             // Poses off the template are not positions on this vessel.
-            const Motion off = one.fit.pose.after(rotated_by(-one.rotation));
+            const Motion residual_motion = meeting.fit.pose.after(rotated_by(-meeting.rotation));
             double squares = 0;
-            for (const Vector3d& p : b.side.intact.places) squares += (off(p) - p).squaredNorm();
-            if (!(squares < wall * wall * static_cast<double>(b.side.intact.places.size()))) one.value = 0;
+            for (const Vector3d& p : b.side.intact.places) squares += (residual_motion(p) - p).squaredNorm();
+            if (!(squares < wall * wall * static_cast<double>(b.side.intact.places.size()))) meeting.value = 0;
         },
         1);
-    std::stable_sort(found.begin(), found.end(),
+    std::stable_sort(meetings.begin(), meetings.end(),
                      [](const MeetingRotation& x, const MeetingRotation& y) { return x.value > y.value; });
-    for (MeetingRotation& one : found) {
-        if (!(one.value > 0)) break;
-        if (std::none_of(pair.meetings.begin(), pair.meetings.end(), [&](const MeetingRotation& k) {
-                return std::abs(wrapped(k.rotation - one.rotation)) < 0.5 * pair.tolerance;
+    for (MeetingRotation& meeting : meetings) {
+        if (!(meeting.value > 0)) break;
+        if (std::none_of(pair.meetings.begin(), pair.meetings.end(), [&](const MeetingRotation& accepted) {
+                return std::abs(wrapped(accepted.rotation - meeting.rotation)) < 0.5 * pair.tolerance;
             }))
-            pair.meetings.push_back(std::move(one));
+            pair.meetings.push_back(std::move(meeting));
     }
     return pair;
 }

@@ -13,16 +13,16 @@ namespace ostraka {
 /// Points on the profile of a surface of revolution about the vertical axis, as cells of the half plane (radius, height).
 class ProfileCells {
 public:
-    ProfileCells(const SurfaceSearch& whole, double width) : whole_(whole), width_(width) {}
+    ProfileCells(const SurfaceSearch& surface, double width) : surface_(surface), width_(width) {}
     /// The cell of the nearest surface point to `p` with a similar normal; -1 if it is farther than `search_radius`.
     int row(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double search_radius);
     [[nodiscard]] double width() const { return width_; }
-    [[nodiscard]] std::size_t rows() const { return known_.size(); }
+    [[nodiscard]] std::size_t rows() const { return cell_rows_.size(); }
 
 private:
-    const SurfaceSearch& whole_;
+    const SurfaceSearch& surface_;
     double width_;
-    std::map<std::pair<long, long>, int> known_;
+    std::map<std::pair<long, long>, int> cell_rows_;
 };
 
 /// The area that a sherd covers at each of `steps` angles.
@@ -40,7 +40,7 @@ private:
         int row, column;
     };
     int steps_;
-    double area_ = 0, each_ = 0;
+    double area_ = 0, area_per_sample_ = 0;
     std::vector<Place> deep_;
     std::vector<std::vector<bool>> covered_;  ///< per row; empty: nowhere
 };
@@ -88,7 +88,7 @@ class RotationPairs {
 public:
     RotationPairs(std::size_t count, std::vector<RotationPair> pairs) : count_(count), pairs_(std::move(pairs)) {}
     [[nodiscard]] std::size_t count() const { return count_; }
-    [[nodiscard]] const RotationPair& of(std::size_t i, std::size_t j) const {
+    [[nodiscard]] const RotationPair& at(std::size_t i, std::size_t j) const {
         return pairs_[std::min(i, j) * count_ + std::max(i, j)];
     }
     /// The relative rotation of two sherds in the convention of their pair.
@@ -96,7 +96,7 @@ public:
         return i < j ? rotation_j - rotation_i : rotation_i - rotation_j;
     }
     [[nodiscard]] double value(std::size_t i, std::size_t j, double rotation_i, double rotation_j) const {
-        return of(i, j).value(between(i, j, rotation_i, rotation_j));
+        return at(i, j).value(between(i, j, rotation_i, rotation_j));
     }
 
 private:
@@ -117,7 +117,7 @@ RotationAssembly assemble_rotations(const RotationPairs& pairs, const std::vecto
 /// Rotates the sherds in `side` against all others: the value of all pairs across at the current rotations, and the max area
 /// that meets at any other rotation, whether or not there is room.
 struct RotationLead {
-    double here = 0, elsewhere = 0;
+    double current = 0, best_other = 0;
 };
 RotationLead lead_of(const RotationPairs& pairs, const std::vector<double>& rotations, const std::vector<bool>& counts,
                      const std::vector<bool>& side, int steps);

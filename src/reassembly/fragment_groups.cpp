@@ -6,6 +6,8 @@
 #include "ostraka/geom/plane_motion.h"
 #include "refine_group.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -24,58 +26,58 @@ constexpr double hopeless_edge = 4;
 
 }  // namespace
 
-FragmentGroups::FragmentGroups(const LooseFragments& loose, const PairGraph& graph, const ReassemblyOptions& options)
-    : loose_(loose),
+FragmentGroups::FragmentGroups(const LooseFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options)
+    : fragments_(fragments),
       graph_(graph),
-      needed_(logit(std::clamp(options.min_join, 1e-6, 1 - 1e-6))),
+      min_log_odds_(logit(std::clamp(options.min_join, 1e-6, 1 - 1e-6))),
       order_(graph.edges().size()),
-      poses_(loose.count()),
-      version_(loose.count(), 0),
-      refined_(loose.count(), 0),
-      seen_(graph.edges().size()) {
-    for (std::size_t k = 0; k < loose.count(); ++k)
-        if (loose.has(k)) members_[k] = {k};
+      poses_(fragments.count()),
+      version_(fragments.count(), 0),
+      refined_(fragments.count(), 0),
+      examinations_(graph.edges().size()) {
+    for (std::size_t k = 0; k < fragments.count(); ++k)
+        if (fragments.has(k)) members_[k] = {k};
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::size_t x, std::size_t y) { return graph.edges()[x].boosted > graph.edges()[y].boosted; });
 }
 
-void FragmentGroups::merge(bool all) {
-    if (all) join_the_surest();
-    else join_as_promised();
+void FragmentGroups::merge(bool all_pairs) {
+    if (all_pairs) join_eagerly();
+    else join_lazily();
 }
 
 std::vector<UndoneJoin> FragmentGroups::undone() const {
-    std::vector<UndoneJoin> list;
+    std::vector<UndoneJoin> rejected;
     for (const std::size_t e : order_) {
         const PairEdge& edge = graph_.edges()[e];
-        if (edge.own < needed_) continue;
-        const double likely = probability(edge.own);
+        if (edge.pair_log_odds < min_log_odds_) continue;
+        const double likely = probability(edge.pair_log_odds);
         if (members_.at(edge.a) == members_.at(edge.b)) {
-            const Motion here = poses_[edge.a].inverse().after(poses_[edge.b]);
-            if (!loose_.agree(here, edge.pose, edge.b, loose_.loop_length(edge.a, edge.b, edge.b)))
-                list.push_back({edge.a, edge.b, likely, "surer joins put the two elsewhere"});
-        } else if (seen_[e] && !seen_[e]->verdict.against.empty()) {
-            list.push_back({edge.a, edge.b, likely, seen_[e]->verdict.against});
+            const Motion pose = poses_[edge.a].inverse().after(poses_[edge.b]);
+            if (!fragments_.agree(pose, edge.pose, edge.b, fragments_.loop_length(edge.a, edge.b, edge.b)))
+                rejected.push_back({edge.a, edge.b, likely, "more certain joins place the two elsewhere"});
+        } else if (examinations_[e] && !examinations_[e]->verdict.against.empty()) {
+            rejected.push_back({edge.a, edge.b, likely, examinations_[e]->verdict.against});
         } else {
-            list.push_back({edge.a, edge.b, likely, "what else would touch does not fit"});
+            rejected.push_back({edge.a, edge.b, likely, "other contacts of this join do not fit"});
         }
     }
-    return list;
+    return rejected;
 }
 
 std::vector<std::vector<std::size_t>> FragmentGroups::groups() const {
     std::set<std::vector<std::size_t>> distinct;
     for (const auto& [k, group] : members_)
         if (group.size() > 1) distinct.insert(group);
-    std::vector<std::vector<std::size_t>> list(distinct.begin(), distinct.end());
+    std::vector<std::vector<std::size_t>> sorted(distinct.begin(), distinct.end());
     const auto area = [&](const std::vector<std::size_t>& group) {
         double sum = 0;
-        for (const std::size_t k : group) sum += loose_[k].size() * loose_[k].size();
+        for (const std::size_t k : group) sum += fragments_[k].size() * fragments_[k].size();
         return sum;
     };
-    std::stable_sort(list.begin(), list.end(), [&](const auto& x, const auto& y) { return area(x) > area(y); });
-    return list;
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& x, const auto& y) { return area(x) > area(y); });
+    return sorted;
 }
 
 /// Pairs of fragments of two groups that may touch if `join` is applied to the second group.
@@ -83,19 +85,19 @@ FragmentPairs FragmentGroups::close_pairs(std::size_t a, std::size_t b, const Mo
     FragmentPairs close;
     for (const std::size_t i : members_.at(a))
         for (const std::size_t j : members_.at(b))
-            if (loose_.near(i, poses_[i], j, join.after(poses_[j]))) close.emplace_back(i, j);
+            if (fragments_.near(i, poses_[i], j, join.after(poses_[j]))) close.emplace_back(i, j);
     return close;
 }
 
 /// Registers the second group, as one rigid body, with the first by all contacts: the error of a single join grows with the
 /// distance from it.
-Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const {
+Motion FragmentGroups::registered(std::size_t a, std::size_t b, Motion join) const {
     if (members_.at(a).size() + members_.at(b).size() < 3) return join;
     constexpr int steps = 12;
     constexpr double widest = 4;  // in tolerances
     constexpr std::size_t samples = 300;
     for (int step = 0; step < steps; ++step) {
-        const double wide = std::pow(widest, 1 - std::min(1.0, 1.5 * step / (steps - 1)));
+        const double radius_factor = std::pow(widest, 1 - std::min(1.0, 1.5 * step / (steps - 1)));
         const FragmentPairs close = close_pairs(a, b, join);
         std::vector<std::vector<ContactPoint>> contacts(2 * close.size());
         parallel_for(
@@ -103,9 +105,10 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
             [&](std::size_t k) {
                 const auto [i, j] = close[k];
                 const Motion pose = poses_[i].inverse().after(join).after(poses_[j]);
-                contacts[2 * k] = contact_points(loose_[i], loose_[j], pose, wide * loose_.tolerance(i, j), samples);
-                contacts[2 * k + 1] =
-                    contact_points(loose_[j], loose_[i], pose.inverse(), wide * loose_.tolerance(i, j), samples);
+                contacts[2 * k] =
+                    contact_points(fragments_[i], fragments_[j], pose, radius_factor * fragments_.tolerance(i, j), samples);
+                contacts[2 * k + 1] = contact_points(fragments_[j], fragments_[i], pose.inverse(),
+                                                     radius_factor * fragments_.tolerance(i, j), samples);
             },
             1);
         std::vector<PlanePoint> planes;
@@ -115,13 +118,13 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
             // A sample represents the same area on either fragment.
             for (const bool back : {false, true}) {
                 const Motion &on = back ? moved_b : poses_[i], &from = back ? poses_[i] : moved_b;
-                const double each = loose_[back ? i : j].fracture_area();
-                for (const ContactPoint& one : contacts[2 * k + (back ? 1 : 0)]) {
-                    Vector3d point = from(one.on_b), normal = on.rotation * one.normal;
-                    const double off = normal.dot(on(one.on_a) - point);
+                const double each = fragments_[back ? i : j].fracture_area();
+                for (const ContactPoint& contact : contacts[2 * k + (back ? 1 : 0)]) {
+                    Vector3d point = from(contact.on_b), normal = on.rotation * contact.normal;
+                    const double distance = normal.dot(on(contact.on_a) - point);
                     // For samples of the first, the plane of the second is moved to the point of the first.
-                    if (back) point += off * normal, normal = -normal;
-                    planes.push_back({point, normal, off, each * one.weight});
+                    if (back) point += distance * normal, normal = -normal;
+                    planes.push_back({point, normal, distance, each * contact.weight});
                 }
             }
         }
@@ -133,168 +136,172 @@ Motion FragmentGroups::settled(std::size_t a, std::size_t b, Motion join) const 
 /// The evidence if the groups of an edge's fragments are joined along it.
 FragmentGroups::Verdict FragmentGroups::examine(const PairEdge& edge) const {
     Verdict verdict;
-    const Motion told = poses_[edge.a].after(edge.pose).after(poses_[edge.b].inverse());
-    const Motion join = settled(edge.a, edge.b, told);
+    const Motion initial = poses_[edge.a].after(edge.pose).after(poses_[edge.b].inverse());
+    const Motion join = registered(edge.a, edge.b, initial);
     verdict.join = join;
-    const Motion here = poses_[edge.a].inverse().after(join).after(poses_[edge.b]);
-    if (!loose_.agree(here, edge.pose, edge.b, loose_.loop_length(edge.a, edge.b, edge.b))) {
-        verdict.against = "what else would touch draws them apart";
+    const Motion pose = poses_[edge.a].inverse().after(join).after(poses_[edge.b]);
+    if (!fragments_.agree(pose, edge.pose, edge.b, fragments_.loop_length(edge.a, edge.b, edge.b))) {
+        verdict.against = "other contacts of this join pull the two apart";
         verdict.log_odds = -1e9;
         return verdict;
     }
-    double others = 0;
+    double other_log_odds = 0;
     const FragmentPairs close = close_pairs(edge.a, edge.b, join);
-    std::vector<JoinEvidence> seen(close.size());
+    std::vector<JoinEvidence> evidence(close.size());
     parallel_for(
         close.size(),
         [&](std::size_t k) {
             const auto [i, j] = close[k];
-            seen[k] =
-                measure_join(loose_[i], loose_[j], poses_[i].inverse().after(join).after(poses_[j]), loose_.tolerance(i, j));
+            evidence[k] = measure_join(fragments_[i], fragments_[j], poses_[i].inverse().after(join).after(poses_[j]),
+                                       fragments_.tolerance(i, j));
         },
         1);
     for (std::size_t k = 0; k < close.size(); ++k) {
         const auto [i, j] = close[k];
-        const double t = loose_.tolerance(i, j), smaller = std::min(loose_[i].fracture_area(), loose_[j].fracture_area()),
-                     inside = seen[k].penetration * std::max(seen[k].area * t * t, 0.01 * smaller);
+        const double t = fragments_.tolerance(i, j),
+                     smaller = std::min(fragments_[i].fracture_area(), fragments_[j].fracture_area()),
+                     inside = evidence[k].penetration * std::max(evidence[k].area * t * t, 0.01 * smaller);
         constexpr double touches = 0.03;
         // Coarse or noisy fractures overlap in places where they touch.
-        const double too_much = seen[k].share > touches ? 0.4 : 0.2;
-        if (inside > too_much * smaller) {
-            verdict.against = loose_[j].name() + " would lie inside " + loose_[i].name();
+        const double max_overlap = evidence[k].share > touches ? 0.4 : 0.2;
+        if (inside > max_overlap * smaller) {
+            verdict.against = fmt::format("{} would lie inside {}", fragments_[j].name(), fragments_[i].name());
             verdict.log_odds = -1e9;
             return verdict;
         }
-        const bool itself = i == edge.a && j == edge.b;
-        if (!itself && seen[k].share > touches) others += std::clamp(join_log_odds(seen[k]) - prior, -3.0, 5.0);
-        if (!itself && seen[k].share <= touches && inside > 0.02 * smaller) others -= 1;
+        const bool is_this_edge = i == edge.a && j == edge.b;
+        if (!is_this_edge && evidence[k].share > touches)
+            other_log_odds += std::clamp(join_log_odds(evidence[k]) - prior, -3.0, 5.0);
+        if (!is_this_edge && evidence[k].share <= touches && inside > 0.02 * smaller) other_log_odds -= 1;
     }
-    verdict.log_odds = std::max(edge.boosted + std::min(0.0, others), edge.own + others);
+    verdict.log_odds = std::max(edge.boosted + std::min(0.0, other_log_odds), edge.pair_log_odds + other_log_odds);
     return verdict;
 }
 
 /// Whether the verdict on an edge is up to date.
 bool FragmentGroups::up_to_date(std::size_t e) const {
-    return seen_[e] && seen_[e]->a == version_[graph_.edges()[e].a] && seen_[e]->b == version_[graph_.edges()[e].b];
+    return examinations_[e] && examinations_[e]->a == version_[graph_.edges()[e].a] &&
+           examinations_[e]->b == version_[graph_.edges()[e].b];
 }
 
-void FragmentGroups::look_at(std::size_t e) {
-    seen_[e] = Seen{version_[graph_.edges()[e].a], version_[graph_.edges()[e].b], examine(graph_.edges()[e])};
+void FragmentGroups::update(std::size_t e) {
+    examinations_[e] = Examination{version_[graph_.edges()[e].a], version_[graph_.edges()[e].b], examine(graph_.edges()[e])};
 }
 
 /// Joins the best edge, re-evaluating all edges after each join.
-void FragmentGroups::join_the_surest() {
+void FragmentGroups::join_eagerly() {
     while (true) {
         check_cancelled();
         std::size_t best = graph_.edges().size();
-        double maximum = needed_;
+        double maximum = min_log_odds_;
         for (const std::size_t e : order_) {
             const PairEdge& edge = graph_.edges()[e];
-            if (edge.boosted < needed_ - hopeless_edge) break;
+            if (edge.boosted < min_log_odds_ - hopeless_edge) break;
             if (members_.at(edge.a) == members_.at(edge.b)) continue;
-            if (!up_to_date(e)) look_at(e);
-            if (seen_[e]->verdict.log_odds > maximum) maximum = seen_[e]->verdict.log_odds, best = e;
+            if (!up_to_date(e)) update(e);
+            if (examinations_[e]->verdict.log_odds > maximum) maximum = examinations_[e]->verdict.log_odds, best = e;
             // Edges further down cannot overtake it: the gain from other contacts is bounded in practice by their own
             // certainty.
             if (best < graph_.edges().size() && edge.boosted < maximum - 12) break;
         }
         if (best == graph_.edges().size()) break;
-        join(graph_.edges()[best], seen_[best]->verdict.join);
+        join(graph_.edges()[best], examinations_[best]->verdict.join);
     }
 }
 
 /// For many fragments (lazy evaluation): the log odds from the last examination of an edge stand until they are the highest of
 /// all; only then is the edge examined again. An edge with evidence against it is not examined again; one that falls short,
 /// twice more.
-void FragmentGroups::join_as_promised() {
-    using Promise = std::pair<double, std::size_t>;  // log odds, edge
-    const auto later = [](const Promise& x, const Promise& y) {
+void FragmentGroups::join_lazily() {
+    using Candidate = std::pair<double, std::size_t>;  // log odds, edge
+    const auto later = [](const Candidate& x, const Candidate& y) {
         return std::pair(x.first, y.second) < std::pair(y.first, x.second);
     };
-    std::priority_queue<Promise, std::vector<Promise>, decltype(later)> promises(later);
-    std::vector<std::size_t> short_of;
-    std::vector<int> fallen(graph_.edges().size(), 0);
+    std::priority_queue<Candidate, std::vector<Candidate>, decltype(later)> queue(later);
+    std::vector<std::size_t> waiting;
+    std::vector<int> failures(graph_.edges().size(), 0);
     for (const std::size_t e : order_)
-        if (graph_.edges()[e].boosted >= needed_ - hopeless_edge) promises.emplace(graph_.edges()[e].boosted, e);
+        if (graph_.edges()[e].boosted >= min_log_odds_ - hopeless_edge) queue.emplace(graph_.edges()[e].boosted, e);
     Progress progress("join groups", members_.size());
-    while (!promises.empty()) {
+    while (!queue.empty()) {
         check_cancelled();
-        const std::size_t e = promises.top().second;
-        promises.pop();
+        const std::size_t e = queue.top().second;
+        queue.pop();
         const PairEdge& edge = graph_.edges()[e];
         if (members_.at(edge.a) == members_.at(edge.b)) continue;
         if (up_to_date(e)) {
-            join(edge, seen_[e]->verdict.join);
+            join(edge, examinations_[e]->verdict.join);
             progress.advance();
             // The group has grown and touches more fragments.
-            std::erase_if(short_of, [&](std::size_t other) {
+            std::erase_if(waiting, [&](std::size_t other) {
                 if (up_to_date(other)) return false;
-                promises.emplace(std::min(graph_.edges()[other].boosted, needed_), other);
+                queue.emplace(std::min(graph_.edges()[other].boosted, min_log_odds_), other);
                 return true;
             });
             continue;
         }
-        look_at(e);
-        const Verdict& verdict = seen_[e]->verdict;
+        update(e);
+        const Verdict& verdict = examinations_[e]->verdict;
         if (!verdict.against.empty()) continue;
-        constexpr int chances = 3;
-        if (verdict.log_odds > needed_) promises.emplace(verdict.log_odds, e);
-        else if (++fallen[e] < chances) short_of.push_back(e);
+        constexpr int max_attempts = 3;
+        if (verdict.log_odds > min_log_odds_) queue.emplace(verdict.log_odds, e);
+        else if (++failures[e] < max_attempts) waiting.push_back(e);
     }
 }
 
 void FragmentGroups::join(const PairEdge& edge, const Motion& move) {
-    std::vector<std::size_t> all = members_.at(edge.a);
+    std::vector<std::size_t> members = members_.at(edge.a);
     for (const std::size_t j : members_.at(edge.b)) {
         poses_[j] = move.after(poses_[j]);
-        all.push_back(j);
+        members.push_back(j);
     }
     ++versions_;
-    for (const std::size_t k : all) {
-        members_[k] = all;
+    for (const std::size_t k : members) {
+        members_[k] = members;
         version_[k] = versions_;
     }
     constexpr std::size_t small = 25;
-    constexpr double grown = 1.2;
-    std::size_t refined = 0;
-    for (const std::size_t k : all) refined = std::max(refined, refined_[k]);
+    constexpr double min_growth = 1.2;
+    std::size_t refined_size = 0;
+    for (const std::size_t k : members) refined_size = std::max(refined_size, refined_[k]);
     // Large groups are not refined after each join: the time would be quadratic in their size.
-    if (all.size() > small && static_cast<double>(all.size()) < grown * static_cast<double>(refined)) return;
-    refine(all, 3);
-    for (const std::size_t k : all) refined_[k] = all.size();
+    if (members.size() > small && static_cast<double>(members.size()) < min_growth * static_cast<double>(refined_size)) return;
+    refine(members, 3);
+    for (const std::size_t k : members) refined_[k] = members.size();
 }
 
 std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> FragmentGroups::meetings(
     const std::vector<std::size_t>& group) const {
-    std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> list;
+    std::vector<std::pair<std::pair<std::size_t, std::size_t>, JoinEvidence>> contacts;
     for (std::size_t x = 0; x < group.size(); ++x)
         for (std::size_t y = x + 1; y < group.size(); ++y) {
             const std::size_t i = std::min(group[x], group[y]), j = std::max(group[x], group[y]);
-            if (loose_.near(i, poses_[i], j, poses_[j])) list.push_back({{i, j}, {}});
+            if (fragments_.near(i, poses_[i], j, poses_[j])) contacts.push_back({{i, j}, {}});
         }
     parallel_for(
-        list.size(),
+        contacts.size(),
         [&](std::size_t k) {
-            const auto [i, j] = list[k].first;
-            list[k].second = measure_join(loose_[i], loose_[j], poses_[i].inverse().after(poses_[j]), loose_.tolerance(i, j));
+            const auto [i, j] = contacts[k].first;
+            contacts[k].second =
+                measure_join(fragments_[i], fragments_[j], poses_[i].inverse().after(poses_[j]), fragments_.tolerance(i, j));
         },
         1);
-    std::erase_if(list, [](const auto& one) { return one.second.share < 0.02; });
-    return list;
+    std::erase_if(contacts, [](const auto& contact) { return contact.second.share < 0.02; });
+    return contacts;
 }
 
 void FragmentGroups::refine(const std::vector<std::size_t>& group, int rounds) {
     std::vector<const PreparedBreak*> fragments;
     std::vector<Motion> poses;
-    std::map<std::size_t, std::size_t> place;
+    std::map<std::size_t, std::size_t> index;
     for (const std::size_t k : group) {
-        place[k] = fragments.size();
-        fragments.push_back(&loose_[k]);
+        index[k] = fragments.size();
+        fragments.push_back(&fragments_[k]);
         poses.push_back(poses_[k]);
     }
     std::vector<MeetingPair> pairs;
     for (const auto& [pair, evidence] : meetings(group))
-        pairs.push_back({place[pair.first], place[pair.second], loose_.tolerance(pair.first, pair.second)});
+        pairs.push_back({index[pair.first], index[pair.second], fragments_.tolerance(pair.first, pair.second)});
     refine_group(fragments, pairs, poses, rounds);
     for (std::size_t k = 0; k < group.size(); ++k) poses_[group[k]] = poses[k];
 }

@@ -12,11 +12,11 @@ namespace ostraka {
 class FragmentGroups {
 public:
     /// Starts with single fragments.
-    FragmentGroups(const LooseFragments& loose, const PairGraph& graph, const ReassemblyOptions& options);
+    FragmentGroups(const LooseFragments& fragments, const PairGraph& graph, const ReassemblyOptions& options);
 
-    /// Joins groups while the probability is high enough. `all`: few fragments, all edges are re-evaluated after each join;
+    /// Joins groups while the probability is high enough. `all_pairs`: few fragments, all edges are re-evaluated after each join;
     /// otherwise edges are re-evaluated lazily.
-    void merge(bool all);
+    void merge(bool all_pairs);
     /// Likely poses that were rejected.
     [[nodiscard]] std::vector<UndoneJoin> undone() const;
 
@@ -36,30 +36,30 @@ private:
         double log_odds = 0;
         std::string against;  ///< evidence against the join; empty: none
     };
-    struct Seen {
+    struct Examination {
         std::size_t a, b;  ///< versions of the groups
         Verdict verdict;
     };
 
     [[nodiscard]] FragmentPairs close_pairs(std::size_t a, std::size_t b, const Motion& join) const;
-    [[nodiscard]] Motion settled(std::size_t a, std::size_t b, Motion join) const;
+    [[nodiscard]] Motion registered(std::size_t a, std::size_t b, Motion join) const;
     [[nodiscard]] Verdict examine(const PairEdge& edge) const;
     [[nodiscard]] bool up_to_date(std::size_t e) const;
-    void look_at(std::size_t e);
-    void join_the_surest();
-    void join_as_promised();
+    void update(std::size_t e);
+    void join_eagerly();
+    void join_lazily();
     void join(const PairEdge& edge, const Motion& move);
 
-    const LooseFragments& loose_;
+    const LooseFragments& fragments_;
     const PairGraph& graph_;
-    double needed_;                   ///< min log odds of a join
+    double min_log_odds_;             ///< min log odds of a join
     std::vector<std::size_t> order_;  ///< edges, most certain first
     std::vector<Motion> poses_;
     std::map<std::size_t, std::vector<std::size_t>> members_;  ///< per fragment: the members of its group
     std::vector<std::size_t> version_;                         ///< per fragment: version of its group
     std::vector<std::size_t> refined_;                         ///< per fragment: size of its group when it was last refined
     std::size_t versions_ = 0;
-    std::vector<std::optional<Seen>> seen_;  ///< per edge
+    std::vector<std::optional<Examination>> examinations_;  ///< per edge
 };
 
 }  // namespace ostraka

@@ -5,24 +5,26 @@
 #include "ostraka/core/progress.h"
 #include "ostraka/geom/eigen.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
 
 using Eigen::Vector3d;
 
-LooseFragments::LooseFragments(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairEffort& effort,
+LooseFragments::LooseFragments(const std::vector<Fragment>& fragments, const ReassemblyOptions& options, const PairEffort& effort,
                                std::vector<std::string>& alone)
     : options_(options),
       effort_(effort),
-      prepared_(given.size()),
-      middle_(given.size(), Vector3d::Zero()),
-      radius_(given.size(), 0) {
-    Progress progress("prepare fragments", given.size());
+      prepared_(fragments.size()),
+      middle_(fragments.size(), Vector3d::Zero()),
+      radius_(fragments.size(), 0) {
+    Progress progress("prepare fragments", fragments.size());
     parallel_for(
-        given.size(),
+        fragments.size(),
         [&](std::size_t k) {
-            prepare(given[k], k, alone[k]);
+            prepare(fragments[k], k, alone[k]);
             progress.advance();
         },
         1);
@@ -30,23 +32,23 @@ LooseFragments::LooseFragments(const std::vector<Fragment>& given, const Reassem
 
 std::size_t LooseFragments::taking_part() const {
     return static_cast<std::size_t>(
-        std::count_if(prepared_.begin(), prepared_.end(), [](const auto& one) { return one != nullptr; }));
+        std::count_if(prepared_.begin(), prepared_.end(), [](const auto& fragment) { return fragment != nullptr; }));
 }
 
-void LooseFragments::prepare(const Fragment& given, std::size_t k, std::string& alone) {
-    const Mesh& mesh = given.mesh;
+void LooseFragments::prepare(const Fragment& fragment, std::size_t k, std::string& alone) {
+    const Mesh& mesh = fragment.mesh;
     if (mesh.number_of_faces() < static_cast<std::size_t>(options_.min_faces)) {
-        alone = "it has " + std::to_string(mesh.number_of_faces()) + " faces, too few to show how it broke";
+        alone = fmt::format("it has {} faces, too few to show its fracture", mesh.number_of_faces());
         return;
     }
     try {
-        prepared_[k] = std::make_unique<PreparedBreak>(given, effort_.prepared);
+        prepared_[k] = std::make_unique<PreparedBreak>(fragment, effort_.prepared);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::input) throw;
         alone = "it " + error.problem();
         return;
     }
-    alone = what_hides_the_break(*prepared_[k]);
+    alone = fracture_problem(*prepared_[k]);
     if (!alone.empty()) {
         prepared_[k].reset();
         return;
@@ -56,13 +58,13 @@ void LooseFragments::prepare(const Fragment& given, std::size_t k, std::string& 
 }
 
 /// Why a fracture cannot be matched with any other; empty: it can.
-std::string LooseFragments::what_hides_the_break(const PreparedBreak& one) const {
-    constexpr std::size_t little = 30;  // coarse sherds of a thousand faces have about a hundred fracture faces
-    if (one.fracture_faces() < little)
-        return "its break has " + std::to_string(one.fracture_faces()) + " faces, too few to show how it broke";
-    constexpr double smooth = 0.7;  // in tolerances
-    if (!effort_.all && one.relief() < smooth * options_.pairs.last_search_radius * join_scale(one, one))
-        return "its break is so smooth that it fits too many of so many fragments";
+std::string LooseFragments::fracture_problem(const PreparedBreak& fragment) const {
+    constexpr std::size_t min_fracture_faces = 30;  // coarse sherds of a thousand faces have about a hundred fracture faces
+    if (fragment.fracture_faces() < min_fracture_faces)
+        return fmt::format("its fracture surface has {} faces, too few to be matched", fragment.fracture_faces());
+    constexpr double min_relief = 0.7;  // in tolerances
+    if (!effort_.all_pairs && fragment.relief() < min_relief * options_.pairs.last_search_radius * join_scale(fragment, fragment))
+        return "its fracture surface is so smooth that it fits too many of the fragments";
     return "";
 }
 

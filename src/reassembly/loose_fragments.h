@@ -11,7 +11,7 @@ namespace ostraka {
 class LooseFragments {
 public:
     /// `alone` gets the reason why a fragment cannot be matched.
-    LooseFragments(const std::vector<Fragment>& given, const ReassemblyOptions& options, const PairEffort& effort,
+    LooseFragments(const std::vector<Fragment>& fragments, const ReassemblyOptions& options, const PairEffort& effort,
                    std::vector<std::string>& alone);
 
     [[nodiscard]] std::size_t count() const { return prepared_.size(); }
@@ -19,23 +19,23 @@ public:
     [[nodiscard]] bool has(std::size_t k) const { return prepared_[k] != nullptr; }
     [[nodiscard]] std::size_t taking_part() const;
     [[nodiscard]] const PreparedBreak& operator[](std::size_t k) const { return *prepared_[k]; }
-    [[nodiscard]] const std::vector<std::unique_ptr<PreparedBreak>>& all() const { return prepared_; }
+    [[nodiscard]] const std::vector<std::unique_ptr<PreparedBreak>>& prepared() const { return prepared_; }
     /// Mean of the vertices.
     [[nodiscard]] const Eigen::Vector3d& middle(std::size_t k) const { return middle_[k]; }
 
     /// Distance within which two fractures count as touching.
     [[nodiscard]] double tolerance(std::size_t a, std::size_t b) const;
     /// Whether two fragments may touch in these poses.
-    [[nodiscard]] bool near(std::size_t i, const Motion& of_i, std::size_t j, const Motion& of_j) const {
-        return (of_i(middle_[i]) - of_j(middle_[j])).norm() < radius_[i] + radius_[j];
+    [[nodiscard]] bool near(std::size_t i, const Motion& pose_i, std::size_t j, const Motion& pose_j) const {
+        return (pose_i(middle_[i]) - pose_j(middle_[j])).norm() < radius_[i] + radius_[j];
     }
     /// Whether two poses of fragment `k` in the frame of another fragment are equal within the tolerance of a loop.
     [[nodiscard]] bool agree(const Motion& x, const Motion& y, std::size_t k, double length) const;
     [[nodiscard]] double loop_length(std::size_t i, std::size_t j, std::size_t k) const;
 
 private:
-    void prepare(const Fragment& given, std::size_t k, std::string& alone);
-    [[nodiscard]] std::string what_hides_the_break(const PreparedBreak& one) const;
+    void prepare(const Fragment& fragment, std::size_t k, std::string& alone);
+    [[nodiscard]] std::string fracture_problem(const PreparedBreak& fragment) const;
 
     const ReassemblyOptions& options_;
     const PairEffort& effort_;

@@ -6,6 +6,8 @@
 #include "ostraka/geom/rigid_fit.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,15 +16,15 @@ namespace ostraka {
 
 namespace {
 
-struct Look {
+struct Measurements {
     double area = 0, volume = 0;
     double width = 0;  ///< width of the fracture: for a sherd, its wall thickness; 0: unknown
 };
 
 /// Twice the area of the fracture divided by the length of its rim.
-double break_width(const Fragment& fragment) {
+double fracture_width(const Fragment& fragment) {
     if (fragment.facets.empty()) return 0;
-    const auto broken = [&](Halfedge h) {
+    const auto on_fracture = [&](Halfedge h) {
         const Face f = fragment.mesh.face(h);
         return f != Mesh::null_face() && fragment.facets[f] == Facet::fracture;
     };
@@ -31,25 +33,25 @@ double break_width(const Fragment& fragment) {
         if (fragment.facets[f] == Facet::fracture) area += face_area(fragment.mesh, f);
     for (const Edge e : fragment.mesh.edges()) {
         const Halfedge h = fragment.mesh.halfedge(e);
-        if (broken(h) == broken(fragment.mesh.opposite(h))) continue;
+        if (on_fracture(h) == on_fracture(fragment.mesh.opposite(h))) continue;
         rim += (eigen(fragment.mesh.point(fragment.mesh.source(h))) - eigen(fragment.mesh.point(fragment.mesh.target(h)))).norm();
     }
     return rim > 0 ? 2 * area / rim : 0;
 }
 
-Look look_of(const Fragment& fragment) {
+Measurements measure(const Fragment& fragment) {
     const Mesh& mesh = fragment.mesh;
-    Look look;
-    look.width = break_width(fragment);
-    if (mesh.number_of_vertices() == 0) return look;
+    Measurements result;
+    result.width = fracture_width(fragment);
+    if (mesh.number_of_vertices() == 0) return result;
     const Eigen::Vector3d origin = eigen(mesh.point(Vertex(0)));
     for (const Face f : mesh.faces()) {
-        look.area += face_area(mesh, f);
+        result.area += face_area(mesh, f);
         const auto [a, b, c] = corners(mesh, f);
-        look.volume +=
+        result.volume +=
             (eigen(mesh.point(a)) - origin).dot((eigen(mesh.point(b)) - origin).cross(eigen(mesh.point(c)) - origin)) / 6;
     }
-    return look;
+    return result;
 }
 
 bool closed(const Mesh& mesh) {
@@ -57,14 +59,14 @@ bool closed(const Mesh& mesh) {
 }
 
 /// Whether the meshes have the same faces in the same order, by area.
-bool alike(const Mesh& a, const Mesh& b, double area) {
-    double off = 0;
-    for (const Face f : a.faces()) off += std::abs(face_area(a, f) - face_area(b, f));
-    return off < 1e-4 * area;
+bool have_equal_faces(const Mesh& a, const Mesh& b, double area) {
+    double difference = 0;
+    for (const Face f : a.faces()) difference += std::abs(face_area(a, f) - face_area(b, f));
+    return difference < 1e-4 * area;
 }
 
 /// Whether a rigid motion maps the vertices onto each other; otherwise a reflection does.
-bool by_motion(const Mesh& a, const Mesh& b) {
+bool is_rigid_copy(const Mesh& a, const Mesh& b) {
     std::vector<Eigen::Vector3d> from, to;
     const std::size_t n = a.number_of_vertices(), step = std::max<std::size_t>(1, n / 500);
     for (std::size_t k = 0; k < n; k += step) {
@@ -72,58 +74,59 @@ bool by_motion(const Mesh& a, const Mesh& b) {
         to.push_back(eigen(b.point(Vertex(static_cast<Index>(k)))));
     }
     const Motion motion = fit_motion(from, to);
-    double off = 0, extent = 0;
+    double max_distance = 0, extent = 0;
     for (std::size_t k = 0; k < from.size(); ++k) {
-        off = std::max(off, (motion(from[k]) - to[k]).norm());
+        max_distance = std::max(max_distance, (motion(from[k]) - to[k]).norm());
         extent = std::max(extent, (to[k] - to[0]).norm());
     }
-    return off < 1e-3 * extent;
+    return max_distance < 1e-3 * extent;
 }
 
 }  // namespace
 
 std::vector<OddFragment> odd_fragments(const std::vector<Fragment>& fragments) {
     std::vector<OddFragment> result;
-    std::vector<Look> looks;
+    std::vector<Measurements> measurements;
     std::vector<double> sizes, widths;
-    for (const Fragment& one : fragments) {
-        looks.push_back(look_of(one));
-        if (looks.back().area > 0) sizes.push_back(std::sqrt(looks.back().area));
-        if (looks.back().width > 0) widths.push_back(looks.back().width);
+    for (const Fragment& fragment : fragments) {
+        measurements.push_back(measure(fragment));
+        if (measurements.back().area > 0) sizes.push_back(std::sqrt(measurements.back().area));
+        if (measurements.back().width > 0) widths.push_back(measurements.back().width);
     }
-    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> same;  // by vertices and faces
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> by_size;  // by vertices and faces
     for (std::size_t k = 0; k < fragments.size(); ++k) {
         const Mesh& mesh = fragments[k].mesh;
-        if (!(looks[k].area > 0)) continue;
-        if (closed(mesh) && looks[k].volume < 0)
-            result.push_back({k, "is inside out: its faces look inwards; run 'ostraka mesh repair'", false});
-        auto& others = same[{mesh.number_of_vertices(), mesh.number_of_faces()}];
+        if (!(measurements[k].area > 0)) continue;
+        if (closed(mesh) && measurements[k].volume < 0)
+            result.push_back({k, "is inside out: its faces point inwards; run 'ostraka mesh repair'", false});
+        auto& others = by_size[{mesh.number_of_vertices(), mesh.number_of_faces()}];
         for (const std::size_t other : others) {
-            if (std::abs(looks[k].area - looks[other].area) > 1e-4 * looks[k].area ||
-                !alike(mesh, fragments[other].mesh, looks[k].area))
+            if (std::abs(measurements[k].area - measurements[other].area) > 1e-4 * measurements[k].area ||
+                !have_equal_faces(mesh, fragments[other].mesh, measurements[k].area))
                 continue;
-            const bool moved_only = by_motion(fragments[other].mesh, mesh);
-            result.push_back({k, (moved_only ? "is a copy of " : "is a mirror image of ") + fragments[other].name, true});
+            const bool moved_only = is_rigid_copy(fragments[other].mesh, mesh);
+            result.push_back(
+                {k, fmt::format("is a {} of {}", moved_only ? "copy" : "mirror image", fragments[other].name), true});
             break;
         }
         others.push_back(k);
     }
     if (sizes.size() < 2) return result;
-    const double usual = upper_median(sizes), usual_width = widths.empty() ? 0 : upper_median(widths);
+    const double median_size = upper_median(sizes), median_width = widths.empty() ? 0 : upper_median(widths);
     for (std::size_t k = 0; k < fragments.size(); ++k) {
-        const double ratio = std::sqrt(looks[k].area) / usual, times = ratio < 1 ? 1 / ratio : ratio,
-                     width_ratio = looks[k].width / usual_width;
+        const double ratio = std::sqrt(measurements[k].area) / median_size, times = ratio < 1 ? 1 / ratio : ratio,
+                     width_ratio = measurements[k].width / median_width;
         // Fragments of one vessel may differ in size by a factor of five, but not their walls in thickness.
-        const bool known = looks[k].width > 0 && widths.size() > 1,
-                   as_thick = !known || !(ratio < 1 ? width_ratio < 0.2 : width_ratio > 5);
-        if (!(looks[k].area > 0) || times < (as_thick ? 8 : 5)) continue;
-        constexpr double units[] = {10, 25.4, 100, 304.8, 1000};
-        const bool unit =
-            std::any_of(std::begin(units), std::end(units), [&](double u) { return std::abs(std::log(times / u)) < 0.7; });
-        if (unit)
+        const bool width_known = measurements[k].width > 0 && widths.size() > 1,
+                   similar_width = !width_known || !(ratio < 1 ? width_ratio < 0.2 : width_ratio > 5);
+        if (!(measurements[k].area > 0) || times < (similar_width ? 8 : 5)) continue;
+        constexpr double unit_ratios[] = {10, 25.4, 100, 304.8, 1000};
+        const bool is_unit_ratio = std::any_of(std::begin(unit_ratios), std::end(unit_ratios),
+                                               [&](double u) { return std::abs(std::log(times / u)) < 0.7; });
+        if (is_unit_ratio)
             result.push_back({k,
-                              "is " + digits(times, 2) + (ratio < 1 ? " times smaller" : " times larger") +
-                                  (sizes.size() > 2 ? " than most" : " than the other") + ": is it in another unit?",
+                              fmt::format("is {} times {} than {}: is it in another unit?", digits(times, 2),
+                                          ratio < 1 ? "smaller" : "larger", sizes.size() > 2 ? "most" : "the other"),
                               false});
     }
     return result;

@@ -11,12 +11,12 @@ using FragmentPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 /// Effort of the search, by the number of fragments.
 struct PairEffort {
-    bool all = true;           ///< few fragments: all pairs, with `first` only
+    bool all_pairs = true;     ///< few fragments: all pairs, with `first` only
     PairOptions prepared;      ///< options for preparing the fragments
     PairOptions first;         ///< options for trying the pairs
     std::size_t partners = 0;  ///< per fragment, number of partners that are tried
     PairOptions thorough;      ///< options for the pairs that the first attempt leaves open
-    std::size_t most_thorough = 0;
+    std::size_t max_thorough = 0;
 };
 
 /// Up to `partners` + 1 fragments: all pairs, with the given options. More fragments: the work is bounded. The pairs with the

@@ -10,14 +10,14 @@
 
 namespace ostraka {
 
-PairGraph::PairGraph(const LooseFragments& loose, const PairEffort& effort, const PairMemory& memory, Reassembly& result)
-    : loose_(loose) {
-    const FragmentPairs list = promising_pairs(loose.all(), effort);
-    const std::size_t takes_part = loose.taking_part();
-    result.pairs_tried = list.size();
-    result.pairs_left = takes_part > 0 ? takes_part * (takes_part - 1) / 2 - list.size() : 0;
-    pairs_ = tried("lay breaks against each other", list, effort.first, memory);
-    if (!effort.all) {
+PairGraph::PairGraph(const LooseFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result)
+    : fragments_(fragments) {
+    const FragmentPairs pairs = promising_pairs(fragments.prepared(), effort);
+    const std::size_t participants = fragments.taking_part();
+    result.pairs_tried = pairs.size();
+    result.pairs_left = participants > 0 ? participants * (participants - 1) / 2 - pairs.size() : 0;
+    pairs_ = register_pairs("register pairs of fractures", pairs, effort.first, memory);
+    if (!effort.all_pairs) {
         // Tries the pairs that the first attempt leaves open again, thoroughly.
         constexpr double hopeless = 0.003, beyond_doubt = 0.98;
         std::vector<std::size_t> open;
@@ -25,36 +25,36 @@ PairGraph::PairGraph(const LooseFragments& loose, const PairEffort& effort, cons
             if (pairs_[p].confidence > hopeless && pairs_[p].confidence < beyond_doubt) open.push_back(p);
         std::stable_sort(open.begin(), open.end(),
                          [&](std::size_t x, std::size_t y) { return pairs_[x].confidence > pairs_[y].confidence; });
-        if (open.size() > effort.most_thorough) open.resize(effort.most_thorough);
-        FragmentPairs again;
-        for (const std::size_t p : open) again.push_back(list[p]);
-        std::vector<PairOfMany> better = tried("lay the likely ones more thoroughly", again, effort.thorough, memory);
+        if (open.size() > effort.max_thorough) open.resize(effort.max_thorough);
+        FragmentPairs open_pairs;
+        for (const std::size_t p : open) open_pairs.push_back(pairs[p]);
+        std::vector<PairOfMany> better = register_pairs("register likely pairs thoroughly", open_pairs, effort.thorough, memory);
         for (std::size_t k = 0; k < open.size(); ++k) pairs_[open[k]] = std::move(better[k]);
     }
     make_edges();
     close_loops();
 }
 
-std::vector<PairOfMany> PairGraph::tried(const std::string& phase, const FragmentPairs& list, const PairOptions& how,
-                                         const PairMemory& memory) const {
-    std::vector<PairOfMany> result(list.size());
-    std::mutex one_at_a_time;
-    Progress progress(phase, list.size());
+std::vector<PairOfMany> PairGraph::register_pairs(const std::string& phase, const FragmentPairs& pairs,
+                                                  const PairOptions& options, const PairMemory& memory) const {
+    std::vector<PairOfMany> result(pairs.size());
+    std::mutex memory_mutex;
+    Progress progress(phase, pairs.size());
     parallel_for(
-        list.size(),
+        pairs.size(),
         [&](std::size_t p) {
             check_cancelled();
-            const auto [i, j] = list[p];
+            const auto [i, j] = pairs[p];
             std::optional<PairOfMany> pair;
             if (memory.recall) {
-                const std::lock_guard lock(one_at_a_time);
-                pair = memory.recall(i, j, how);
+                const std::lock_guard lock(memory_mutex);
+                pair = memory.recall(i, j, options);
             }
             if (!pair) {
-                BreakPair found = pair_breaks(loose_[i], loose_[j], how);
-                pair = PairOfMany{i, j, std::move(found.candidates), found.confidence};
-                const std::lock_guard lock(one_at_a_time);
-                if (memory.keep) memory.keep(*pair, how);
+                BreakPair registration = pair_breaks(fragments_[i], fragments_[j], options);
+                pair = PairOfMany{i, j, std::move(registration.candidates), registration.confidence};
+                const std::lock_guard lock(memory_mutex);
+                if (memory.keep) memory.keep(*pair, options);
             }
             result[p] = std::move(*pair);
             progress.advance();
@@ -64,20 +64,20 @@ std::vector<PairOfMany> PairGraph::tried(const std::string& phase, const Fragmen
 }
 
 double PairGraph::probable(double alone) const {
-    return probability(logit(std::clamp(alone, 1e-9, 1 - 1e-9)) + log_odds_of_a_join_among(loose_.count()));
+    return probability(logit(std::clamp(alone, 1e-9, 1 - 1e-9)) + log_odds_of_a_join_among(fragments_.count()));
 }
 
 void PairGraph::make_edges() {
-    constexpr double least = 0.002;
+    constexpr double min_probability = 0.002;
     for (const PairOfMany& pair : pairs_) {
         for (std::size_t c = 0; c < pair.candidates.size(); ++c) {
-            const double here = pair.candidates[c].log_odds, best = pair.candidates.front().log_odds,
-                         lead = c > 0                        ? here - best
-                                : pair.candidates.size() > 1 ? here - pair.candidates[1].log_odds
+            const double log_odds = pair.candidates[c].log_odds, best = pair.candidates.front().log_odds,
+                         lead = c > 0                        ? log_odds - best
+                                : pair.candidates.size() > 1 ? log_odds - pair.candidates[1].log_odds
                                                              : 1e9;
-            const double likely = probable(join_probability(here, lead));
-            if (likely < least) continue;
-            of_pair_[{pair.first, pair.second}].push_back(edges_.size());
+            const double likely = probable(join_probability(log_odds, lead));
+            if (likely < min_probability) continue;
+            pair_edges_[{pair.first, pair.second}].push_back(edges_.size());
             edges_.push_back({pair.first, pair.second, pair.candidates[c].pose, logit(likely), logit(likely)});
         }
     }
@@ -85,8 +85,8 @@ void PairGraph::make_edges() {
 
 const std::vector<std::size_t>& PairGraph::edges_of(std::size_t i, std::size_t j) const {
     static const std::vector<std::size_t> none;
-    const auto found = of_pair_.find({i, j});
-    return found == of_pair_.end() ? none : found->second;
+    const auto entry = pair_edges_.find({i, j});
+    return entry == pair_edges_.end() ? none : entry->second;
 }
 
 /// Edges that close loops of three gain probability from that of the other two.
@@ -94,15 +94,15 @@ void PairGraph::close_loops() {
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) {
         std::vector<double> support(edges_.size(), 0);
-        for (const auto& [first, those] : of_pair_) {
+        for (const auto& [first, ij_edges] : pair_edges_) {
             const auto [i, j] = first;
-            for (auto next = of_pair_.lower_bound({j, 0}); next != of_pair_.end() && next->first.first == j; ++next) {
+            for (auto next = pair_edges_.lower_bound({j, 0}); next != pair_edges_.end() && next->first.first == j; ++next) {
                 const std::size_t k = next->first.second;
                 for (const std::size_t ik : edges_of(i, k))
-                    for (const std::size_t ij : those)
+                    for (const std::size_t ij : ij_edges)
                         for (const std::size_t jk : next->second) {
-                            if (!loose_.agree(edges_[ij].pose.after(edges_[jk].pose), edges_[ik].pose, k,
-                                              loose_.loop_length(i, j, k)))
+                            if (!fragments_.agree(edges_[ij].pose.after(edges_[jk].pose), edges_[ik].pose, k,
+                                                  fragments_.loop_length(i, j, k)))
                                 continue;
                             const double p = probability(edges_[ij].boosted), q = probability(edges_[jk].boosted),
                                          r = probability(edges_[ik].boosted);
@@ -110,7 +110,8 @@ void PairGraph::close_loops() {
                         }
             }
         }
-        for (std::size_t e = 0; e < edges_.size(); ++e) edges_[e].boosted = edges_[e].own + std::log(1 + loop_gain * support[e]);
+        for (std::size_t e = 0; e < edges_.size(); ++e)
+            edges_[e].boosted = edges_[e].pair_log_odds + std::log(1 + loop_gain * support[e]);
     }
 }
 

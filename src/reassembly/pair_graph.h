@@ -18,16 +18,16 @@ constexpr double loop_gain = 1000;
 
 /// A candidate of a pair.
 struct PairEdge {
-    std::size_t a, b;  ///< a < b
-    Motion pose;       ///< maps b onto a
-    double own;        ///< log odds from the two fragments alone
-    double boosted;    ///< log odds including loops
+    std::size_t a, b;      ///< a < b
+    Motion pose;           ///< maps b onto a
+    double pair_log_odds;  ///< log odds from the two fragments alone
+    double boosted;        ///< log odds including loops
 };
 
 class PairGraph {
 public:
     /// Tries the promising pairs and writes their number to `result`.
-    PairGraph(const LooseFragments& loose, const PairEffort& effort, const PairMemory& memory, Reassembly& result);
+    PairGraph(const LooseFragments& fragments, const PairEffort& effort, const PairMemory& memory, Reassembly& result);
 
     [[nodiscard]] const std::vector<PairOfMany>& pairs() const { return pairs_; }
     [[nodiscard]] const std::vector<PairEdge>& edges() const { return edges_; }
@@ -37,15 +37,15 @@ public:
     [[nodiscard]] double probable(double alone) const;
 
 private:
-    [[nodiscard]] std::vector<PairOfMany> tried(const std::string& phase, const FragmentPairs& list, const PairOptions& how,
-                                                const PairMemory& memory) const;
+    [[nodiscard]] std::vector<PairOfMany> register_pairs(const std::string& phase, const FragmentPairs& pairs,
+                                                         const PairOptions& options, const PairMemory& memory) const;
     void make_edges();
     void close_loops();
 
-    const LooseFragments& loose_;
+    const LooseFragments& fragments_;
     std::vector<PairOfMany> pairs_;
     std::vector<PairEdge> edges_;
-    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> of_pair_;  ///< edges; the lower index first
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> pair_edges_;  ///< edges; the lower index first
 };
 
 }  // namespace ostraka

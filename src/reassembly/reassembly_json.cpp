@@ -5,6 +5,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/registration/pose_json.h"
 
+#include <fmt/core.h>
+
 #include <cstring>
 
 namespace ostraka {
@@ -17,52 +19,54 @@ constexpr double JoinEvidence::*evidence_members[] = {
     &JoinEvidence::rim,         &JoinEvidence::rim_share,   &JoinEvidence::rim_coverage, &JoinEvidence::rim_step,
     &JoinEvidence::penetration, &JoinEvidence::depth,       &JoinEvidence::widths,       &JoinEvidence::side_turn,
     &JoinEvidence::side_step,   &JoinEvidence::side_length, &JoinEvidence::noise,        &JoinEvidence::edge,
-    &JoinEvidence::breaks,      &JoinEvidence::axis,        &JoinEvidence::own_axis};
-static_assert(std::size(evidence_members) == JoinEvidence::numbers, "what is not kept would be lost in a run that goes on");
+    &JoinEvidence::roughness,   &JoinEvidence::axis,        &JoinEvidence::own_axis};
+static_assert(std::size(evidence_members) == JoinEvidence::numbers, "a member that is not stored would be lost in a resumed run");
 
 double number_of(const JsonValue& value) {
-    if (!value.IsNumber()) fail_input("pair", "holds something that is no number", "remove the file");
+    if (!value.IsNumber()) fail_input("pair", "contains a value that is not a number", "remove the file");
     return value.GetDouble();
 }
 
 }  // namespace
 
 JsonValue pair_of_many_to_json(const PairOfMany& pair, JsonAllocator& allocator) {
-    const auto of_candidate = [&](const PairCandidate& one) {
+    const auto candidate_to_json = [&](const PairCandidate& candidate) {
         std::vector<double> evidence;
-        for (const auto member : evidence_members) evidence.push_back(one.evidence.*member);
+        for (const auto member : evidence_members) evidence.push_back(candidate.evidence.*member);
         std::vector<double> pose;
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) pose.push_back(one.pose.rotation(i, j));
-        for (int i = 0; i < 3; ++i) pose.push_back(one.pose.translation[i]);
+            for (int j = 0; j < 3; ++j) pose.push_back(candidate.pose.rotation(i, j));
+        for (int i = 0; i < 3; ++i) pose.push_back(candidate.pose.translation[i]);
         return json_object(allocator, "pose", pose, "evidence", evidence, "numbers",
-                           std::vector<double>{one.score, one.contact, one.rim, one.residual, one.penetration, one.depth});
+                           std::vector<double>{candidate.score, candidate.contact, candidate.rim, candidate.residual,
+                                               candidate.penetration, candidate.depth});
     };
     return json_object(allocator, "confidence", pair.confidence, "candidates",
-                       json_list(pair.candidates, allocator, of_candidate));
+                       json_list(pair.candidates, allocator, candidate_to_json));
 }
 
 PairOfMany pair_of_many_from_json(const JsonValue& value, std::size_t first, std::size_t second) {
-    const auto list = [](const JsonValue& of, const char* name, std::size_t size) -> const JsonValue& {
-        if (!of.IsObject() || !of.HasMember(name) || !of[name].IsArray() || (size > 0 && of[name].Size() != size))
-            fail_input("pair", std::string("has no list \"") + name + "\" as it should", "remove the file");
-        return of[name];
+    const auto member_list = [](const JsonValue& object, const char* name, std::size_t size) -> const JsonValue& {
+        if (!object.IsObject() || !object.HasMember(name) || !object[name].IsArray() || (size > 0 && object[name].Size() != size))
+            fail_input("pair", fmt::format("has no list \"{}\" of the expected length", name), "remove the file");
+        return object[name];
     };
     PairOfMany pair{first, second, {}, 0};
     if (!value.IsObject() || !value.HasMember("confidence")) fail_input("pair", "has no confidence", "remove the file");
     pair.confidence = number_of(value["confidence"]);
-    for (const JsonValue& from : list(value, "candidates", 0).GetArray()) {
-        PairCandidate one;
-        const JsonValue& pose = list(from, "pose", 12);
-        for (int i = 0; i < 9; ++i) one.pose.rotation(i / 3, i % 3) = number_of(pose[static_cast<unsigned>(i)]);
-        for (int i = 0; i < 3; ++i) one.pose.translation[i] = number_of(pose[static_cast<unsigned>(9 + i)]);
-        const JsonValue& evidence = list(from, "evidence", std::size(evidence_members));
-        for (unsigned k = 0; k < evidence.Size(); ++k) one.evidence.*evidence_members[k] = number_of(evidence[k]);
-        const JsonValue& numbers = list(from, "numbers", 6);
-        double* const to[] = {&one.score, &one.contact, &one.rim, &one.residual, &one.penetration, &one.depth};
-        for (unsigned k = 0; k < 6; ++k) *to[k] = number_of(numbers[k]);
-        one.log_odds = join_log_odds(one.evidence);
-        pair.candidates.push_back(one);
+    for (const JsonValue& entry : member_list(value, "candidates", 0).GetArray()) {
+        PairCandidate candidate;
+        const JsonValue& pose = member_list(entry, "pose", 12);
+        for (int i = 0; i < 9; ++i) candidate.pose.rotation(i / 3, i % 3) = number_of(pose[static_cast<unsigned>(i)]);
+        for (int i = 0; i < 3; ++i) candidate.pose.translation[i] = number_of(pose[static_cast<unsigned>(9 + i)]);
+        const JsonValue& evidence = member_list(entry, "evidence", std::size(evidence_members));
+        for (unsigned k = 0; k < evidence.Size(); ++k) candidate.evidence.*evidence_members[k] = number_of(evidence[k]);
+        const JsonValue& numbers = member_list(entry, "numbers", 6);
+        double* const members[] = {&candidate.score,    &candidate.contact,     &candidate.rim,
+                                   &candidate.residual, &candidate.penetration, &candidate.depth};
+        for (unsigned k = 0; k < 6; ++k) *members[k] = number_of(numbers[k]);
+        candidate.log_odds = join_log_odds(candidate.evidence);
+        pair.candidates.push_back(candidate);
     }
     return pair;
 }
@@ -90,20 +94,20 @@ JsonValue reassembly_to_json(const Reassembly& result, const std::vector<std::st
             if (result.group[k] == g) members.push_back(names[k]);
         groups.PushBack(json_object(allocator, "fragments", members), allocator);
     }
-    const auto of_join = [&](const FragmentJoin& one) {
-        return json_object(allocator, "first", names[one.first], "second", names[one.second], "group",
-                           result.group[one.first] + 1, "confidence", one.confidence, "byTheTwoAlone", one.pair, "loops",
-                           one.loops, "carries", one.carries, "contact", one.evidence.share, "rim", one.evidence.rim_share,
-                           "penetration", one.evidence.penetration, "pose", pose_to_json(one.pose, allocator), "because",
-                           one.reason);
+    const auto join_to_json = [&](const FragmentJoin& join) {
+        return json_object(allocator, "first", names[join.first], "second", names[join.second], "group",
+                           result.group[join.first] + 1, "confidence", join.confidence, "byTheTwoAlone", join.pair, "loops",
+                           join.loops, "carries", join.carries, "contact", join.evidence.share, "rim", join.evidence.rim_share,
+                           "penetration", join.evidence.penetration, "pose", pose_to_json(join.pose, allocator), "because",
+                           join.reason);
     };
-    const auto of_undone = [&](const UndoneJoin& one) {
-        return json_object(allocator, "first", names[one.first], "second", names[one.second], "byTheTwoAlone", one.pair,
-                           "because", one.reason);
+    const auto rejected_to_json = [&](const UndoneJoin& rejected) {
+        return json_object(allocator, "first", names[rejected.first], "second", names[rejected.second], "byTheTwoAlone",
+                           rejected.pair, "because", rejected.reason);
     };
-    return json_object(allocator, "groups", std::move(groups), "joins", json_list(result.joins, allocator, of_join), "undone",
-                       json_list(result.undone, allocator, of_undone), "pairsTried", result.pairs_tried, "pairsLeft",
-                       result.pairs_left);
+    return json_object(allocator, "groups", std::move(groups), "joins", json_list(result.joins, allocator, join_to_json),
+                       "undone", json_list(result.undone, allocator, rejected_to_json), "pairsTried", result.pairs_tried,
+                       "pairsLeft", result.pairs_left);
 }
 
 }  // namespace ostraka

@@ -19,18 +19,18 @@ using Eigen::Vector3d;
 namespace {
 
 /// Distance of a point of the second fragment from a plane of the first.
-struct OffPlane {
+struct PlaneDistance {
     ContactPoint contact;
     double weight;
 
     template <class T>
-    bool operator()(const T* rotation_a, const T* translation_a, const T* rotation_b, const T* translation_b, T* off) const {
+    bool operator()(const T* rotation_a, const T* translation_a, const T* rotation_b, const T* translation_b, T* distance) const {
         using Vector = Eigen::Matrix<T, 3, 1>;
         const Eigen::Map<const Eigen::Quaternion<T>> ra(rotation_a), rb(rotation_b);
         const Eigen::Map<const Vector> ta(translation_a), tb(translation_b);
         const Vector on_b = contact.on_b.cast<T>(), on_a = contact.on_a.cast<T>(), normal = contact.normal.cast<T>();
-        const Vector whole = rb * on_b + tb - ta;
-        off[0] = T(weight) * normal.dot(ra.conjugate() * whole - on_a);
+        const Vector offset = rb * on_b + tb - ta;
+        distance[0] = T(weight) * normal.dot(ra.conjugate() * offset - on_a);
         return true;
     }
 };
@@ -57,7 +57,7 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
     const std::size_t samples = std::clamp<std::size_t>(200 * 25 / n, 40, 200);
     for (int round = 0; round < rounds; ++round) {
         check_cancelled();
-        const double wide = rounds > 1 ? 2 - static_cast<double>(round) / (rounds - 1) : 1;
+        const double radius_factor = rounds > 1 ? 2 - static_cast<double>(round) / (rounds - 1) : 1;
         ceres::Problem::Options ownership;
         ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
         ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -70,13 +70,13 @@ void refine_group(const std::vector<const PreparedBreak*>& fragments, const std:
         }
         problem.SetParameterBlockConstant(rotations[0].coeffs().data());
         problem.SetParameterBlockConstant(translations[0].data());
-        for (const MeetingPair& one : meetings)
-            for (const auto& [a, b] : {std::pair(one.first, one.second), std::pair(one.second, one.first)}) {
-                const auto contacts =
-                    contact_points(*fragments[a], *fragments[b], pose(a).inverse().after(pose(b)), wide * one.tolerance, samples);
+        for (const MeetingPair& meeting : meetings)
+            for (const auto& [a, b] : {std::pair(meeting.first, meeting.second), std::pair(meeting.second, meeting.first)}) {
+                const auto contacts = contact_points(*fragments[a], *fragments[b], pose(a).inverse().after(pose(b)),
+                                                     radius_factor * meeting.tolerance, samples);
                 for (const ContactPoint& contact : contacts)
-                    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<OffPlane, 1, 4, 3, 4, 3>(
-                                                 new OffPlane{contact, std::sqrt(contact.weight) / one.tolerance}),
+                    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PlaneDistance, 1, 4, 3, 4, 3>(
+                                                 new PlaneDistance{contact, std::sqrt(contact.weight) / meeting.tolerance}),
                                              &loss, rotations[a].coeffs().data(), translations[a].data(),
                                              rotations[b].coeffs().data(), translations[b].data());
             }

@@ -5,6 +5,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/relation/topology.h"
 
+#include <fmt/core.h>
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/maximum_weighted_matching.hpp>
 
@@ -20,7 +21,7 @@ using Eigen::Vector3d;
 namespace {
 
 /// Features of an annotation for matching.
-struct Portrait {
+struct MatchFeatures {
     const Annotation* annotation;
     std::set<std::string> containers;  ///< tags
     Vector3d centre = Vector3d::Zero();
@@ -28,31 +29,31 @@ struct Portrait {
     double extent = 0;  ///< area of a region, length of a line
 };
 
-std::vector<Portrait> portraits(const Mesh& mesh, const AnnotationSet& set, const Motion& pose) {
+std::vector<MatchFeatures> matching_features(const Mesh& mesh, const AnnotationSet& set, const Motion& pose) {
     const ContainmentOrder order = topology(mesh, set).order;
-    std::vector<Portrait> list;
+    std::vector<MatchFeatures> result;
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];
-        Portrait portrait{&annotation, {}};
+        MatchFeatures features{&annotation, {}};
         for (const std::size_t c : order.containers[i])
-            if (!set.annotations[c].all) portrait.containers.insert(set.annotations[c].tag);
+            if (!set.annotations[c].all) features.containers.insert(set.annotations[c].tag);
         Eigen::AlignedBox3d box;
         double weight = 0;
         const auto add = [&](const Vector3d& place, double w) {
-            portrait.centre += w * place;
+            features.centre += w * place;
             weight += w;
         };
         if (annotation.type == AnnotationType::region) {
             for (const auto& [face, share] : face_shares(mesh, annotation)) {
                 const double area = share * face_area(mesh, Face(face)) * pose.scale * pose.scale;
-                portrait.extent += area;
+                features.extent += area;
                 add(pose(eigen(centroid(mesh, Face(face)))), area);
             }
         }
         for (const auto& line : annotation.polylines)
             for (std::size_t k = 1; k < line.size(); ++k) {
                 const Vector3d a = pose(eigen(mesh.point(Vertex(line[k - 1])))), b = pose(eigen(mesh.point(Vertex(line[k]))));
-                portrait.extent += (b - a).norm();
+                features.extent += (b - a).norm();
                 add((a + b) / 2, (b - a).norm());
             }
         for (const Index v : touched_vertices(mesh, annotation)) {
@@ -60,11 +61,11 @@ std::vector<Portrait> portraits(const Mesh& mesh, const AnnotationSet& set, cons
             box.extend(place);
             if (annotation.type == AnnotationType::point) add(place, 1);
         }
-        if (weight > 0) portrait.centre /= weight;
-        portrait.size = box.isEmpty() ? 0 : box.diagonal().norm();
-        list.push_back(std::move(portrait));
+        if (weight > 0) features.centre /= weight;
+        features.size = box.isEmpty() ? 0 : box.diagonal().norm();
+        result.push_back(std::move(features));
     }
-    return list;
+    return result;
 }
 
 /// Share of the common attributes that agree; 1 if there are none.
@@ -85,7 +86,7 @@ double agreement(const Annotation& a, const Annotation& b) {
     return count > 0 ? sum / count : 1;
 }
 
-AnnotationMatch compare(const Portrait& theirs, const Portrait& ours, double diagonal) {
+AnnotationMatch compare(const MatchFeatures& theirs, const MatchFeatures& ours, double diagonal) {
     AnnotationMatch match{theirs.annotation->id, ours.annotation->id};
     match.attributes = agreement(*ours.annotation, *theirs.annotation);
     if (!theirs.containers.empty()) {
@@ -93,8 +94,8 @@ AnnotationMatch compare(const Portrait& theirs, const Portrait& ours, double dia
         for (const std::string& tag : theirs.containers) common += ours.containers.count(tag);
         match.containers = static_cast<double>(common) / static_cast<double>(theirs.containers.size());
     }
-    const double size = std::max(ours.size, 0.05 * diagonal), off = (ours.centre - theirs.centre).norm() / size;
-    match.place = std::exp(-off * off);
+    const double size = std::max(ours.size, 0.05 * diagonal), distance = (ours.centre - theirs.centre).norm() / size;
+    match.place = std::exp(-distance * distance);
     if (theirs.extent > ours.extent) match.extent = theirs.extent > 0 ? ours.extent / theirs.extent : 1;
     match.score = (match.attributes + match.containers + match.place + match.extent) / 4;
     return match;
@@ -106,31 +107,32 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
                                                const AnnotationSet& of_fragment, const Motion& pose,
                                                const std::vector<StatedMatch>& stated, const AnnotationMatchOptions& options) {
     check_options(options, "annotation matches");
-    const std::vector<Portrait> ours = portraits(scaled, of_template, {}), theirs = portraits(fragment, of_fragment, pose);
+    const std::vector<MatchFeatures> ours = matching_features(scaled, of_template, {}),
+                                     theirs = matching_features(fragment, of_fragment, pose);
     const double diagonal = box_diagonal(scaled);
-    const auto place_of = [](const std::vector<Portrait>& list, int id, const char* whose) {
-        for (std::size_t i = 0; i < list.size(); ++i)
-            if (list[i].annotation->id == id) return i;
-        fail_input("stated matches", "name annotation " + std::to_string(id) + ", which the " + whose + " does not have",
-                   "look at its ids with 'annotation list'");
+    const auto position_of = [](const std::vector<MatchFeatures>& annotations, int id, const char* whose) {
+        for (std::size_t i = 0; i < annotations.size(); ++i)
+            if (annotations[i].annotation->id == id) return i;
+        fail_input("stated matches", fmt::format("name annotation {}, which the {} does not have", id, whose),
+                   "list its ids with 'annotation list'");
     };
     std::vector<AnnotationMatch> result;
-    std::vector<bool> taken(ours.size(), false), settled(theirs.size(), false);
-    for (const StatedMatch& one : stated) {
-        const std::size_t b = place_of(theirs, one.of_fragment, "fragment");
-        if (settled[b])
-            fail_input("stated matches", "name annotation " + std::to_string(one.of_fragment) + " of the fragment twice",
+    std::vector<bool> used(ours.size(), false), has_statement(theirs.size(), false);
+    for (const StatedMatch& statement : stated) {
+        const std::size_t b = position_of(theirs, statement.of_fragment, "fragment");
+        if (has_statement[b])
+            fail_input("stated matches", fmt::format("name annotation {} of the fragment twice", statement.of_fragment),
                        "keep one of them");
-        settled[b] = true;
-        if (!one.of_template) continue;
-        const std::size_t a = place_of(ours, *one.of_template, "template");
+        has_statement[b] = true;
+        if (!statement.of_template) continue;
+        const std::size_t a = position_of(ours, *statement.of_template, "template");
         if (ours[a].annotation->type != theirs[b].annotation->type)
             fail_input("stated matches",
-                       "match a " + to_string(theirs[b].annotation->type) + " (annotation " + std::to_string(one.of_fragment) +
-                           " of the fragment) with a " + to_string(ours[a].annotation->type) + " (annotation " +
-                           std::to_string(*one.of_template) + " of the template)",
-                       "match annotations of one type");
-        taken[a] = true;
+                       fmt::format("match a {} (annotation {} of the fragment) with a {} (annotation {} of the template)",
+                                   to_string(theirs[b].annotation->type), statement.of_fragment,
+                                   to_string(ours[a].annotation->type), *statement.of_template),
+                       "match annotations of the same type");
+        used[a] = true;
         result.push_back(compare(theirs[b], ours[a], diagonal));
         result.back().stated = true;
     }
@@ -144,7 +146,7 @@ std::vector<AnnotationMatch> match_annotations(const Mesh& scaled, const Annotat
     for (std::size_t b = 0; b < n; ++b)
         for (std::size_t a = 0; a < ours.size(); ++a) {
             const Annotation &x = *theirs[b].annotation, &y = *ours[a].annotation;
-            if (settled[b] || taken[a] || x.type != y.type || x.all || y.all || x.tag.empty() || x.tag != y.tag) continue;
+            if (has_statement[b] || used[a] || x.type != y.type || x.all || y.all || x.tag.empty() || x.tag != y.tag) continue;
             const AnnotationMatch match = compare(theirs[b], ours[a], diagonal);
             if (match.score < options.min_score) continue;
             candidates.emplace(std::pair(b, a), match);

@@ -8,8 +8,8 @@
 namespace ostraka::fitting {
 
 std::vector<int> assign_columns(int rows, int columns, const std::vector<AssignmentArc>& arcs, std::int64_t unassigned) {
-    std::vector<int> answer(static_cast<std::size_t>(rows), -1);
-    if (rows == 0) return answer;
+    std::vector<int> result(static_cast<std::size_t>(rows), -1);
+    if (rows == 0) return result;
     using Graph = lemon::SmartDigraph;
     Graph graph;
     graph.reserveNode(rows + columns + 1);
@@ -18,11 +18,12 @@ std::vector<int> assign_columns(int rows, int columns, const std::vector<Assignm
     for (auto& node : row) node = graph.addNode();
     for (auto& node : column) node = graph.addNode();
     const Graph::Node sink = graph.addNode();
-    std::vector<Graph::Arc> given;
+    std::vector<Graph::Arc> candidate_arcs;
     for (const AssignmentArc& arc : arcs)
-        given.push_back(graph.addArc(row[static_cast<std::size_t>(arc.row)], column[static_cast<std::size_t>(arc.column)]));
+        candidate_arcs.push_back(
+            graph.addArc(row[static_cast<std::size_t>(arc.row)], column[static_cast<std::size_t>(arc.column)]));
     Graph::ArcMap<std::int64_t> cost(graph, 0), capacity(graph, 1);
-    for (std::size_t i = 0; i < arcs.size(); ++i) cost[given[i]] = arcs[i].cost;
+    for (std::size_t i = 0; i < arcs.size(); ++i) cost[candidate_arcs[i]] = arcs[i].cost;
     for (const Graph::Node node : row) cost[graph.addArc(node, sink)] = unassigned;
     for (const Graph::Node node : column) graph.addArc(node, sink);
     Graph::NodeMap<std::int64_t> supply(graph, 0);
@@ -34,8 +35,8 @@ std::vector<int> assign_columns(int rows, int columns, const std::vector<Assignm
     if (simplex.run() != lemon::NetworkSimplex<Graph, std::int64_t, std::int64_t>::OPTIMAL)
         throw std::logic_error("assign_columns: no flow, though every row may stay without a column");
     for (std::size_t i = 0; i < arcs.size(); ++i)
-        if (simplex.flow(given[i]) > 0) answer[static_cast<std::size_t>(arcs[i].row)] = arcs[i].column;
-    return answer;
+        if (simplex.flow(candidate_arcs[i]) > 0) result[static_cast<std::size_t>(arcs[i].row)] = arcs[i].column;
+    return result;
 }
 
 }  // namespace ostraka::fitting

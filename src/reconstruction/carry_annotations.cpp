@@ -10,10 +10,10 @@ AnnotationSet carry_annotations(const Mesh& mesh, const AnnotationSet& set, cons
     options.overlap = false;
     options.force = true;  // the fitted template is in the frame of the object
     const Mesh fitted = with_points(mesh, result.points);
-    AnnotationSet there = set;
-    move_extents(mesh, set, fitted, there);
-    AnnotationSet carried = transfer(fitted, there, SurfaceSearch(result.object.mesh), options).annotations;
-    move_extents(fitted, there, result.object.mesh, carried);
+    AnnotationSet moved_set = set;
+    move_extents(mesh, set, fitted, moved_set);
+    AnnotationSet carried = transfer(fitted, moved_set, SurfaceSearch(result.object.mesh), options).annotations;
+    move_extents(fitted, moved_set, result.object.mesh, carried);
     return carried;
 }
 

@@ -55,7 +55,7 @@ public:
 
 private:
     /// The projection of each vertex of the fragment onto the object, where that is still the template's surface.
-    std::vector<std::optional<SurfaceHit>> places(int number, const std::vector<Vector>& normals) {
+    std::vector<std::optional<SurfaceHit>> project_vertices(int number, const std::vector<Vector>& normals) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const SurfaceSearch search(object_.mesh);
         const double minimum = std::cos(options_.angle * pi / 180), search_radius = options_.tolerance * diagonal_;
@@ -66,18 +66,19 @@ private:
                 search.closest_compatible(fragment.mesh.point(Vertex(static_cast<Index>(v))), normals[v], minimum, search_radius);
             if (hit) hits[v] = hit;
         });
-        double whole = 0, lying = 0, shared = 0;
+        double outer_area = 0, lying_area = 0, shared_area = 0;
         for (const Face face : fragment.mesh.faces()) {
             if (!fragment.facets.empty() && fragment.facets[face] != Facet::outer) continue;
             const double area = face_area(fragment.mesh, face);
-            whole += area;
+            outer_area += area;
             const auto c = corners(fragment.mesh, face);
             if (!std::all_of(c.begin(), c.end(), [&](Vertex v) { return hits[v].has_value(); })) continue;
-            lying += area;
-            if (std::all_of(c.begin(), c.end(), [&](Vertex v) { return object_.fragment[hits[v]->face] >= 0; })) shared += area;
+            lying_area += area;
+            if (std::all_of(c.begin(), c.end(), [&](Vertex v) { return object_.fragment[hits[v]->face] >= 0; }))
+                shared_area += area;
         }
-        object_.lying.push_back(whole > 0 ? lying / whole : 0);
-        object_.shared.push_back(whole > 0 ? shared / whole : 0);
+        object_.lying.push_back(outer_area > 0 ? lying_area / outer_area : 0);
+        object_.shared.push_back(outer_area > 0 ? shared_area / outer_area : 0);
         for (auto& hit : hits)
             if (hit && object_.template_face[hit->face] == no_index) hit.reset();
         return hits;
@@ -86,9 +87,9 @@ private:
     void join(int number) {
         const PlacedFragment& fragment = fragments_[static_cast<std::size_t>(number)];
         const std::vector<Vector> normals = outer_normals(fragment);
-        const std::vector<std::optional<SurfaceHit>> hits = places(number, normals);
+        const std::vector<std::optional<SurfaceHit>> hits = project_vertices(number, normals);
         if (!options_.join) {
-            show(number, fragment, hits);
+            mark_observed(number, fragment, hits);
             return;
         }
         std::vector<bool> keep(fragment.mesh.number_of_faces(), false);
@@ -104,18 +105,18 @@ private:
                                        options_.blend * diagonal_, frozen());
         if (!joint.problem.empty()) {
             object_.notes.push_back({number, joint.problem});
-            show(number, fragment, hits);
+            mark_observed(number, fragment, hits);
             return;
         }
         CompletedObject next;
         next.mesh = joint.mesh;
         for (std::size_t f = 0; f < joint.old_face.size(); ++f) {
             const Index old = joint.old_face[f];
-            const bool ours = old == no_index;
-            next.origin.push_back(ours ? Origin::observed : object_.origin[old]);
-            next.fragment.push_back(ours ? number : object_.fragment[old]);
-            next.fragment_face.push_back(ours ? joint.patch_face[f] : object_.fragment_face[old]);
-            next.template_face.push_back(ours ? no_index : object_.template_face[old]);
+            const bool is_new = old == no_index;
+            next.origin.push_back(is_new ? Origin::observed : object_.origin[old]);
+            next.fragment.push_back(is_new ? number : object_.fragment[old]);
+            next.fragment_face.push_back(is_new ? joint.patch_face[f] : object_.fragment_face[old]);
+            next.template_face.push_back(is_new ? no_index : object_.template_face[old]);
         }
         next.notes = std::move(object_.notes);
         next.joined = std::move(object_.joined);
@@ -135,7 +136,7 @@ private:
     }
 
     /// For a fragment that cannot be joined, marks the template's faces under it as observed.
-    void show(int number, const PlacedFragment& fragment, const std::vector<std::optional<SurfaceHit>>& hits) {
+    void mark_observed(int number, const PlacedFragment& fragment, const std::vector<std::optional<SurfaceHit>>& hits) {
         for (const Face face : fragment.mesh.faces()) {
             const auto c = corners(fragment.mesh, face);
             if (!std::all_of(c.begin(), c.end(), [&](Vertex v) { return hits[v].has_value(); })) continue;
@@ -150,17 +151,17 @@ private:
         const Mesh& mesh = object_.mesh;
         object_.distance.assign(mesh.number_of_faces(), 0);
         object_.confidence.assign(mesh.number_of_faces(), 1);
-        std::vector<bool> seen(mesh.number_of_faces());
-        for (std::size_t f = 0; f < seen.size(); ++f) seen[f] = object_.origin[f] == Origin::observed;
-        if (std::find(seen.begin(), seen.end(), true) == seen.end()) {
+        std::vector<bool> is_observed(mesh.number_of_faces());
+        for (std::size_t f = 0; f < is_observed.size(); ++f) is_observed[f] = object_.origin[f] == Origin::observed;
+        if (std::find(is_observed.begin(), is_observed.end(), true) == is_observed.end()) {
             object_.distance.assign(mesh.number_of_faces(), -1);
             object_.confidence.assign(mesh.number_of_faces(), 0);
             return;
         }
-        const SubMesh observed = keep_faces(mesh, seen);
+        const SubMesh observed = keep_faces(mesh, is_observed);
         const SurfaceSearch search(observed.mesh);
         parallel_for(mesh.number_of_faces(), [&](std::size_t f) {
-            if (seen[f]) return;
+            if (is_observed[f]) return;
             object_.distance[f] = search.closest(centroid(mesh, Face(static_cast<Index>(f)))).distance;
             object_.confidence[f] = std::exp2(-object_.distance[f] / (options_.halving * diagonal_));
             if (object_.distance[f] <= options_.blend * diagonal_) object_.origin[f] = Origin::interpolated;
@@ -177,7 +178,7 @@ private:
 
 CompletedObject complete(const Mesh& fitted, const std::vector<PlacedFragment>& fragments, const CompleteOptions& options) {
     check_options(options, "complete");
-    if (fitted.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
+    if (fitted.number_of_faces() == 0) fail_input("template", "has no faces", "check that it is the right file");
     return Completer(fitted, fragments, options).run();
 }
 

@@ -31,26 +31,30 @@ Coarse coarsened(const Mesh& mesh, std::size_t vertices) {
     SimplifyOptions options;
     options.vertices = vertices;
     options.outlines = SimplifyOptions::Outlines::ignore;
-    const SimplifyResult done = simplify(coarse.mesh, options);
-    coarse.vertex_map = done.vertex_map;
+    const SimplifyResult simplified = simplify(coarse.mesh, options);
+    coarse.vertex_map = simplified.vertex_map;
     coarse.face_origin.resize(coarse.mesh.number_of_faces());
-    for (Index f = 0; f < done.face_map.size(); ++f)
-        if (done.face_map[f] != no_index) coarse.face_origin[done.face_map[f]] = f;
+    for (Index f = 0; f < simplified.face_map.size(); ++f)
+        if (simplified.face_map[f] != no_index) coarse.face_origin[simplified.face_map[f]] = f;
     return coarse;
 }
 
-constexpr std::size_t few = 4000;  // vertices that show every shape of the first levels
+constexpr std::size_t coarse_vertices = 4000;  // vertices that show every shape of the first levels
 
 }  // namespace
 
 struct TemplateFitter::State {
-    State(const Mesh& of, const AnnotationSet& with, const TemplateCage* around)
-        : mesh(of), set(with), cage(around), diagonal(box_diagonal(of)), fine(of) {}
+    State(const Mesh& template_mesh, const AnnotationSet& annotations, const TemplateCage* template_cage)
+        : mesh(template_mesh),
+          set(annotations),
+          cage(template_cage),
+          diagonal(box_diagonal(template_mesh)),
+          fine(template_mesh) {}
 
     /// Simplifies the template if it is large enough.
     void prepare() {
-        if (coarse || mesh.number_of_vertices() <= 2 * few) return;
-        coarse = std::make_unique<Coarse>(coarsened(mesh, few));
+        if (coarse || mesh.number_of_vertices() <= 2 * coarse_vertices) return;
+        coarse = std::make_unique<Coarse>(coarsened(mesh, coarse_vertices));
         smooth = std::make_unique<LevelSystem>(coarse->mesh);
         edge = mean_edge_length(coarse->mesh);
         const SurfaceSearch search(coarse->mesh);
@@ -77,7 +81,7 @@ struct TemplateFitter::State {
             Vector3d sum = Vector3d::Zero();
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto v = static_cast<Eigen::Index>(c[k]);
-                sum += nearest[i].barycentric[k] * (rotations[c[k]] * (p - fitter.rest().col(v)) + fitter.now().col(v));
+                sum += nearest[i].barycentric[k] * (rotations[c[k]] * (p - fitter.rest().col(v)) + fitter.current().col(v));
             }
             points.col(static_cast<Eigen::Index>(i)) = sum;
         });
@@ -89,11 +93,11 @@ struct TemplateFitter::State {
         std::vector<CorrespondenceConstraint> correspondences = search.correspondences();
         if (!coarse) return {fine, search, search.labels(mesh, {}), std::move(correspondences), diagonal, options};
         for (CorrespondenceConstraint& correspondence : correspondences) {
-            const Index here = coarse->vertex_map[correspondence.vertex];
-            if (here != no_index)
+            const Index coarse_vertex = coarse->vertex_map[correspondence.vertex];
+            if (coarse_vertex != no_index)
                 correspondence.place +=
-                    eigen(coarse->mesh.point(Vertex(here))) - eigen(mesh.point(Vertex(correspondence.vertex)));
-            correspondence.vertex = here;
+                    eigen(coarse->mesh.point(Vertex(coarse_vertex))) - eigen(mesh.point(Vertex(correspondence.vertex)));
+            correspondence.vertex = coarse_vertex;
         }
         std::erase_if(correspondences, [&](const CorrespondenceConstraint& correspondence) {
             return correspondence.vertex >= coarse->mesh.number_of_vertices();
@@ -105,15 +109,15 @@ struct TemplateFitter::State {
 
     /// Solves levels in cage space; returns the first level left for the template's vertices.
     int fit_cage(const MatchSearch& search, const NonRigidOptions& options, Fitter& exact, NonRigidFit& fit) {
-        if (cage == nullptr) fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
+        if (cage == nullptr) fail_usage("the fit uses a cage, but the template has none", "give the cage of the template");
         const Points at_rest = columns_of(cage->cage);
-        Fitter through = smooth_fitter(search, options);
-        through.go_through(weights(), at_rest);
+        Fitter cage_fitter = smooth_fitter(search, options);
+        cage_fitter.use_cage(weights(), at_rest);
         const int level = options.space == NonRigidOptions::Space::both ? std::max(1, options.levels - 1) : options.levels;
-        through.run(0, level, fit);
-        exact.start_at(points_of(cage->coordinates.vertex, through.cage()));
+        cage_fitter.run(0, level, fit);
+        exact.start_at(points_of(cage->coordinates.vertex, cage_fitter.cage()));
         if (level == options.levels) {
-            exact.go_through(cage->coordinates.vertex, through.cage());
+            exact.use_cage(cage->coordinates.vertex, cage_fitter.cage());
             exact.polish(options.last_search_radius * diagonal, Fitter::smoothing(options, level - 1, diagonal), fit);
         }
         return level;
@@ -124,10 +128,10 @@ struct TemplateFitter::State {
         constexpr double edges = 0.8;  // min smoothing length, in edges of the coarse mesh
         int level = 0;
         while (level < options.levels && Fitter::smoothing(options, level, diagonal) >= edges * edge) ++level;
-        Fitter over = smooth_fitter(search, options);
-        over.run(0, level, fit);
+        Fitter coarse_fitter = smooth_fitter(search, options);
+        coarse_fitter.run(0, level, fit);
         const AddedSeconds watch(fit.seconds_coarsening);
-        if (level > 0) exact.start_at(follow(over));
+        if (level > 0) exact.start_at(follow(coarse_fitter));
         return level;
     }
 
@@ -144,14 +148,14 @@ struct TemplateFitter::State {
 };
 
 TemplateFitter::TemplateFitter(const Mesh& mesh, const AnnotationSet& set, const TemplateCage* cage) {
-    if (mesh.number_of_faces() == 0) fail_input("template", "has no faces", "is it the right file?");
+    if (mesh.number_of_faces() == 0) fail_input("template", "has no faces", "check that it is the right file");
     if (cage != nullptr) {
         if (cage->coordinates.has_normals())
             fail_usage(cage->coordinates.kind + " coordinates have a normal term, which a fit cannot use",
-                       "take mean-value coordinates");
+                       "use mean-value coordinates");
         if (static_cast<std::size_t>(cage->coordinates.vertex.rows()) != mesh.number_of_vertices() ||
             static_cast<std::size_t>(cage->coordinates.vertex.cols()) != cage->cage.number_of_vertices())
-            fail_usage("the cage's coordinates are not those of the template's vertices", "make them anew");
+            fail_usage("the coordinates of the cage do not belong to the template's vertices", "compute them again");
     }
     state_ = std::make_unique<State>(mesh, set, cage);
 }
@@ -185,11 +189,11 @@ NonRigidFit TemplateFitter::fit(double scale, const std::vector<PlacedFragment>&
         match.place *= scale;
         match.distance *= scale;
     }
-    for (NonRigidFit::Level& one : fit.levels) {
-        one.smoothing *= scale;
-        one.residual *= scale;
+    for (NonRigidFit::Level& record : fit.levels) {
+        record.smoothing *= scale;
+        record.residual *= scale;
     }
-    for (Eigen::Index i = 0; i < fine.now().cols(); ++i) fit.points.push_back(point_of(scale * fine.now().col(i)));
+    for (Eigen::Index i = 0; i < fine.current().cols(); ++i) fit.points.push_back(point_of(scale * fine.current().col(i)));
     return fit;
 }
 
@@ -199,11 +203,11 @@ NonRigidFit fit_template(const Mesh& scaled, const AnnotationSet& set, const std
 }
 
 void NonRigidOptions::describe(OptionList& visit) {
-    visit("space", space,
-          "what is solved for: the template's vertices (mesh), those of a cage around it (cage: fewer degrees of freedom, no "
-          "face "
-          "folds by noise), or those of the cage and in the last level the template's (both)",
-          Choices{"mesh", "cage", "both"});
+    visit(
+        "space", space,
+        "unknowns of the fit: the template's vertices (mesh), those of a cage around it (cage: fewer degrees of freedom, no face "
+        "folds by noise), or those of the cage and in the last level the template's (both)",
+        Choices{"mesh", "cage", "both"});
     visit("smoothing", start, "length below which the first level fits no detail", Range{1e-3, 10},
           "share of the template's diagonal");
     visit("detail", end, "length below which the last level fits no detail", Range{1e-4, 10});
@@ -211,14 +215,14 @@ void NonRigidOptions::describe(OptionList& visit) {
     visit("steps", steps, "maximum number of iterations (matching and solving) per level", Range{1, 1000});
     visit("transition", stay, "length over which the deformation of the first level fades where nothing is observed",
           Range{1e-3, 1e3}, "share of the diagonal");
-    visit("fade", fade, "what a later level adds fades over so many of its smoothing lengths", Range{0.1, 1e3});
+    visit("fade", fade, "number of smoothing lengths over which the change of a later level fades", Range{0.1, 1e3});
     visit("reach", search_radius, "search radius of matches in the first level", Range{0, 10}, "share of the diagonal");
     visit("last-reach", last_search_radius, "search radius of matches in the last level", Range{0, 10});
     visit("match-angle", angle, "maximum angle between the normals of a match", Range{0, 180}, "degrees");
     visit("counterparts", counterparts,
-          "of vertices: places of the surface from which they may slide along it, and along the curves between parts (sliding); "
-          "the closest places (surface); or in matched annotations vertices by distance, outline and position along it (equation "
-          "5.1): the best of each (best), or each given once (one-to-one)",
+          "counterparts of vertices: points from which they may slide along the surface and along the curves between parts "
+          "(sliding); the closest points (surface); or, in matched annotations, vertices by distance, outline and position along "
+          "it (equation 5.1): the best for each (best), or each at most once (one-to-one)",
           Choices{"sliding", "surface", "best", "one-to-one"});
     visit("boundary-weight", vertices.boundary, "equation 5.1: weight of vertices on an outline against vertices inside",
           Range{0, 1e6});
@@ -226,8 +230,8 @@ void NonRigidOptions::describe(OptionList& visit) {
     visit("outline-weight", vertices.outline, "equation 5.1: weight of the positions along the outline", Range{0, 1e6});
     visit("guides", correspondences, "weight of matched outlines and landmarks against that of the surface", Range{0, 1e6});
     visit("outlines", outlines,
-          "matched lines and outlines guide the fit by the position along them, from landmark to landmark; outlines the coarse "
-          "levels alone where vertices slide",
+          "match lines and outlines by the position along them, from landmark to landmark; where vertices slide, outlines guide "
+          "the coarse levels only",
           Anything{});
 }
 

@@ -24,19 +24,19 @@ Fitter::Fitter(LevelSystem& system, const MatchSearch& search, MatchSearch::Labe
       diagonal_(diagonal),
       options_(options),
       rest_(system.rest),
-      now_(system.rest),
+      current_(system.rest),
       rings_(system.rings) {
     for (CorrespondenceConstraint& correspondence : correspondences)
         correspondences_[correspondence.vertex].push_back(correspondence);
 }
 
-void Fitter::go_through(const CageWeights& weights, const Points& cage) {
+void Fitter::use_cage(const CageWeights& weights, const Points& cage) {
     weights_ = &weights;
     cage_rest_ = cage_ = cage;
 }
 
 double Fitter::smoothing(const NonRigidOptions& options, int level, double diagonal) {
-    return between(options, level, options.start, options.end) * diagonal;
+    return interpolated(options, level, options.start, options.end) * diagonal;
 }
 
 void Fitter::run(int first, int end, NonRigidFit& fit) {
@@ -50,21 +50,21 @@ void Fitter::run(int first, int end, NonRigidFit& fit) {
         record.vertices = mesh_.number_of_vertices();
         record.smoothing = smoothing(options_, level, diagonal_);
         const double search_radius =
-            between(options_, level, std::max(options_.search_radius, 1e-9), std::max(options_.last_search_radius, 1e-9)) *
+            interpolated(options_, level, std::max(options_.search_radius, 1e-9), std::max(options_.last_search_radius, 1e-9)) *
             diagonal_;
         for (; record.steps < options_.steps; ++record.steps) {
             match(search_radius, fit);
             const AddedSeconds watch(fit.seconds_solving);
-            const Points before = now_;
-            if (record.steps == 0) start_ = level == 0 ? rest_ : now_;
+            const Points before = current_;
+            if (record.steps == 0) start_ = level == 0 ? rest_ : current_;
             solve(record.smoothing, level == 0 ? options_.stay * diagonal_ : options_.fade * record.smoothing, record.steps == 0);
-            const double change = (now_ - before).colwise().norm().maxCoeff();
+            const double change = (current_ - before).colwise().norm().maxCoeff();
             if (change < 0.05 * record.smoothing) {
                 ++record.steps;
                 break;
             }
         }
-        take_residual(record);
+        record_residual(record);
         fit.levels.push_back(record);
     }
 }
@@ -73,10 +73,10 @@ const std::vector<VertexMatch>& Fitter::match(double search_radius, NonRigidFit&
     const AddedSeconds watch(fit.seconds_matching);
     const double min_cosine = std::cos(options_.angle * pi / 180);
     if (slides()) {
-        matches_ = search_.sliding_matches(now_, mesh_, labels_, search_radius, min_cosine, slides_);
+        matches_ = search_.sliding_matches(current_, mesh_, labels_, search_radius, min_cosine, slides_);
         return matches_;
     }
-    matches_ = search_.matches(now_, mesh_, labels_, search_radius, min_cosine);
+    matches_ = search_.matches(current_, mesh_, labels_, search_radius, min_cosine);
     if (options_.counterparts == NonRigidOptions::Counterparts::surface) return matches_;
     VertexAssignmentOptions options = options_.vertices;
     options.counterpart = options_.counterparts == NonRigidOptions::Counterparts::best
@@ -84,106 +84,106 @@ const std::vector<VertexMatch>& Fitter::match(double search_radius, NonRigidFit&
                               : VertexAssignmentOptions::Counterpart::one_to_one;
     options.search_radius = search_radius;
     options.angle = options_.angle;
-    search_.assign(now_, mesh_, labels_, options, matches_);
+    search_.assign(current_, mesh_, labels_, options, matches_);
     return matches_;
 }
 
 void Fitter::polish(double search_radius, double smoothing, NonRigidFit& fit) {
     constexpr int max_steps = 12;
-    constexpr double settled = 1e-10;  // share of the diagonal
-    const Points left = now_;
+    constexpr double min_change = 1e-10;  // share of the diagonal
+    const Points level_points = current_;
     for (int step = 0; step < max_steps; ++step) {
         match(search_radius, fit);
         const AddedSeconds watch(fit.seconds_solving);
-        const Points before = now_;
-        if (!step_to_planes(left, smoothing)) return;
-        if ((now_ - before).colwise().norm().maxCoeff() < settled * diagonal_) return;
+        const Points before = current_;
+        if (!step_to_planes(level_points, smoothing)) return;
+        if ((current_ - before).colwise().norm().maxCoeff() < min_change * diagonal_) return;
     }
 }
 
-bool Fitter::step_to_planes(const Points& left, double smoothing) {
+bool Fitter::step_to_planes(const Points& level_points, double smoothing) {
     constexpr Eigen::Index rows_at_once = 512;
-    const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, now_.cols() / 4000),
-                       n = (now_.cols() + stride - 1) / stride;
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * count, 3 * count), same = Eigen::MatrixXd::Zero(count, count);
+    const Eigen::Index count = cage_.cols(), stride = std::max<Eigen::Index>(1, current_.cols() / 4000),
+                       n = (current_.cols() + stride - 1) / stride;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * count, 3 * count), place_products = Eigen::MatrixXd::Zero(count, count);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * count);
     for (Eigen::Index first = 0; first < n; first += rows_at_once) {
         const Eigen::Index rows = std::min(rows_at_once, n - first);
         Eigen::MatrixXd planes = Eigen::MatrixXd::Zero(3 * count, rows), places(count, rows);
         for (Eigen::Index r = 0; r < rows; ++r)
-            add_plane((first + r) * stride, left, smoothing, planes.col(r), places.col(r), right);
+            add_plane((first + r) * stride, level_points, smoothing, planes.col(r), places.col(r), right);
         normal.selfadjointView<Eigen::Lower>().rankUpdate(planes);
-        same.selfadjointView<Eigen::Lower>().rankUpdate(places);
+        place_products.selfadjointView<Eigen::Lower>().rankUpdate(places);
     }
-    for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += same;
+    for (int axis = 0; axis < 3; ++axis) normal.block(axis * count, axis * count, count, count) += place_products;
     normal.diagonal().array() += 1e-12 * normal.diagonal().mean();
     const Cholesky factor(normal);
     if (!factor.found()) return false;
     const Eigen::VectorXd change = factor.solve(right);
     if (!change.allFinite()) return false;
     for (int axis = 0; axis < 3; ++axis) cage_.row(axis) += change.segment(axis * count, count).transpose();
-    now_ = points_of(*weights_, cage_);
+    current_ = points_of(*weights_, cage_);
     return true;
 }
 
-void Fitter::add_plane(Eigen::Index v, const Points& left, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
+void Fitter::add_plane(Eigen::Index v, const Points& level_points, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
                        Eigen::Ref<Eigen::VectorXd> place_row, Eigen::VectorXd& right) const {
-    constexpr double hold = 0.1, shorten = 1e-6;  // weights against matches
+    constexpr double hold_weight = 0.1, damping = 1e-6;  // weights against matches
     const Eigen::Index count = cage_.cols();
     const auto i = static_cast<std::size_t>(v);
-    const Vector3d x = now_.col(v);
+    const Vector3d x = current_.col(v);
     const double area = std::max(rings_.area[i] / system_.mean_area, 1e-6);
-    const VertexMatch& one = matches_[i];
-    double weight = one.fragment < 0 ? hold * area : shorten * area;
-    Vector3d pull = one.fragment < 0 ? Vector3d(weight * (left.col(v) - x)) : Vector3d::Zero();
+    const VertexMatch& match = matches_[i];
+    double weight = match.fragment < 0 ? hold_weight * area : damping * area;
+    Vector3d pull = match.fragment < 0 ? Vector3d(weight * (level_points.col(v) - x)) : Vector3d::Zero();
     for (const CorrespondenceConstraint& correspondence : correspondences_[i]) {
-        const double share = weight_of(correspondence, smoothing);
-        weight += share;
-        pull += share * (correspondence.place - x);
+        const double term_weight = weight_of(correspondence, smoothing);
+        weight += term_weight;
+        pull += term_weight * (correspondence.place - x);
     }
     const auto w = weights_->row(v).transpose();
     place_row = std::sqrt(weight) * w;
     for (int axis = 0; axis < 3; ++axis) right.segment(axis * count, count) += pull[axis] * w;
-    if (one.fragment < 0) return;
-    const Vector3d plane = search_.normal(one);
-    const double off = plane.dot(one.place - x);
+    if (match.fragment < 0) return;
+    const Vector3d plane = search_.normal(match);
+    const double distance = plane.dot(match.place - x);
     for (int axis = 0; axis < 3; ++axis) {
         plane_row.segment(axis * count, count) = std::sqrt(area) * plane[axis] * w;
-        right.segment(axis * count, count) += area * off * plane[axis] * w;
+        right.segment(axis * count, count) += area * distance * plane[axis] * w;
     }
 }
 
-void Fitter::take_residual(NonRigidFit::Level& record) const {
+void Fitter::record_residual(NonRigidFit::Level& record) const {
     double squares = 0;
     for (std::size_t i = 0; i < matches_.size(); ++i) {
         if (matches_[i].fragment < 0) continue;
         ++record.matched;
-        squares += (now_.col(static_cast<Eigen::Index>(i)) - matches_[i].place).squaredNorm();
+        squares += (current_.col(static_cast<Eigen::Index>(i)) - matches_[i].place).squaredNorm();
     }
     record.residual = record.matched > 0 ? std::sqrt(squares / static_cast<double>(record.matched)) : 0;
 }
 
-double Fitter::between(const NonRigidOptions& options, int level, double first, double last) {
+double Fitter::interpolated(const NonRigidOptions& options, int level, double first, double last) {
     return first * std::pow(last / first, options.levels > 1 ? static_cast<double>(level) / (options.levels - 1) : 1);
 }
 
-bool Fitter::matched_as_before() const {
+bool Fitter::matches_unchanged() const {
     std::size_t changed = 0;
     for (std::size_t i = 0; i < matches_.size(); ++i) changed += (matches_[i].fragment >= 0) != weighted_[i] ? 1 : 0;
     return static_cast<double>(changed) <= 0.02 * static_cast<double>(matches_.size());
 }
 
-Vector3d Fitter::goal_of(std::size_t i) const {
-    constexpr double free = 0.95;  // the rest of the way draws it back: what nothing else holds does not drift
+Vector3d Fitter::target_of(std::size_t i) const {
+    constexpr double slide_share = 0.95;  // the rest of the way draws it back: what nothing else holds does not drift
     const VertexMatch& match = matches_[i];
     if (!slides()) return match.place;
-    return match.place + free * (slides_[i].free * (now_.col(static_cast<Eigen::Index>(i)) - match.place));
+    return match.place + slide_share * (slides_[i].free * (current_.col(static_cast<Eigen::Index>(i)) - match.place));
 }
 
 double Fitter::weight_of_match(std::size_t i, double smoothing) const {
-    constexpr double curve = 0.5;
+    constexpr double curve_weight = 0.5;
     double area = rings_.area[i];
-    if (slides() && slides_[i].on_curve) area += curve * smoothing * std::sqrt(area);
+    if (slides() && slides_[i].on_curve) area += curve_weight * smoothing * std::sqrt(area);
     return area / system_.mean_area;
 }
 
@@ -198,9 +198,9 @@ void Fitter::solve_once(double smoothing, double transition, bool new_level) {
     // In units of mean areas, and of lengths of the smoothing, so that weights are near one.
     const double stay = std::pow(std::min(1.0, smoothing / transition), 4), mean_area = system_.mean_area;
     rotate_displacements();
-    const bool renew = new_level || !matched_as_before();
+    const bool renew = new_level || !matches_unchanged();
     if (renew && weights_ != nullptr) {
-        // So much changes that its small matrix is best made anew.
+        // So much changes that its small matrix is best rebuilt.
         through_cage_ = std::make_unique<CageSpaceSolver>(system_.constraints(), *weights_, cage_rest_);
         solver_ = through_cage_.get();
     }
@@ -211,29 +211,29 @@ void Fitter::solve_once(double smoothing, double transition, bool new_level) {
     for (std::size_t i = 0; i < matches_.size(); ++i) {
         const bool matched = matches_[i].fragment >= 0;
         if (renew) {
-            const double share = rings_.area[i] / mean_area;
+            const double relative_area = rings_.area[i] / mean_area;
             weighted_[i] = matched;
             match_weight_[i] = matched ? weight_of_match(i, smoothing) : 0;
             solver_->set_weight(system_.match(i), match_weight_[i] + correspondence_weight(i, smoothing));
-            solver_->set_weight(system_.stay(i), stay * std::max(share, 1e-6));
+            solver_->set_weight(system_.stay(i), stay * std::max(relative_area, 1e-6));
             if (new_level || weights_ != nullptr) solver_->set_target(system_.stay(i), start_.col(static_cast<Eigen::Index>(i)));
         }
-        const Vector3d goal = matched ? goal_of(i) : Vector3d(now_.col(static_cast<Eigen::Index>(i)));
-        if (!correspondences_[i].empty()) solver_->set_target(system_.match(i), Points(drawn_together(i, smoothing, goal)));
-        else if (weighted_[i]) solver_->set_target(system_.match(i), Points(goal));
+        const Vector3d target = matched ? target_of(i) : Vector3d(current_.col(static_cast<Eigen::Index>(i)));
+        if (!correspondences_[i].empty()) solver_->set_target(system_.match(i), Points(combined_target(i, smoothing, target)));
+        else if (weighted_[i]) solver_->set_target(system_.match(i), Points(target));
         if (system_.laplacian(i) == LevelSystem::no_constraint) continue;
         solver_->set_target(system_.laplacian(i), displacement_.col(static_cast<Eigen::Index>(i)));
         if (!renew) continue;
         const double area = std::max(rings_.area[i], 1e-6 * mean_area);
         solver_->set_weight(system_.laplacian(i), std::pow(smoothing, 4) * rings_.sum[i] * rings_.sum[i] / (area * mean_area));
     }
-    SolveOptions once;
-    once.iterations = 1;
-    once.window = 0;
-    const SolveSummary summary = solver_->solve(weights_ != nullptr ? cage_ : now_, once);
-    if (weights_ != nullptr) now_ = points_of(*weights_, cage_);
+    SolveOptions single_step;
+    single_step.iterations = 1;
+    single_step.window = 0;
+    const SolveSummary summary = solver_->solve(weights_ != nullptr ? cage_ : current_, single_step);
+    if (weights_ != nullptr) current_ = points_of(*weights_, cage_);
     if (!summary.usable)
-        throw Error(ErrorKind::failure, "fit", "no usable solution: " + summary.text(), "look at the template's faces");
+        throw Error(ErrorKind::failure, "fit", "no usable solution: " + summary.text(), "check the template's faces");
 }
 
 double Fitter::weight_of(const CorrespondenceConstraint& correspondence, double smoothing) const {
@@ -249,13 +249,13 @@ double Fitter::correspondence_weight(std::size_t vertex, double smoothing) const
     return sum;
 }
 
-Vector3d Fitter::drawn_together(std::size_t vertex, double smoothing, const Vector3d& match) const {
+Vector3d Fitter::combined_target(std::size_t vertex, double smoothing, const Vector3d& match) const {
     double weight = match_weight_[vertex];
     Vector3d sum = weight * match;
     for (const CorrespondenceConstraint& correspondence : correspondences_[vertex]) {
-        const double share = weight_of(correspondence, smoothing);
-        sum += share * correspondence.place;
-        weight += share;
+        const double term_weight = weight_of(correspondence, smoothing);
+        sum += term_weight * correspondence.place;
+        weight += term_weight;
     }
     return weight > 0 ? Vector3d(sum / weight) : match;
 }
@@ -266,7 +266,7 @@ void Fitter::rotate_displacements() {
     if (slides()) {
         std::vector<bool> observed(rotation.size());
         for (std::size_t i = 0; i < observed.size(); ++i) observed[i] = matches_[i].fragment >= 0;
-        scale = local_scales(rings_, rest_, now_, observed);
+        scale = local_scales(rings_, rest_, current_, observed);
     }
     displacement_.setZero(3, rest_.cols());
     parallel_for(rotation.size(), [&](std::size_t i) {

@@ -20,12 +20,12 @@ public:
            std::vector<CorrespondenceConstraint> correspondences, double diagonal, const NonRigidOptions& options);
 
     /// Solves for the points of a cage instead; `weights` outlive it, a row for each vertex.
-    void go_through(const CageWeights& weights, const Points& cage);
+    void use_cage(const CageWeights& weights, const Points& cage);
     [[nodiscard]] const Points& cage() const { return cage_; }
 
-    void start_at(Points points) { now_ = std::move(points); }
+    void start_at(Points points) { current_ = std::move(points); }
     [[nodiscard]] const Points& rest() const { return rest_; }
-    [[nodiscard]] const Points& now() const { return now_; }
+    [[nodiscard]] const Points& current() const { return current_; }
 
     /// Smoothing length of a level.
     static double smoothing(const NonRigidOptions& options, int level, double diagonal);
@@ -42,25 +42,25 @@ public:
     void polish(double search_radius, double smoothing, NonRigidFit& fit);
 
     /// How the surroundings of each vertex have rotated.
-    [[nodiscard]] std::vector<Eigen::Matrix3d> rotations() const { return local_rotations(rings_, rest_, now_); }
+    [[nodiscard]] std::vector<Eigen::Matrix3d> rotations() const { return local_rotations(rings_, rest_, current_); }
 
 private:
     /// False where the system has no solution.
-    bool step_to_planes(const Points& left, double smoothing);
+    bool step_to_planes(const Points& level_points, double smoothing);
 
     /// What a vertex adds to a point-to-plane step: to the plane of its match, and to the place where it is held.
-    void add_plane(Eigen::Index v, const Points& left, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
+    void add_plane(Eigen::Index v, const Points& level_points, double smoothing, Eigen::Ref<Eigen::VectorXd> plane_row,
                    Eigen::Ref<Eigen::VectorXd> place_row, Eigen::VectorXd& right) const;
-    void take_residual(NonRigidFit::Level& record) const;
-    static double between(const NonRigidOptions& options, int level, double first, double last);
+    void record_residual(NonRigidFit::Level& record) const;
+    static double interpolated(const NonRigidOptions& options, int level, double first, double last);
 
     /// Where few matches came or went since the weights were last set, they stay, and with them the factorisation: who lost its
     /// match is held where it is, who found one waits.
-    [[nodiscard]] bool matched_as_before() const;
+    [[nodiscard]] bool matches_unchanged() const;
     [[nodiscard]] bool slides() const { return options_.counterparts == NonRigidOptions::Counterparts::sliding; }
 
     /// Where the match of a vertex draws it: to the place itself, or to the nearest one to which it may slide from there.
-    [[nodiscard]] Eigen::Vector3d goal_of(std::size_t i) const;
+    [[nodiscard]] Eigen::Vector3d target_of(std::size_t i) const;
 
     /// In units of mean areas: of its area, and where it is held by a curve of a part of a strip beside it, as outlines are.
     [[nodiscard]] double weight_of_match(std::size_t i, double smoothing) const;
@@ -78,7 +78,7 @@ private:
     [[nodiscard]] double correspondence_weight(std::size_t vertex, double smoothing) const;
     /// Where a vertex's match and its correspondences draw it together: sums of squares about several places are one about their
     /// mean.
-    [[nodiscard]] Eigen::Vector3d drawn_together(std::size_t vertex, double smoothing, const Eigen::Vector3d& match) const;
+    [[nodiscard]] Eigen::Vector3d combined_target(std::size_t vertex, double smoothing, const Eigen::Vector3d& match) const;
 
     /// Rest displacements rotated with the surroundings of each vertex, and where vertices slide, scaled with what of them was
     /// observed; what was not, with all that was.
@@ -92,7 +92,7 @@ private:
     double diagonal_;
     const NonRigidOptions& options_;
     const Points& rest_;
-    Points now_, start_, displacement_;  ///< start: of the level
+    Points current_, start_, displacement_;  ///< start: of the level
     const Rings& rings_;
     Solver* solver_ = nullptr;
     const CageWeights* weights_ = nullptr;  ///< in cage space

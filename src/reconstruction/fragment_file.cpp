@@ -5,6 +5,8 @@
 #include "ostraka/io/mesh_file.h"
 #include "ostraka/measure/descriptors.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -17,12 +19,12 @@ bool has_border(const Mesh& mesh) {
 
 /// Adds the file name to errors about its contents.
 template <class Work>
-auto of_file(const Path& file, Work&& work) {
+auto with_file_name(const Path& file, Work&& work) {
     try {
         return work();
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::input) throw;
-        fail_input(file.string() + ", " + error.where(), error.problem(), error.remedy());
+        fail_input(fmt::format("{}, {}", file.string(), error.where()), error.problem(), error.remedy());
     }
 }
 
@@ -37,7 +39,7 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     if (const std::optional<PointCloud> cloud = read_point_cloud(file)) {
         result.points = true;
         result.notes = cloud->notes;
-        CloudSurface surface = of_file(file, [&] { return reconstruct_surface(*cloud, options.cloud); });
+        CloudSurface surface = with_file_name(file, [&] { return reconstruct_surface(*cloud, options.cloud); });
         result.notes.insert(result.notes.end(), surface.notes.begin(), surface.notes.end());
         fragment.mesh = std::move(surface.mesh);
     } else {
@@ -46,18 +48,20 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
     }
     using FacetSource = FragmentFileOptions::FacetSource;
     bool annotated = false;
-    const Path beside = file.parent_path() / (fragment.name + ".ant.json");
-    if (result.points && file_exists(beside))
-        result.notes.push_back(beside.filename().string() +
-                               " is not read: annotations beside points say nothing of the surface through them; give a mesh");
-    if (!result.points && file_exists(beside)) {
-        AnnotationSet set = read_annotations(beside, fragment.mesh);
-        result.inputs.push_back(beside);
+    const Path annotation_file = file.parent_path() / (fragment.name + ".ant.json");
+    if (result.points && file_exists(annotation_file))
+        result.notes.push_back(fmt::format(
+            "{} is not read: annotations beside points do not describe the surface reconstructed from them; give a mesh",
+            annotation_file.filename().string()));
+    if (!result.points && file_exists(annotation_file)) {
+        AnnotationSet set = read_annotations(annotation_file, fragment.mesh);
+        result.inputs.push_back(annotation_file);
         std::swap(fragment.annotations.annotations, set.annotations);
         fragment.annotations.unit = set.unit;
-        const auto& list = fragment.annotations.annotations;
+        const auto& annotations = fragment.annotations.annotations;
         annotated = options.facets != FacetSource::none &&
-                    std::any_of(list.begin(), list.end(), [](const Annotation& one) { return named_facet(one).has_value(); });
+                    std::any_of(annotations.begin(), annotations.end(),
+                                [](const Annotation& annotation) { return named_facet(annotation).has_value(); });
     }
     const bool by_shape = options.facets == FacetSource::automatic ||
                           (options.facets == FacetSource::either && !annotated && (result.points || !has_border(fragment.mesh)));
@@ -66,23 +70,23 @@ FragmentFile read_fragment(const Path& file, const FragmentFileOptions& options)
                          : by_shape            ? "shape"
                                                : "nowhere";
     if (by_shape) {
-        result.found = of_file(file, [&] { return find_facets(fragment.mesh, options.finding); });
+        result.found = with_file_name(file, [&] { return find_facets(fragment.mesh, options.finding); });
         fragment.facets = result.found.of_face;
-        constexpr double even = 0.5;
+        constexpr double min_confidence = 0.5;
         for (const FacetSegment& segment : result.found.segments)
-            if (segment.facet == Facet::fracture && segment.confidence <= even)
+            if (segment.facet == Facet::fracture && segment.confidence <= min_confidence)
                 for (const Index f : segment.faces) fragment.facets[f] = Facet::outer;
     }
     if (annotated) {
         const auto from_file = [&](Facet other) {
-            return of_file(beside, [&] { return facets_of(fragment.mesh, fragment.annotations, other); });
+            return with_file_name(annotation_file, [&] { return facets_of(fragment.mesh, fragment.annotations, other); });
         };
         std::vector<Facet> stated = from_file(Facet::outer);
         if (by_shape) {
             // Faces without an annotation differ between the two results.
-            const std::vector<Facet> again = from_file(Facet::fracture);
+            const std::vector<Facet> with_fracture = from_file(Facet::fracture);
             for (std::size_t f = 0; f < stated.size(); ++f)
-                if (stated[f] == again[f]) fragment.facets[f] = stated[f];
+                if (stated[f] == with_fracture[f]) fragment.facets[f] = stated[f];
         } else {
             fragment.facets = std::move(stated);
         }
@@ -110,26 +114,26 @@ AnnotationSet facet_annotations(const Facets& facets, const std::string& unit) {
         }
         if (annotation.faces.empty()) continue;
         std::sort(annotation.faces.begin(), annotation.faces.end());
-        Quantity surface, sure;
+        Quantity surface, certainty;
         surface.name = "area";
         surface.values = {area};
         surface.power = 2;
-        sure.name = "confidence";
-        sure.values = {area > 0 ? confidence / area : 0};
-        store(annotation, {surface, sure}, unit);
+        certainty.name = "confidence";
+        certainty.values = {area > 0 ? confidence / area : 0};
+        store(annotation, {surface, certainty}, unit);
         set.annotations.push_back(std::move(annotation));
     }
     return set;
 }
 
 void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
-    AnnotationSet found = facet_annotations(facets, set.unit);
+    AnnotationSet updated = facet_annotations(facets, set.unit);
     std::erase_if(set.annotations, [&](Annotation& old) {
         const std::optional<Facet> facet = named_facet(old);
         if (!facet) return false;
-        const auto match = std::find_if(found.annotations.begin(), found.annotations.end(),
-                                        [&](const Annotation& one) { return one.tag == to_string(*facet); });
-        if (match == found.annotations.end()) return true;
+        const auto match = std::find_if(updated.annotations.begin(), updated.annotations.end(),
+                                        [&](const Annotation& annotation) { return annotation.tag == to_string(*facet); });
+        if (match == updated.annotations.end()) return true;
         std::vector<Quantity> quantities;
         for (const Attribute& attribute : match->attributes) {
             Quantity quantity;
@@ -145,12 +149,12 @@ void update_facet_annotations(AnnotationSet& set, const Facets& facets) {
         old.faces = std::move(match->faces);
         old.all = false;
         store(old, quantities, set.unit);
-        found.annotations.erase(match);
+        updated.annotations.erase(match);
         return false;
     });
-    for (Annotation& one : found.annotations) {
-        if (set.find(one.id) != nullptr) one.id = free_id(set);
-        set.annotations.push_back(std::move(one));
+    for (Annotation& annotation : updated.annotations) {
+        if (set.find(annotation.id) != nullptr) annotation.id = free_id(set);
+        set.annotations.push_back(std::move(annotation));
     }
 }
 

@@ -4,12 +4,12 @@
 
 namespace ostraka {
 
-const std::vector<bool>& FragmentTrees::breaks() {
-    if (!breaks_.empty()) return breaks_;
-    breaks_.assign(mesh_.number_of_vertices(), false);
+const std::vector<bool>& FragmentTrees::end_vertices() {
+    if (!end_vertices_.empty()) return end_vertices_;
+    end_vertices_.assign(mesh_.number_of_vertices(), false);
     for (const Halfedge h : mesh_.halfedges())
-        if (mesh_.is_border(h) || !outer(mesh_.face(h))) breaks_[mesh_.source(h)] = breaks_[mesh_.target(h)] = true;
-    return breaks_;
+        if (mesh_.is_border(h) || !outer(mesh_.face(h))) end_vertices_[mesh_.source(h)] = end_vertices_[mesh_.target(h)] = true;
+    return end_vertices_;
 }
 
 const FragmentTrees::Parts& FragmentTrees::parts(const std::vector<int>& labels) {
@@ -24,18 +24,18 @@ const FragmentTrees::Parts& FragmentTrees::parts(const std::vector<int>& labels)
         SubMesh sub = keep_faces(mesh_, keep);
         part.mesh = std::move(sub.mesh);
         part.faces = std::move(sub.faces);
-        part.edge_breaks.assign(part.mesh.number_of_edges(), false);
-        part.vertex_breaks.assign(part.mesh.number_of_vertices(), false);
+        part.edge_ends.assign(part.mesh.number_of_edges(), false);
+        part.vertex_ends.assign(part.mesh.number_of_vertices(), false);
         for (const Edge e : part.mesh.edges()) {
             if (!part.mesh.is_border(e)) continue;
             const Vertex a = part.mesh.vertex(e, 0), b = part.mesh.vertex(e, 1);
             Halfedge h = find_halfedge(mesh_, Vertex(sub.vertices[a]), Vertex(sub.vertices[b]));
-            bool ends = h == Mesh::null_halfedge();
-            for (int side = 0; side < 2 && !ends; ++side, h = mesh_.opposite(h))
-                ends = mesh_.is_border(h) || !outer(mesh_.face(h));
-            if (!ends) continue;
-            part.edge_breaks[e] = true;
-            part.vertex_breaks[a] = part.vertex_breaks[b] = true;
+            bool is_end = h == Mesh::null_halfedge();
+            for (int side = 0; side < 2 && !is_end; ++side, h = mesh_.opposite(h))
+                is_end = mesh_.is_border(h) || !outer(mesh_.face(h));
+            if (!is_end) continue;
+            part.edge_ends[e] = true;
+            part.vertex_ends[a] = part.vertex_ends[b] = true;
         }
         part.search = std::make_unique<SurfaceSearch>(part.mesh);
     }

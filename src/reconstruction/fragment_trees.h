@@ -15,7 +15,7 @@ struct FragmentPart {
     std::vector<Index> faces;  ///< per face of the part, its face of the fragment
     Mesh mesh;
     std::unique_ptr<SurfaceSearch> search;
-    std::vector<bool> edge_breaks, vertex_breaks;  ///< per edge and vertex of the part: where the outer surface ends
+    std::vector<bool> edge_ends, vertex_ends;  ///< per edge and vertex of the part: where the outer surface ends
 };
 
 /// Trees of one fragment, kept while its labels are unchanged.
@@ -28,7 +28,7 @@ public:
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     /// Per vertex, whether the outer surface ends there.
-    [[nodiscard]] const std::vector<bool>& breaks();
+    [[nodiscard]] const std::vector<bool>& end_vertices();
     /// One part per label of the faces that are not fracture; valid until queried with other labels.
     [[nodiscard]] const Parts& parts(const std::vector<int>& labels);
 
@@ -39,7 +39,7 @@ private:
     const std::vector<Facet>& facets_;
     std::vector<int> labels_;
     Parts parts_;
-    std::vector<bool> breaks_;
+    std::vector<bool> end_vertices_;
 };
 
 }  // namespace ostraka

@@ -15,10 +15,10 @@ namespace ostraka {
 /// Edges of fragments between faces with different labels.
 class JointCurves {
 public:
-    /// Adds the edges of a fragment. `labels` is per face, `breaks` per vertex; lengths are divided by `scale`. Edges beside a
+    /// Adds the edges of a fragment. `labels` is per face, `ends` per vertex; lengths are divided by `scale`. Edges beside a
     /// fracture are skipped.
     void add(int fragment, const Mesh& mesh, const std::vector<int>& labels, const std::vector<Facet>& facets,
-             const std::vector<bool>& breaks, double scale);
+             const std::vector<bool>& ends, double scale);
 
     struct Place {
         VertexMatch match;        ///< fragment -1: the nearest point is an end of the fragment

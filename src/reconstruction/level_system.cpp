@@ -52,18 +52,18 @@ Rings rings_of(const Mesh& mesh, const Points& rest) {
 /// The rotation nearest to a matrix: its polar factor by Newton's iteration (Higham 1986), or where it all but mirrors or is all
 /// but flat, by its singular values.
 Matrix3d nearest_rotation(const Matrix3d& matrix) {
-    constexpr double flat = 1e-8, settled = 1e-9;  // the iteration converges quadratically: what is left is rounding
+    constexpr double flat = 1e-8, max_change = 1e-9;  // the iteration converges quadratically: what is left is rounding
     constexpr int max_steps = 30;
     const double size = matrix.norm();
-    Matrix3d now = size > 0 ? Matrix3d(matrix / size) : Matrix3d(matrix);
-    if (now.determinant() > flat)
+    Matrix3d current = size > 0 ? Matrix3d(matrix / size) : Matrix3d(matrix);
+    if (current.determinant() > flat)
         for (int step = 0; step < max_steps; ++step) {
-            const Matrix3d inverse = now.inverse().transpose();
-            const double balance = std::sqrt(inverse.norm() / now.norm());
-            const Matrix3d next = 0.5 * (balance * now + inverse / balance);
-            const double change = (next - now).norm();
-            now = next;
-            if (change < settled) return now;
+            const Matrix3d inverse = current.inverse().transpose();
+            const double balance = std::sqrt(inverse.norm() / current.norm());
+            const Matrix3d next = 0.5 * (balance * current + inverse / balance);
+            const double change = (next - current).norm();
+            current = next;
+            if (change < max_change) return current;
         }
     const Svd3 svd(matrix);
     Vector3d signs(1, 1, 1);
@@ -73,7 +73,7 @@ Matrix3d nearest_rotation(const Matrix3d& matrix) {
 
 }  // namespace
 
-std::vector<Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& now) {
+std::vector<Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& current) {
     const auto n = static_cast<std::size_t>(rest.cols());
     std::vector<Matrix3d> covariances(n), rotations(n);
     parallel_for(n, [&](std::size_t i) {
@@ -81,7 +81,7 @@ std::vector<Matrix3d> local_rotations(const Rings& rings, const Points& rest, co
         Matrix3d sum = Matrix3d::Zero();
         for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k) {
             const int j = rings.neighbour[k];
-            sum += rings.weight[k] * (now.col(j) - now.col(v)) * (rest.col(j) - rest.col(v)).transpose();
+            sum += rings.weight[k] * (current.col(j) - current.col(v)) * (rest.col(j) - rest.col(v)).transpose();
         }
         covariances[i] = sum;
     });
@@ -94,8 +94,9 @@ std::vector<Matrix3d> local_rotations(const Rings& rings, const Points& rest, co
     return rotations;
 }
 
-std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now, const std::vector<bool>& observed) {
-    constexpr int wider = 2;  // rings around the first
+std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& current,
+                                 const std::vector<bool>& observed) {
+    constexpr int extra_rings = 2;  // rings around the first
     const auto n = static_cast<std::size_t>(rest.cols());
     // Sums of squares at rest and now.
     std::vector<Eigen::Vector2d> sums(n), sums_before;
@@ -104,17 +105,17 @@ std::vector<double> local_scales(const Rings& rings, const Points& rest, const P
         sums[i].setZero();
         for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k) {
             const int j = rings.neighbour[k];
-            sums[i] += rings.weight[k] *
-                       Eigen::Vector2d((rest.col(j) - rest.col(v)).squaredNorm(), (now.col(j) - now.col(v)).squaredNorm());
+            sums[i] += rings.weight[k] * Eigen::Vector2d((rest.col(j) - rest.col(v)).squaredNorm(),
+                                                         (current.col(j) - current.col(v)).squaredNorm());
         }
     });
-    Eigen::Vector2d seen = Eigen::Vector2d::Zero();
+    Eigen::Vector2d observed_sums = Eigen::Vector2d::Zero();
     for (std::size_t i = 0; i < n; ++i)
-        if (observed[i]) seen += sums[i];
-    const double as_seen = seen[0] > 0 ? seen[1] / seen[0] : 1;
+        if (observed[i]) observed_sums += sums[i];
+    const double observed_ratio = observed_sums[0] > 0 ? observed_sums[1] / observed_sums[0] : 1;
     for (std::size_t i = 0; i < n; ++i)
-        if (!observed[i]) sums[i][1] = as_seen * sums[i][0];
-    for (int ring = 0; ring < wider; ++ring) {
+        if (!observed[i]) sums[i][1] = observed_ratio * sums[i][0];
+    for (int ring = 0; ring < extra_rings; ++ring) {
         sums_before = sums;
         parallel_for(n, [&](std::size_t i) {
             for (std::size_t k = rings.begin[i]; k < rings.begin[i + 1]; ++k)
@@ -127,7 +128,7 @@ std::vector<double> local_scales(const Rings& rings, const Points& rest, const P
     return scales;
 }
 
-LevelSystem::LevelSystem(const Mesh& of) : mesh(of) {
+LevelSystem::LevelSystem(const Mesh& template_mesh) : mesh(template_mesh) {
     rest = columns_of(mesh);
     rings = rings_of(mesh, rest);
     double sum = 0;
@@ -136,18 +137,18 @@ LevelSystem::LevelSystem(const Mesh& of) : mesh(of) {
 }
 
 std::vector<std::unique_ptr<Constraint>> LevelSystem::constraints() {
-    std::vector<std::unique_ptr<Constraint>> list;
+    std::vector<std::unique_ptr<Constraint>> result;
     match_.clear();
     stay_.clear();
     laplacian_.clear();
     for (const Vertex v : mesh.vertices()) {
         const int i = static_cast<int>(v.idx());
-        ConstraintParameters here;
-        here.target = rest.col(i);
-        match_.push_back(list.size());
-        list.push_back(make_constraint("Closeness", {i}, 0, here, rest));
-        stay_.push_back(list.size());
-        list.push_back(make_constraint("Closeness", {i}, 1, here, rest));
+        ConstraintParameters at_rest;
+        at_rest.target = rest.col(i);
+        match_.push_back(result.size());
+        result.push_back(make_constraint("Closeness", {i}, 0, at_rest, rest));
+        stay_.push_back(result.size());
+        result.push_back(make_constraint("Closeness", {i}, 1, at_rest, rest));
         laplacian_.push_back(no_constraint);
         if (mesh.is_isolated(v)) continue;
         std::vector<int> ids{i};
@@ -156,17 +157,17 @@ std::vector<std::unique_ptr<Constraint>> LevelSystem::constraints() {
             ids.push_back(rings.neighbour[k]);
             ring.coefficients.push_back(rings.weight[k]);
         }
-        laplacian_.back() = list.size();
-        list.push_back(make_constraint("CotangentLaplacianDisplacement", std::move(ids), 1, ring, rest));
+        laplacian_.back() = result.size();
+        result.push_back(make_constraint("CotangentLaplacianDisplacement", std::move(ids), 1, ring, rest));
     }
-    return list;
+    return result;
 }
 
 Solver& LevelSystem::renewed_solver() {
     // With so many changed weights the factors are recomputed, without any remainder of the old ones; a small system is rebuilt
     // completely.
-    constexpr std::size_t many = 2000;
-    if (!solver_ || match_.size() < many) {
+    constexpr std::size_t min_reused = 2000;
+    if (!solver_ || match_.size() < min_reused) {
         solver_ = std::make_unique<MeshSpaceSolver>(constraints(), rest);
         return *solver_;
     }

@@ -18,18 +18,19 @@ struct Rings {
 };
 
 /// How the surroundings of each vertex have rotated: the nearest rotation over two rings.
-std::vector<Eigen::Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& now);
+std::vector<Eigen::Matrix3d> local_rotations(const Rings& rings, const Points& rest, const Points& current);
 
 /// How many times as large the surroundings of each vertex are now as at rest: root mean square of the edges within three rings,
 /// from 0.5 to 2. Edges around vertices that were not observed count as if they had grown as all that was observed did: a size
 /// that the solution gave to them says nothing of them, and would be carried on from there.
-std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& now, const std::vector<bool>& observed);
+std::vector<double> local_scales(const Rings& rings, const Points& rest, const Points& current,
+                                 const std::vector<bool>& observed);
 
 /// The terms of the three costs of equation 5.2, over the vertices of a mesh. Independent of fragments.
 class LevelSystem {
 public:
     /// The mesh must outlive it unchanged.
-    explicit LevelSystem(const Mesh& of);
+    explicit LevelSystem(const Mesh& template_mesh);
 
     const Mesh& mesh;
     Points rest;

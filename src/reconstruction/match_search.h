@@ -39,9 +39,9 @@ struct Slide {
 /// faces in none.
 class MatchSearch {
 public:
-    /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is asked and answered is in the
-    /// template's. Trees are those of the fragments, in their own coordinates, where they bring them along.
-    /// What correspondences there are: of landmarks alone, or of places along matched lines and outlines, too.
+    /// `mesh` is the template, whose unit is `scale` times that of the placed fragments: all that is queried and returned is in
+    /// the template's. Trees are those of the fragments, in their own coordinates, where they bring them along. What
+    /// correspondences there are: of landmarks alone, or of places along matched lines and outlines, too.
     enum class Guides { landmarks, paths };
     MatchSearch(const Mesh& mesh, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments, double scale = 1,
                 Guides guides = Guides::landmarks);
@@ -63,19 +63,19 @@ public:
     /// Enables the detection of fragments whose faces are the template's: their vertices are identified with the template's,
     /// and their landmarks, which would count twice, are no correspondences.
     void recognise_shared_faces();
-    /// The nearest match on all fragments for each vertex at `now`; fragment -1 if there is none within `search_radius` with a
-    /// compatible normal that is not at a border.
-    [[nodiscard]] std::vector<VertexMatch> matches(const Points& now, const Mesh& connectivity, const Labels& labels,
+    /// The nearest match on all fragments for each vertex at `current`; fragment -1 if there is none within `search_radius` with
+    /// a compatible normal that is not at a border.
+    [[nodiscard]] std::vector<VertexMatch> matches(const Points& current, const Mesh& connectivity, const Labels& labels,
                                                    double search_radius, double min_cosine) const;
     /// As `matches`, with a projection per vertex onto the directions in which it may slide from there: those of the surface;
     /// for vertices where two labels meet on the template, those of the curve where they meet; none at the vertices of a
     /// fragment whose faces are the template's.
-    [[nodiscard]] std::vector<VertexMatch> sliding_matches(const Points& now, const Mesh& connectivity, const Labels& labels,
+    [[nodiscard]] std::vector<VertexMatch> sliding_matches(const Points& current, const Mesh& connectivity, const Labels& labels,
                                                            double search_radius, double min_cosine,
                                                            std::vector<Slide>& slides) const;
     /// Replaces the matches of vertices in matched annotations by the counterparts of equation 5.1, as set in the options; none
     /// if the counterpart is at the end of the fragment.
-    void assign(const Points& now, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
+    void assign(const Points& current, const Mesh& connectivity, const Labels& labels, const VertexAssignmentOptions& options,
                 std::vector<VertexMatch>& matches) const;
     /// Unit normal of the matched face of the fragment.
     [[nodiscard]] Eigen::Vector3d normal(const VertexMatch& match) const;
@@ -100,7 +100,7 @@ private:
         Annotation region;  ///< its faces with the label
     };
     void add_path_correspondences(const AnnotationSet& set);
-    [[nodiscard]] std::vector<VertexMatch> shared_of(const Mesh& mesh, const std::vector<Index>& vertex_map) const;
+    [[nodiscard]] std::vector<VertexMatch> shared_matches(const Mesh& mesh, const std::vector<Index>& vertex_map) const;
 
     const Mesh& template_;
     const std::vector<PlacedFragment>& fragments_;

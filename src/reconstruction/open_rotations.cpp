@@ -41,15 +41,16 @@ std::optional<RotationMatch> decide_open_rotations(const Mesh& scaled, const std
     const auto open = [&](std::size_t k) {
         return k < searched.size() && searched[k] && searched[k]->decided && searched[k]->slippable.kind != SlippableKind::none;
     };
-    std::vector<std::size_t> number;
-    std::size_t free = 0, breaks = 0;
+    std::vector<std::size_t> placed_indices;
+    std::size_t open_count = 0, broken_count = 0;
     for (std::size_t k = 0; k < fragments.size(); ++k) {
         if (!placed[k].problem.empty()) continue;
-        number.push_back(k);
-        free += open(k) ? 1 : 0;
-        breaks += broken(*fragments[k]) ? 1 : 0;
+        placed_indices.push_back(k);
+        open_count += open(k) ? 1 : 0;
+        broken_count += broken(*fragments[k]) ? 1 : 0;
     }
-    if (options.rotations == RotationMatchOptions::Turns::never || number.size() < 2 || free == 0 || breaks == 0)
+    if (options.rotations == RotationMatchOptions::Turns::never || placed_indices.size() < 2 || open_count == 0 ||
+        broken_count == 0)
         return std::nullopt;
     std::vector<Index> faces(scaled.number_of_faces());
     std::iota(faces.begin(), faces.end(), Index(0));
@@ -57,29 +58,29 @@ std::optional<RotationMatch> decide_open_rotations(const Mesh& scaled, const std
     if (!axis.found) return std::nullopt;
     const Vector3d direction = eigen(axis.direction);
     std::vector<SherdOnAxis> sherds;
-    free = 0;
-    for (const std::size_t k : number) {
+    open_count = 0;
+    for (const std::size_t k : placed_indices) {
         const bool rotates = open(k) && rotates_about(searched[k]->slippable, direction);
-        free += rotates ? 1 : 0;
+        open_count += rotates ? 1 : 0;
         sherds.push_back({fragments[k], placed[k].pose, !rotates});
     }
-    if (free == 0) return std::nullopt;
-    RotationMatch found = match_rotations(scaled, eigen(axis.point), direction, sherds, options), result;
-    result.wall = found.wall;
+    if (open_count == 0) return std::nullopt;
+    RotationMatch match = match_rotations(scaled, eigen(axis.point), direction, sherds, options), result;
+    result.wall = match.wall;
     result.group.assign(fragments.size(), -1);
     result.poses.resize(fragments.size());
     result.overlap.assign(fragments.size(), 0);
     result.notes.resize(fragments.size());
-    for (std::size_t i = 0; i < number.size(); ++i) {
-        const std::size_t k = number[i];
-        placed[k].pose = result.poses[k] = found.poses[i];
-        result.group[k] = static_cast<int>(number[static_cast<std::size_t>(found.group[i])]);
-        result.overlap[k] = found.overlap[i];
-        result.notes[k] = std::move(found.notes[i]);
+    for (std::size_t i = 0; i < placed_indices.size(); ++i) {
+        const std::size_t k = placed_indices[i];
+        placed[k].pose = result.poses[k] = match.poses[i];
+        result.group[k] = static_cast<int>(placed_indices[static_cast<std::size_t>(match.group[i])]);
+        result.overlap[k] = match.overlap[i];
+        result.notes[k] = std::move(match.notes[i]);
     }
-    for (BreakJoint& joint : found.joints) {
-        joint.first = static_cast<int>(number[static_cast<std::size_t>(joint.first)]);
-        joint.second = static_cast<int>(number[static_cast<std::size_t>(joint.second)]);
+    for (BreakJoint& joint : match.joints) {
+        joint.first = static_cast<int>(placed_indices[static_cast<std::size_t>(joint.first)]);
+        joint.second = static_cast<int>(placed_indices[static_cast<std::size_t>(joint.second)]);
         result.joints.push_back(joint);
     }
     return result;

@@ -49,53 +49,53 @@ namespace {
 
 /// A vertex path with the arc length of each of its vertices from the first.
 struct ArcLengthPath {
-    explicit ArcLengthPath(const Mesh& mesh, VertexPath of) : vertex_path(std::move(of)) {
+    explicit ArcLengthPath(const Mesh& mesh, VertexPath path) : vertex_path(std::move(path)) {
         for (const Index v : vertex_path.vertices) places.push_back(eigen(mesh.point(Vertex(v))));
         for (std::size_t i = 0; i < places.size(); ++i) {
-            at.push_back(length);
+            arc_lengths.push_back(length);
             if (i + 1 < places.size() || vertex_path.closed) length += (places[(i + 1) % places.size()] - places[i]).norm();
         }
     }
     /// The point at an arc length; a closed path continues at its start.
-    [[nodiscard]] Vector3d place(double way) const {
-        if (vertex_path.closed) way -= length * std::floor(way / length);
-        const auto after = std::upper_bound(at.begin(), at.end(), way);
-        const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - at.begin() - 1));
+    [[nodiscard]] Vector3d place(double arc_length) const {
+        if (vertex_path.closed) arc_length -= length * std::floor(arc_length / length);
+        const auto after = std::upper_bound(arc_lengths.begin(), arc_lengths.end(), arc_length);
+        const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - arc_lengths.begin() - 1));
         const std::size_t next = (i + 1) % places.size();
         if (next == 0 && !vertex_path.closed) return places.back();
         const double edge = (places[next] - places[i]).norm();
-        const double share = edge > 0 ? std::clamp((way - at[i]) / edge, 0.0, 1.0) : 0;
-        return (1 - share) * places[i] + share * places[next];
+        const double fraction = edge > 0 ? std::clamp((arc_length - arc_lengths[i]) / edge, 0.0, 1.0) : 0;
+        return (1 - fraction) * places[i] + fraction * places[next];
     }
 
     VertexPath vertex_path;
     std::vector<Vector3d> places;
-    std::vector<double> at;
+    std::vector<double> arc_lengths;
     double length = 0;
 };
 
 std::vector<ArcLengthPath> arc_length_paths_of(const Mesh& mesh, std::vector<VertexPath> vertex_paths) {
-    std::vector<ArcLengthPath> ways;
+    std::vector<ArcLengthPath> paths;
     for (VertexPath& vertex_path : vertex_paths) {
         if (vertex_path.vertices.size() < 2) continue;
-        ArcLengthPath way(mesh, std::move(vertex_path));
-        if (way.length > 0) ways.push_back(std::move(way));
+        ArcLengthPath path(mesh, std::move(vertex_path));
+        if (path.length > 0) paths.push_back(std::move(path));
     }
-    return ways;
+    return paths;
 }
 
 /// The path on which a vertex lies and its arc length there; -1 if it is on none.
-std::pair<int, double> on_vertex_path(const std::vector<ArcLengthPath>& ways, const Vector3d& place) {
-    std::pair<int, double> found{-1, 0};
+std::pair<int, double> on_vertex_path(const std::vector<ArcLengthPath>& paths, const Vector3d& place) {
+    std::pair<int, double> result{-1, 0};
     double minimum = std::numeric_limits<double>::infinity();
-    for (std::size_t c = 0; c < ways.size(); ++c)
-        for (std::size_t i = 0; i < ways[c].places.size(); ++i) {
-            const double distance = (ways[c].places[i] - place).norm();
-            if (distance >= minimum || distance > 0.05 * ways[c].length) continue;
+    for (std::size_t c = 0; c < paths.size(); ++c)
+        for (std::size_t i = 0; i < paths[c].places.size(); ++i) {
+            const double distance = (paths[c].places[i] - place).norm();
+            if (distance >= minimum || distance > 0.05 * paths[c].length) continue;
             minimum = distance;
-            found = {static_cast<int>(c), ways[c].at[i]};
+            result = {static_cast<int>(c), paths[c].arc_lengths[i]};
         }
-    return found;
+    return result;
 }
 
 struct PathCorrespondences {
@@ -116,7 +116,7 @@ PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLe
         double from, to, there_from, there_to;
     };
     std::vector<Piece> pieces;
-    double known = 0, known_there = 0;
+    double known_length = 0, known_length_there = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const bool last = k + 1 == n;
         if (last && !ours.vertex_path.closed) break;
@@ -127,10 +127,10 @@ PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLe
         if (!(d > b)) continue;  // interrupted on their side
         if ((d - b) > 2 * scale * (c - a) || scale * (c - a) > 2 * (d - b)) continue;
         pieces.push_back({a, c, b, d});
-        known += c - a;
-        known_there += d - b;
+        known_length += c - a;
+        known_length_there += d - b;
     }
-    const double ratio = known > 0 ? known_there / known : scale;
+    const double ratio = known_length > 0 ? known_length_there / known_length : scale;
     PathCorrespondences result;
     result.pieces = pieces.size();
     for (std::size_t i = 0; i < ours.places.size(); ++i) {
@@ -139,31 +139,33 @@ PathCorrespondences correspondences_along(const ArcLengthPath& ours, const ArcLe
         if (i > 0 || ours.vertex_path.closed) length += 0.5 * (ours.places[i] - ours.places[(i + count - 1) % count]).norm();
         if (i + 1 < count || ours.vertex_path.closed) length += 0.5 * (ours.places[(i + 1) % count] - ours.places[i]).norm();
         OutlineCorrespondence correspondence{ours.vertex_path.vertices[i], Vector3d::Zero(), length};
-        bool found = false;
-        for (const double way : {ours.at[i], ours.at[i] + ours.length}) {
-            if (way > ours.length && !ours.vertex_path.closed) break;
+        bool is_found = false;
+        for (const double arc_length : {ours.arc_lengths[i], ours.arc_lengths[i] + ours.length}) {
+            if (arc_length > ours.length && !ours.vertex_path.closed) break;
             for (const Piece& piece : pieces) {
-                if (found || way < piece.from || way > piece.to) continue;
-                const double share = piece.to > piece.from ? (way - piece.from) / (piece.to - piece.from) : 0;
-                correspondence.place = theirs.place(piece.there_from + share * (piece.there_to - piece.there_from));
-                found = true;
+                if (is_found || arc_length < piece.from || arc_length > piece.to) continue;
+                const double fraction = piece.to > piece.from ? (arc_length - piece.from) / (piece.to - piece.from) : 0;
+                correspondence.place = theirs.place(piece.there_from + fraction * (piece.there_to - piece.there_from));
+                is_found = true;
             }
         }
-        if (!found) {
+        if (!is_found) {
             // From the nearest landmark, in either direction.
-            double nearest = std::numeric_limits<double>::infinity(), there = 0;
+            double nearest = std::numeric_limits<double>::infinity(), their_arc_length = 0;
             for (const auto& [a, b] : marks)
-                for (const double turn : {-1.0, 0.0, 1.0}) {
-                    if (turn != 0 && !ours.vertex_path.closed) continue;
-                    const double off = ours.at[i] + turn * ours.length - a;
-                    if (std::abs(off) >= nearest) continue;
-                    nearest = std::abs(off);
-                    there = b + ratio * off;
+                for (const double wrap : {-1.0, 0.0, 1.0}) {
+                    if (wrap != 0 && !ours.vertex_path.closed) continue;
+                    const double offset = ours.arc_lengths[i] + wrap * ours.length - a;
+                    if (std::abs(offset) >= nearest) continue;
+                    nearest = std::abs(offset);
+                    their_arc_length = b + ratio * offset;
                 }
-            if (!std::isfinite(nearest) || (!theirs.vertex_path.closed && (there < 0 || there > theirs.length))) continue;
+            if (!std::isfinite(nearest) ||
+                (!theirs.vertex_path.closed && (their_arc_length < 0 || their_arc_length > theirs.length)))
+                continue;
             // Near the opposite point of a closed path the position is unreliable.
             if (ours.vertex_path.closed && nearest > 0.4 * ours.length) continue;
-            correspondence.place = theirs.place(there);
+            correspondence.place = theirs.place(their_arc_length);
             if (nearest > 0) correspondence.length *= share_beyond;
         }
         result.correspondences.push_back(correspondence);
@@ -184,33 +186,33 @@ std::vector<OutlineCorrespondence> outline_correspondences(const Mesh& mesh, con
                                                            const Annotation& of_fragment, const std::vector<bool>& broken,
                                                            const std::vector<std::pair<Index, Index>>& landmarks, double scale) {
     const std::vector<ArcLengthPath> ours = arc_length_paths_of(mesh, vertex_paths_of(mesh, part));
-    const auto theirs_turned = [&](bool turned) {
+    const auto their_paths = [&](bool reversed) {
         std::vector<VertexPath> vertex_paths = vertex_paths_of(fragment, of_fragment, broken);
-        if (turned)
+        if (reversed)
             for (VertexPath& vertex_path : vertex_paths) std::reverse(vertex_path.vertices.begin(), vertex_path.vertices.end());
         return arc_length_paths_of(fragment, std::move(vertex_paths));
     };
-    const std::vector<ArcLengthPath> forward = theirs_turned(false);
+    const std::vector<ArcLengthPath> forward = their_paths(false);
     const bool line = part.type == AnnotationType::line;
-    const std::vector<ArcLengthPath> backward = line ? theirs_turned(true) : std::vector<ArcLengthPath>();
+    const std::vector<ArcLengthPath> backward = line ? their_paths(true) : std::vector<ArcLengthPath>();
     using Marks = std::vector<std::pair<double, double>>;
     std::map<std::pair<int, int>, std::pair<Marks, Marks>> marks;  // by paths, forward and backward
-    for (const auto& [vertex, there] : landmarks) {
-        const Vector3d place = eigen(fragment.point(Vertex(there)));
-        const auto [a, way] = on_vertex_path(ours, eigen(mesh.point(Vertex(vertex))));
-        const auto [b, way_there] = on_vertex_path(forward, place);
+    for (const auto& [vertex, their_vertex] : landmarks) {
+        const Vector3d place = eigen(fragment.point(Vertex(their_vertex)));
+        const auto [a, arc_length] = on_vertex_path(ours, eigen(mesh.point(Vertex(vertex))));
+        const auto [b, their_arc_length] = on_vertex_path(forward, place);
         if (a < 0 || b < 0) continue;
-        auto& both = marks[{a, b}];
-        both.first.emplace_back(way, way_there);
-        if (line) both.second.emplace_back(way, on_vertex_path(backward, place).second);
+        auto& path_marks = marks[{a, b}];
+        path_marks.first.emplace_back(arc_length, their_arc_length);
+        if (line) path_marks.second.emplace_back(arc_length, on_vertex_path(backward, place).second);
     }
     std::vector<OutlineCorrespondence> correspondences;
-    for (const auto& [vertex_paths, both] : marks) {
-        const ArcLengthPath& way = ours[static_cast<std::size_t>(vertex_paths.first)];
-        const auto there = static_cast<std::size_t>(vertex_paths.second);
-        PathCorrespondences best = correspondences_along(way, forward[there], both.first, scale);
+    for (const auto& [vertex_paths, path_marks] : marks) {
+        const ArcLengthPath& path = ours[static_cast<std::size_t>(vertex_paths.first)];
+        const auto their_index = static_cast<std::size_t>(vertex_paths.second);
+        PathCorrespondences best = correspondences_along(path, forward[their_index], path_marks.first, scale);
         if (line) {
-            PathCorrespondences other = correspondences_along(way, backward[there], both.second, scale);
+            PathCorrespondences other = correspondences_along(path, backward[their_index], path_marks.second, scale);
             if (other.pieces > best.pieces || (other.pieces == best.pieces && mean_square(mesh, other.correspondences, scale) <
                                                                                   mean_square(mesh, best.correspondences, scale)))
                 best = std::move(other);

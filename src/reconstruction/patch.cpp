@@ -41,9 +41,9 @@ void Patch::open_fans(std::vector<Vertex> stack) {
         const Vertex v = stack.back();
         stack.pop_back();
         if (mesh_.is_isolated(v)) continue;
-        int ends = 0;
-        for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) ends += is_border(h) ? 1 : 0;
-        if (ends < 2) continue;
+        int border_count = 0;
+        for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) border_count += is_border(h) ? 1 : 0;
+        if (border_count < 2) continue;
         for (const Halfedge h : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
             if (!keeps(h)) continue;
             keep_[mesh_.face(h)] = false;
@@ -55,9 +55,9 @@ void Patch::open_fans(std::vector<Vertex> stack) {
 
 Patch::Pieces Patch::drop_small_pieces() {
     Pieces pieces{std::vector<int>(keep_.size(), -1), {}};
-    double whole = 0;
+    double total_area = 0;
     for (const Face seed : mesh_.faces()) {
-        whole += face_area(mesh_, seed);
+        total_area += face_area(mesh_, seed);
         if (!keep_[seed] || pieces.of_face[seed] >= 0) continue;
         const int number = static_cast<int>(pieces.area.size());
         pieces.area.push_back(0);
@@ -76,19 +76,19 @@ Patch::Pieces Patch::drop_small_pieces() {
         }
     }
     for (const Face face : mesh_.faces())
-        if (keep_[face] && !(pieces.area[static_cast<std::size_t>(pieces.of_face[face])] >= minimum_ * whole))
+        if (keep_[face] && !(pieces.area[static_cast<std::size_t>(pieces.of_face[face])] >= minimum_ * total_area))
             keep_[face] = false;
     return pieces;
 }
 
 void Patch::find_closed(const Pieces& pieces) {
     closed_.clear();
-    std::vector<bool> done(pieces.area.size(), false);
+    std::vector<bool> is_done(pieces.area.size(), false);
     for (const Halfedge h : mesh_.halfedges())
-        if (is_border(h)) done[static_cast<std::size_t>(pieces.of_face[mesh_.face(h)])] = true;
+        if (is_border(h)) is_done[static_cast<std::size_t>(pieces.of_face[mesh_.face(h)])] = true;
     for (const Face face : mesh_.faces()) {
-        if (!keep_[face] || done[static_cast<std::size_t>(pieces.of_face[face])]) continue;
-        done[static_cast<std::size_t>(pieces.of_face[face])] = true;
+        if (!keep_[face] || is_done[static_cast<std::size_t>(pieces.of_face[face])]) continue;
+        is_done[static_cast<std::size_t>(pieces.of_face[face])] = true;
         closed_.push_back(face);
     }
 }

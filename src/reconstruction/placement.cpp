@@ -7,6 +7,7 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
@@ -30,27 +31,31 @@ std::vector<LandmarkPair> common_landmarks(const Mesh& template_mesh, const Anno
     };
     const Tags ours = collect(of_template), theirs = collect(of_fragment);
     const auto note = [&](const std::string& tag, const std::string& text) {
-        if (notes != nullptr) notes->push_back("landmark '" + tag + "' " + text);
+        if (notes != nullptr) notes->push_back(fmt::format("landmark '{}' {}", tag, text));
     };
-    const auto several = [](const std::vector<const Annotation*>& list) {
-        return std::any_of(list.begin(), list.end(), [](const Annotation* one) { return one->points.size() > 1; });
+    const auto several = [](const std::vector<const Annotation*>& annotations) {
+        return std::any_of(annotations.begin(), annotations.end(),
+                           [](const Annotation* annotation) { return annotation->points.size() > 1; });
     };
     std::vector<LandmarkPair> pairs;
-    for (const auto& [tag, list] : theirs) {
-        const auto found = ours.find(tag);
-        if (found == ours.end()) {
-            const auto alike = std::find_if(ours.begin(), ours.end(),
-                                            [&tag = tag](const auto& one) { return boost::algorithm::iequals(one.first, tag); });
-            note(tag, "is not on the template" +
-                          (alike == ours.end() ? std::string()
-                                               : ", which has '" + alike->first + "': small and large letters are told apart"));
-        } else if (list.size() > 1 || found->second.size() > 1) {
-            note(tag, "is there more than once, and not used: which is which is not known");
-        } else if (several(list) || several(found->second)) {
-            note(tag, "has several points, and is not used: give it one");
+    for (const auto& [tag, annotations] : theirs) {
+        const auto entry = ours.find(tag);
+        if (entry == ours.end()) {
+            const auto similar = std::find_if(ours.begin(), ours.end(), [&tag = tag](const auto& candidate) {
+                return boost::algorithm::iequals(candidate.first, tag);
+            });
+            note(tag, similar == ours.end()
+                          ? "is not on the template"
+                          : fmt::format("is not on the template, which has '{}': upper and lower case are distinguished",
+                                        similar->first));
+        } else if (annotations.size() > 1 || entry->second.size() > 1) {
+            note(tag, "occurs more than once and is not used, since it is ambiguous");
+        } else if (several(annotations) || several(entry->second)) {
+            note(tag, "has several points and is not used: give it one point");
         } else {
-            pairs.push_back({tag, eigen(template_mesh.point(Vertex(found->second.front()->points.front()))),
-                             eigen(fragment.point(Vertex(list.front()->points.front()))), found->second.front()->points.front()});
+            pairs.push_back({tag, eigen(template_mesh.point(Vertex(entry->second.front()->points.front()))),
+                             eigen(fragment.point(Vertex(annotations.front()->points.front()))),
+                             entry->second.front()->points.front()});
         }
     }
     return pairs;
@@ -71,7 +76,7 @@ public:
         used.assign(pairs.size(), true);
         for (const LandmarkPair& pair : pairs)
             if (!pair.on_template.allFinite() || !pair.on_fragment.allFinite())
-                fail_input("landmark '" + pair.name + "'", "its place is not finite", "look at both files");
+                fail_input(fmt::format("landmark '{}'", pair.name), "its position is not finite", "check both files");
     }
 
     std::vector<bool> used;
@@ -151,11 +156,11 @@ public:
     }
 
     /// Sets `used` from the similarity through three landmarks that explains most of the others.
-    void find_wrong() {
+    void find_outliers() {
         const std::size_t n = pairs_.size();
         if (n < 5) return;
         // Shapes differ from their template without error: a few landmarks may be wrong, not half of them.
-        const std::size_t max_wrong = std::max<std::size_t>(1, n / 6), quantile = n - max_wrong;
+        const std::size_t max_outliers = std::max<std::size_t>(1, n / 6), quantile = n - max_outliers;
         double best = -1;
         Motion chosen;
         for_triples(n, [&](const std::array<std::size_t, 3>& triple) {
@@ -164,10 +169,10 @@ public:
             if (flatness() < options_.collinear) return;
             const Motion motion = similarity();
             if (!(motion.scale > 0)) return;
-            std::vector<double> off;
-            for (std::size_t i = 0; i < n; ++i) off.push_back(distance(motion, i) / motion.scale);
-            std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(quantile - 1), off.end());
-            if (best < 0 || off[quantile - 1] < best) best = off[quantile - 1], chosen = motion;
+            std::vector<double> distances;
+            for (std::size_t i = 0; i < n; ++i) distances.push_back(distance(motion, i) / motion.scale);
+            std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(quantile - 1), distances.end());
+            if (best < 0 || distances[quantile - 1] < best) best = distances[quantile - 1], chosen = motion;
         });
         std::fill(used.begin(), used.end(), true);
         if (best < 0) return;
@@ -176,14 +181,14 @@ public:
         for (int round = 0; round < 10; ++round) {
             check_cancelled();
             const std::vector<bool> before = used;
-            std::vector<double> off;
-            for (std::size_t i = 0; i < n; ++i) off.push_back(distance(chosen, i) / chosen.scale);
-            std::vector<double> sorted = off;
+            std::vector<double> distances;
+            for (std::size_t i = 0; i < n; ++i) distances.push_back(distance(chosen, i) / chosen.scale);
+            std::vector<double> sorted = distances;
             std::sort(sorted.begin(), sorted.end());
             double squares = 0;
             for (std::size_t i = 0; i < quantile; ++i) squares += sorted[i] * sorted[i];
             const double limit = std::max(4 * std::sqrt(squares / static_cast<double>(quantile)), options_.outlier * spread);
-            for (std::size_t i = 0; i < n; ++i) used[i] = off[i] <= limit || off[i] <= sorted[quantile - 1];
+            for (std::size_t i = 0; i < n; ++i) used[i] = distances[i] <= limit || distances[i] <= sorted[quantile - 1];
             if (used == before && round > 0) break;
             chosen = similarity();
         }
@@ -192,22 +197,23 @@ public:
     /// Pairs of landmarks, at least one of them left out, that would fit each other's positions.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> swapped() const {
         const Motion motion = similarity();
-        const auto off = [&](std::size_t i, std::size_t j) {
+        const auto separation = [&](std::size_t i, std::size_t j) {
             return (motion(pairs_[i].on_template) - pairs_[j].on_fragment).norm();
         };
-        std::vector<std::pair<std::string, std::string>> found;
+        std::vector<std::pair<std::string, std::string>> exchanged;
         for (std::size_t i = 0; i < pairs_.size(); ++i)
             for (std::size_t j = i + 1; j < pairs_.size(); ++j)
-                if ((!used[i] || !used[j]) && 3 * std::hypot(off(i, j), off(j, i)) < std::hypot(off(i, i), off(j, j)))
-                    found.emplace_back(pairs_[i].name, pairs_[j].name);
-        return found;
+                if ((!used[i] || !used[j]) &&
+                    3 * std::hypot(separation(i, j), separation(j, i)) < std::hypot(separation(i, i), separation(j, j)))
+                    exchanged.emplace_back(pairs_[i].name, pairs_[j].name);
+        return exchanged;
     }
 
 private:
     template <class Visit>
     static void for_triples(std::size_t n, Visit&& visit) {
-        const double all = static_cast<double>(n) * static_cast<double>(n - 1) * static_cast<double>(n - 2) / 6;
-        if (all <= static_cast<double>(max_triples)) {
+        const double triples = static_cast<double>(n) * static_cast<double>(n - 1) * static_cast<double>(n - 2) / 6;
+        if (triples <= static_cast<double>(max_triples)) {
             for (std::size_t i = 0; i < n; ++i)
                 for (std::size_t j = i + 1; j < n; ++j)
                     for (std::size_t k = j + 1; k < n; ++k) visit({i, j, k});
@@ -228,9 +234,9 @@ private:
 
 /// The names, for a message.
 std::string names_of(const std::vector<LandmarkPair>& pairs) {
-    std::string list;
-    for (const LandmarkPair& pair : pairs) list += (list.empty() ? "'" : ", '") + pair.name + "'";
-    return list;
+    std::string names;
+    for (const LandmarkPair& pair : pairs) names += (names.empty() ? "'" : ", '") + pair.name + "'";
+    return names;
 }
 
 }  // namespace
@@ -238,53 +244,58 @@ std::string names_of(const std::vector<LandmarkPair>& pairs) {
 CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>& pairs, const PlacementOptions& options) {
     check_options(options, "placement");
     CommonPlacement placement;
-    std::vector<Landmarks> all;
-    for (const auto& list : pairs) {
-        FragmentPlacement one;
-        all.emplace_back(list, options);
-        Landmarks& landmarks = all.back();
-        if (list.size() < 3) {
-            one.problem = "has " + std::to_string(list.size()) + (list.size() == 1 ? " landmark" : " landmarks") +
-                          " in common with the template" + (list.empty() ? "" : " (" + names_of(list) + ")") +
-                          ": give three or more points the tags that they have on the template, or let poses be searched for";
+    std::vector<Landmarks> landmark_sets;
+    for (const auto& common : pairs) {
+        FragmentPlacement fragment;
+        landmark_sets.emplace_back(common, options);
+        Landmarks& landmarks = landmark_sets.back();
+        if (common.size() < 3) {
+            fragment.problem = fmt::format(
+                "has {} landmark{} in common with the template{}: give three or more points the tags that they have on the "
+                "template, or let the pose be searched for",
+                common.size(), common.size() == 1 ? "" : "s", common.empty() ? "" : " (" + names_of(common) + ")");
         } else {
-            landmarks.find_wrong();
+            landmarks.find_outliers();
             const auto count = static_cast<std::size_t>(std::count(landmarks.used.begin(), landmarks.used.end(), true));
             if (count < 3) {
                 std::fill(landmarks.used.begin(), landmarks.used.end(), true);
-                one.problem = "no three of its landmarks (" + names_of(list) + ") agree on a pose: look at their tags and places";
+                fragment.problem = fmt::format("no three of its landmarks ({}) agree on a pose: check their tags and positions",
+                                               names_of(common));
             } else if (landmarks.flatness() < options.collinear) {
-                one.problem = "its landmarks (" + names_of(list) +
-                              ") lie on a line, which leaves the turn about it open: add one beside the line";
+                fragment.problem = fmt::format(
+                    "its landmarks ({}) lie on a line, so the rotation about it is undetermined: add one beside the line",
+                    names_of(common));
             } else {
-                const Motion proper = landmarks.similarity(), any = landmarks.similarity(false);
-                one.own_scale = proper.scale;
+                const Motion proper = landmarks.similarity(), unrestricted = landmarks.similarity(false);
+                fragment.own_scale = proper.scale;
                 const double spread = landmarks.moments().spread_to / static_cast<double>(count);
-                const double with = landmarks.mean_square(proper), without = landmarks.mean_square(any);
+                const double proper_error = landmarks.mean_square(proper), mirrored_error = landmarks.mean_square(unrestricted);
                 // Three landmarks fit their mirror image equally well, nearly flat configurations nearly so.
-                one.mirrored = count > 3 && any.rotation.determinant() < 0 && with > 1e-4 * spread && without < with / 9;
-                if (one.mirrored)
-                    one.problem = "its mirror image fits the template, and itself it does not (residual " +
-                                  digits(std::sqrt(without), 3) + " against " + digits(std::sqrt(with), 3) +
-                                  "): was it mirrored by the scanner's program, or are left and right mixed up in its tags?";
+                fragment.mirrored = count > 3 && unrestricted.rotation.determinant() < 0 && proper_error > 1e-4 * spread &&
+                                    mirrored_error < proper_error / 9;
+                if (fragment.mirrored)
+                    fragment.problem = fmt::format(
+                        "its mirror image fits the template, but the fragment itself does not (residual {} against {}): was it "
+                        "mirrored by the scanner's software, or are left and right exchanged in its tags?",
+                        digits(std::sqrt(mirrored_error), 3), digits(std::sqrt(proper_error), 3));
             }
         }
-        placement.fragments.push_back(std::move(one));
+        placement.fragments.push_back(std::move(fragment));
     }
 
     // Finds fragments in another unit than most.
     std::vector<double> scales;
-    for (const auto& one : placement.fragments)
-        if (one.problem.empty()) scales.push_back(one.own_scale);
+    for (const auto& fragment : placement.fragments)
+        if (fragment.problem.empty()) scales.push_back(fragment.own_scale);
     if (scales.size() > 1) {
         std::sort(scales.begin(), scales.end());
         const double middle = scales[(scales.size() - 1) / 2];
-        for (auto& one : placement.fragments) {
-            if (!one.problem.empty()) continue;
-            const double ratio = one.own_scale / middle;
+        for (auto& fragment : placement.fragments) {
+            if (!fragment.problem.empty()) continue;
+            const double ratio = fragment.own_scale / middle;
             if (std::max(ratio, 1 / ratio) > options.unit_ratio)
-                one.problem = "is " + digits(std::max(ratio, 1 / ratio), 3) + " times " + (ratio > 1 ? "larger" : "smaller") +
-                              " than the others would have it: is it in another unit?";
+                fragment.problem = fmt::format("is {} times {} than the other fragments suggest: is it in another unit?",
+                                               digits(std::max(ratio, 1 / ratio), 3), ratio > 1 ? "larger" : "smaller");
         }
     }
 
@@ -293,29 +304,29 @@ CommonPlacement place_by_landmarks(const std::vector<std::vector<LandmarkPair>>&
     std::vector<Matrix3d> rotations(pairs.size());
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         if (!placement.fragments[k].problem.empty()) continue;
-        const Landmarks::Moments m = all[k].moments();
+        const Landmarks::Moments m = landmark_sets[k].moments();
         rotations[k] = Landmarks::rotation(m.cross, true);  // of the fragment onto the template
         across += (rotations[k].transpose() * m.cross).trace();
         squares += m.spread_from;
     }
     if (squares > 0) placement.scale = across / squares;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-        FragmentPlacement& one = placement.fragments[k];
-        if (!one.problem.empty()) {
-            for (const LandmarkPair& pair : pairs[k]) one.landmarks.push_back({pair.name, 0, false});
+        FragmentPlacement& fragment = placement.fragments[k];
+        if (!fragment.problem.empty()) {
+            for (const LandmarkPair& pair : pairs[k]) fragment.landmarks.push_back({pair.name, 0, false});
             continue;
         }
-        const Landmarks::Moments m = all[k].moments();
-        one.pose.rotation = rotations[k];
-        one.pose.translation = placement.scale * m.from - rotations[k] * m.to;
-        one.swapped = all[k].swapped();
+        const Landmarks::Moments m = landmark_sets[k].moments();
+        fragment.pose.rotation = rotations[k];
+        fragment.pose.translation = placement.scale * m.from - rotations[k] * m.to;
+        fragment.swapped = landmark_sets[k].swapped();
         double sum = 0;
         for (std::size_t i = 0; i < pairs[k].size(); ++i) {
-            const double off = (one.pose(pairs[k][i].on_fragment) - placement.scale * pairs[k][i].on_template).norm();
-            one.landmarks.push_back({pairs[k][i].name, off, all[k].used[i]});
-            if (all[k].used[i]) sum += off * off;
+            const double distance = (fragment.pose(pairs[k][i].on_fragment) - placement.scale * pairs[k][i].on_template).norm();
+            fragment.landmarks.push_back({pairs[k][i].name, distance, landmark_sets[k].used[i]});
+            if (landmark_sets[k].used[i]) sum += distance * distance;
         }
-        one.residual = std::sqrt(sum / static_cast<double>(m.count));
+        fragment.residual = std::sqrt(sum / static_cast<double>(m.count));
     }
     return placement;
 }

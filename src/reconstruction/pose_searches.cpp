@@ -9,8 +9,8 @@
 
 namespace ostraka {
 
-struct PoseSearches::Whole {
-    Whole(const Mesh& mesh, const PoseSearchOptions& options) : surface(mesh), search(surface, options) {}
+struct PoseSearches::TemplateSearch {
+    TemplateSearch(const Mesh& mesh, const PoseSearchOptions& options) : surface(mesh), search(surface, options) {}
     SurfaceSearch surface;
     PoseSearch search;
 };
@@ -18,13 +18,13 @@ struct PoseSearches::Whole {
 PoseSearches::PoseSearches(const Mesh& mesh, const PoseSearchOptions& options) : mesh_(mesh), options_(options) {
     std::string text = version() + '\n' + mesh_checksum(mesh);
     for (const auto& [name, value] : list_options(options)) text += '\n' + name + '=' + value;
-    of_template_ = sha256(text);
+    template_key_ = sha256(text);
 }
 PoseSearches::~PoseSearches() = default;
 PoseSearches::PoseSearches(PoseSearches&&) noexcept = default;
 
 std::string PoseSearches::key_of(const Fragment& fragment, double min_scale, double max_scale) const {
-    std::string text = of_template_ + '\n' + mesh_checksum(fragment.mesh) + '\n';
+    std::string text = template_key_ + '\n' + mesh_checksum(fragment.mesh) + '\n';
     for (const Facet facet : fragment.facets) text += facet == Facet::fracture ? '-' : '+';
     Json scales(rapidjson::kArrayType);
     scales.PushBack(min_scale, scales.GetAllocator()).PushBack(max_scale, scales.GetAllocator());
@@ -35,12 +35,12 @@ std::optional<PoseSearchResult> PoseSearches::find(const Fragment& fragment, dou
     const std::vector<bool> counts = not_broken(fragment.facets);
     if (!counts.empty() && std::find(counts.begin(), counts.end(), true) == counts.end()) return {};
     const std::string key = key_of(fragment, min_scale, max_scale);
-    if (const auto found = stored_.find(key); found != stored_.end()) {
+    if (const auto entry = stored_.find(key); entry != stored_.end()) {
         ++reused_;
-        return found->second.result;
+        return entry->second.result;
     }
-    if (!whole_) whole_ = std::make_unique<Whole>(mesh_, options_);
-    PoseSearchResult result = whole_->search.find(fragment.mesh, counts, min_scale, max_scale);
+    if (!template_search_) template_search_ = std::make_unique<TemplateSearch>(mesh_, options_);
+    PoseSearchResult result = template_search_->search.find(fragment.mesh, counts, min_scale, max_scale);
     ++made_;
     stored_.emplace(key, StoredSearch{fragment.name, result});
     return result;
@@ -54,23 +54,25 @@ JsonValue to_json(const Motion& motion, JsonAllocator& allocator) {
 }
 
 JsonValue to_json(const PoseSearchResult& result, JsonAllocator& allocator) {
-    const auto of_candidate = [&](const PoseCandidate& one) {
-        return json_object(allocator, "pose", to_json(one.pose, allocator), "scale", one.scale, "score", one.score, "share",
-                           one.share, "inside", one.inside, "residual", one.residual);
+    const auto candidate_entry = [&](const PoseCandidate& candidate) {
+        return json_object(allocator, "pose", to_json(candidate.pose, allocator), "scale", candidate.scale, "score",
+                           candidate.score, "share", candidate.share, "inside", candidate.inside, "residual", candidate.residual);
     };
-    const auto of_way = [&](const SlippableRange& way) {
-        return json_object(allocator, "point", way.point, "direction", way.direction, "turns", way.rotates, "least", way.minimum,
-                           "most", way.maximum);
+    const auto range_entry = [&](const SlippableRange& range) {
+        return json_object(allocator, "point", range.point, "direction", range.direction, "turns", range.rotates, "least",
+                           range.minimum, "most", range.maximum);
     };
     JsonValue slippable = json_object(allocator, "kind", to_string(result.slippable.kind), "point", result.slippable.point,
                                       "direction", result.slippable.direction, "pitch", result.slippable.pitch);
-    return json_object(allocator, "candidates", json_list(result.candidates, allocator, of_candidate), "margin", result.margin,
+    return json_object(allocator, "candidates", json_list(result.candidates, allocator, candidate_entry), "margin", result.margin,
                        "confidence", result.confidence, "decided", result.decided, "reason", result.reason, "freedom",
-                       std::move(slippable), "ways", json_list(result.ways, allocator, of_way));
+                       std::move(slippable), "ways", json_list(result.ways, allocator, range_entry));
 }
 
 // The input is already validated against the schema.
-Eigen::Vector3d vector_from(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
+Eigen::Vector3d vector_from(const JsonValue& numbers) {
+    return {numbers[0].GetDouble(), numbers[1].GetDouble(), numbers[2].GetDouble()};
+}
 Motion motion_from(const JsonValue& entry) {
     Motion motion;
     for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = entry["turn"][static_cast<rapidjson::SizeType>(i)].GetDouble();
@@ -107,20 +109,20 @@ PoseSearchResult result_from(const JsonValue& entry) {
 }  // namespace
 
 JsonValue PoseSearches::to_json(JsonAllocator& allocator) const {
-    const auto of_stored = [&](const auto& entry) {
+    const auto stored_entry = [&](const auto& entry) {
         JsonValue result = ostraka::to_json(entry.second.result, allocator);
         const std::string checksum = sha256(to_text(result));
         return json_object(allocator, "fragment", entry.second.fragment, "key", entry.first, "checksum", checksum, "result",
                            std::move(result));
     };
-    return json_object(allocator, "format", "ostraka-searches", "version", 1, "template", of_template_, "searches",
-                       json_list(stored_, allocator, of_stored));
+    return json_object(allocator, "format", "ostraka-searches", "version", 1, "template", template_key_, "searches",
+                       json_list(stored_, allocator, stored_entry));
 }
 
 std::size_t PoseSearches::add(const JsonValue& document, const std::string& file) {
     validate(document, "searches", file);
     std::size_t damaged = 0;
-    if (document["template"].GetString() != of_template_) return damaged;
+    if (document["template"].GetString() != template_key_) return damaged;
     for (const auto& entry : document["searches"].GetArray()) {
         if (sha256(to_text(entry["result"])) != entry["checksum"].GetString()) {
             ++damaged;

@@ -11,6 +11,7 @@
 #include "ostraka/io/diagnose.h"
 
 #include <CGAL/boost/graph/helpers.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,33 +30,34 @@ bool inside_out(const Mesh& mesh) {
 }
 
 /// The share of an annotation's vertices that were observed.
-double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const std::vector<bool>& seen) {
-    const Annotation* one = set.find(id);
+double observed_share(const Mesh& mesh, const AnnotationSet& set, int id, const std::vector<bool>& observed) {
+    const Annotation* annotation = set.find(id);
     std::vector<Index> vertices;
-    if (one != nullptr && one->all)
+    if (annotation != nullptr && annotation->all)
         for (const Vertex v : mesh.vertices()) vertices.push_back(v);
-    if (one != nullptr && !one->all) {
-        vertices = one->points;
-        for (const Index f : one->faces)
+    if (annotation != nullptr && !annotation->all) {
+        vertices = annotation->points;
+        for (const Index f : annotation->faces)
             for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v);
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto count = std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return seen[v]; });
+    const auto count = std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return observed[v]; });
     return vertices.empty() ? 0 : static_cast<double>(count) / static_cast<double>(vertices.size());
 }
 
 /// Swaps the parts of proportions whose first part was observed better than the second.
 RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& set, const RelationGraph& stated,
-                                         const std::vector<bool>& seen) {
+                                         const std::vector<bool>& observed_vertices) {
     RelationGraph graph;
     graph.relationships = stated.relationships;
-    const auto observed = [&](int id) { return observed_share(mesh, set, id, seen); };
-    for (Relationship& one : graph.relationships) {
-        const RelationType* type = find_relation_type(one.type);
-        if (!one.is_constraint || type == nullptr || type->name != "proportion" || one.annotations.size() != 2) continue;
-        if (!(observed(one.annotations[0]) > observed(one.annotations[1]))) continue;
-        Json parameters = parse_json(one.constraint.empty() ? "{}" : one.constraint, "constraint");
+    const auto observed = [&](int id) { return observed_share(mesh, set, id, observed_vertices); };
+    for (Relationship& relationship : graph.relationships) {
+        const RelationType* type = find_relation_type(relationship.type);
+        if (!relationship.is_constraint || type == nullptr || type->name != "proportion" || relationship.annotations.size() != 2)
+            continue;
+        if (!(observed(relationship.annotations[0]) > observed(relationship.annotations[1]))) continue;
+        Json parameters = parse_json(relationship.constraint.empty() ? "{}" : relationship.constraint, "constraint");
         if (!parameters.HasMember("minValue") || !parameters.HasMember("maxValue") || !parameters.HasMember("measure1") ||
             !parameters.HasMember("measure2"))
             continue;
@@ -65,8 +67,8 @@ RelationGraph with_observed_as_reference(const Mesh& mesh, const AnnotationSet& 
         parameters["minValue"].SetDouble(1 / maximum);
         parameters["maxValue"].SetDouble(1 / minimum);
         parameters["measure1"].Swap(parameters["measure2"]);
-        std::swap(one.annotations[0], one.annotations[1]);
-        one.constraint = to_text(parameters);
+        std::swap(relationship.annotations[0], relationship.annotations[1]);
+        relationship.constraint = to_text(parameters);
     }
     return graph;
 }
@@ -100,15 +102,15 @@ struct KnownFragment {
 
 /// The template and its fragments, with the data kept between reconstructions.
 struct KnownObject {
-    KnownObject(const Mesh& of, const AnnotationSet& with, const RelationGraph& relations, const ReconstructOptions& how,
-                const ShapePrior* of_class, const TemplateCage* cage)
-        : mesh(of),
-          set(with),
+    KnownObject(const Mesh& template_mesh, const AnnotationSet& annotations, const RelationGraph& relations,
+                const ReconstructOptions& reconstruct_options, const ShapePrior* class_prior, const TemplateCage* cage)
+        : mesh(template_mesh),
+          set(annotations),
           graph(relations),
-          options(how),
-          prior(of_class),
-          searches(of, how.search.poses),
-          fitter(of, with, cage) {}
+          options(reconstruct_options),
+          prior(class_prior),
+          searches(template_mesh, reconstruct_options.search.poses),
+          fitter(template_mesh, annotations, cage) {}
 
     const Mesh& mesh;
     const AnnotationSet& set;
@@ -126,10 +128,10 @@ namespace {
 /// One reconstruction from the current fragments, phase by phase.
 class ReconstructionRun {
 public:
-    explicit ReconstructionRun(KnownObject& known) : prepared_(known) {
-        for (const KnownFragment& one : known.fragments) {
-            fragments_.push_back(one.fragment);
-            pairs_.push_back(one.pairs);
+    explicit ReconstructionRun(KnownObject& object) : prepared_(object) {
+        for (const KnownFragment& fragment : object.fragments) {
+            fragments_.push_back(fragment.fragment);
+            pairs_.push_back(fragment.pairs);
         }
     }
 
@@ -152,33 +154,34 @@ private:
     }
 
     void place() {
-        for (const KnownFragment& one : prepared_.fragments) result_.notes.push_back(one.notes);
+        for (const KnownFragment& fragment : prepared_.fragments) result_.notes.push_back(fragment.notes);
         result_.placement = place_by_landmarks(pairs_, prepared_.options.placement);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
-            for (const auto& [one, other] : result_.placement.fragments[k].swapped)
-                result_.notes[k].push_back("landmarks '" + one + "' and '" + other +
-                                           "' would fit each other's places: are their tags exchanged?");
+            for (const auto& [first, second] : result_.placement.fragments[k].swapped)
+                result_.notes[k].push_back(fmt::format(
+                    "landmarks '{}' and '{}' would fit each other's positions: are their tags exchanged?", first, second));
         result_.searched = place_by_search(prepared_.searches, fragments_, prepared_.options.search, result_.placement.scale,
                                            result_.placement.fragments);
         for (std::size_t k = 0; k < fragments_.size(); ++k)
-            if (result_.searched[k] && result_.searched[k]->decided) ask_landmarks(k);
+            if (result_.searched[k] && result_.searched[k]->decided) use_landmarks(k);
     }
 
     /// Determines motions that the pose search left open from the available landmarks, and reports landmarks that contradict
     /// the pose.
-    void ask_landmarks(std::size_t k) {
-        constexpr double far_off = 0.1;  // share of the template's diagonal
-        const double scale = result_.placement.scale, limit = far_off * scale * box_diagonal(prepared_.mesh);
+    void use_landmarks(std::size_t k) {
+        constexpr double max_offset = 0.1;  // share of the template's diagonal
+        const double scale = result_.placement.scale, limit = max_offset * scale * box_diagonal(prepared_.mesh);
         FragmentPlacement& placed = result_.placement.fragments[k];
         if (close_by_landmarks(pairs_[k], scale, limit, *result_.searched[k], placed)) {
-            result_.notes[k].push_back("what the search for its pose left open is decided by its landmarks");
+            result_.notes[k].push_back("the motions that the search for its pose left open are decided by its landmarks");
             return;
         }
         for (const LandmarkPair& pair : pairs_[k]) {
-            const double off = (placed.pose(pair.on_fragment) - scale * pair.on_template).norm();
-            if (off > limit)
-                result_.notes[k].push_back("landmark '" + pair.name + "' is " + digits(off, 3) +
-                                           " off its place on the template: the pose was searched for and contradicts it");
+            const double distance = (placed.pose(pair.on_fragment) - scale * pair.on_template).norm();
+            if (distance > limit)
+                result_.notes[k].push_back(
+                    fmt::format("landmark '{}' is {} off its position on the template: the searched pose contradicts it",
+                                pair.name, digits(distance, 3)));
         }
     }
 
@@ -192,7 +195,7 @@ private:
                                                       prepared_.options.rotations);
         });
         timed("annotations", [&] { match(); });
-        if (prepared_.prior != nullptr) timed("class", [&] { take_shape_of_class(); });
+        if (prepared_.prior != nullptr) timed("class", [&] { fit_class_shape(); });
     }
 
     /// Deforms the template to the fragments and its constraints.
@@ -204,12 +207,12 @@ private:
                               : prepared_.fitter.fit(result_.placement.scale, placed_, prepared_.options.fit);
         });
         result_.points = result_.fit.points;
-        timed("observed", [&] { see(); });
-        timed("constraints", [&] { restore(); });
+        timed("observed", [&] { find_observed(); });
+        timed("constraints", [&] { enforce_constraints(); });
     }
 
     void refine() {
-        std::optional<SurfaceSearch> whole;
+        std::optional<SurfaceSearch> surface;
         result_.alignment.assign(fragments_.size(), {});
         for (std::size_t k = 0; k < fragments_.size(); ++k) {
             FragmentPlacement& placement = result_.placement.fragments[k];
@@ -222,15 +225,15 @@ private:
             for (std::size_t i = 0; i < pairs.size(); ++i)
                 if (i < placement.landmarks.size() && placement.landmarks[i].used)
                     anchors.push_back({pairs[i].on_fragment, on_scaled(pairs[i])});
-            std::optional<KnownFragment::Refined>& known = prepared_.fragments[k].refined;
+            std::optional<KnownFragment::Refined>& cached = prepared_.fragments[k].refined;
             const double scale = result_.placement.scale;
-            if (!known || shaped_ || known->scale != scale || known->start != placement.pose || known->anchors != anchors) {
-                if (!whole) whole.emplace(scaled_);
+            if (!cached || shaped_ || cached->scale != scale || cached->start != placement.pose || cached->anchors != anchors) {
+                if (!surface) surface.emplace(scaled_);
                 result_.alignment[k] =
-                    align_part(fragment.mesh, counts, *whole, placement.pose, anchors, prepared_.options.alignment);
-                if (!shaped_) known = {scale, placement.pose, anchors, result_.alignment[k]};
+                    align_part(fragment.mesh, counts, *surface, placement.pose, anchors, prepared_.options.alignment);
+                if (!shaped_) cached = {scale, placement.pose, anchors, result_.alignment[k]};
             } else {
-                result_.alignment[k] = known->alignment;
+                result_.alignment[k] = cached->alignment;
             }
             placement.pose = result_.alignment[k].pose;
             double squares = 0;
@@ -248,7 +251,7 @@ private:
     [[nodiscard]] Eigen::Vector3d on_scaled(const LandmarkPair& pair) const { return eigen(scaled_.point(Vertex(pair.vertex))); }
 
     /// The fragments keep the template's frame: the shape of the class is fitted to them, then they are registered to it.
-    void take_shape_of_class() {
+    void fit_class_shape() {
         constexpr int rounds = 2;
         for (int round = 0; round < rounds; ++round) {
             check_cancelled();
@@ -269,14 +272,14 @@ private:
             const FragmentPlacement& placement = result_.placement.fragments[k];
             if (!placement.problem.empty()) continue;
             const Fragment& fragment = *fragments_[k];
-            std::optional<KnownFragment::Matched>& known = prepared_.fragments[k].matched;
-            if (!known || shaped_ || known->scale != result_.placement.scale || known->pose != placement.pose) {
+            std::optional<KnownFragment::Matched>& cached = prepared_.fragments[k].matched;
+            if (!cached || shaped_ || cached->scale != result_.placement.scale || cached->pose != placement.pose) {
                 result_.annotations[k] =
                     match_annotations(scaled_, prepared_.set, fragment.mesh, fragment.annotations, placement.pose,
                                       prepared_.fragments[k].stated, prepared_.options.annotations);
-                if (!shaped_) known = {result_.placement.scale, placement.pose, result_.annotations[k]};
+                if (!shaped_) cached = {result_.placement.scale, placement.pose, result_.annotations[k]};
             } else {
-                result_.annotations[k] = known->matches;
+                result_.annotations[k] = cached->matches;
             }
             PlacedFragment placed{moved(fragment.mesh, placement.pose),
                                   &fragment.annotations,
@@ -285,8 +288,8 @@ private:
                                   placement.pose,
                                   prepared_.fragments[k].trees};
             // A landmark found to be wrong constrains nothing.
-            std::erase_if(placed.matches, [&](const AnnotationMatch& one) {
-                const Annotation* a = prepared_.set.find(one.of_template);
+            std::erase_if(placed.matches, [&](const AnnotationMatch& match) {
+                const Annotation* a = prepared_.set.find(match.of_template);
                 return a != nullptr && a->type == AnnotationType::point &&
                        std::any_of(placement.landmarks.begin(), placement.landmarks.end(),
                                    [&](const auto& landmark) { return landmark.name == a->tag && !landmark.used; });
@@ -297,18 +300,18 @@ private:
     }
 
     /// Determines the observed vertices: those matched within the tolerance.
-    void see() {
+    void find_observed() {
         const std::size_t n = prepared_.mesh.number_of_vertices();
-        std::vector<bool> near(n, false);
+        std::vector<bool> within_tolerance(n, false);
         result_.distance.assign(n, -1);
         for (std::size_t i = 0; i < n; ++i) {
             VertexMatch& match = result_.fit.matches[i];
             if (match.fragment < 0) continue;
             match.fragment = number_[static_cast<std::size_t>(match.fragment)];
-            near[i] = match.distance <= prepared_.options.observed * diagonal_;
-            if (near[i]) result_.distance[i] = match.distance;
+            within_tolerance[i] = match.distance <= prepared_.options.observed * diagonal_;
+            if (within_tolerance[i]) result_.distance[i] = match.distance;
         }
-        held_ = std::move(near);
+        observed_ = std::move(within_tolerance);
     }
 
     void finish() {
@@ -320,14 +323,14 @@ private:
         CompletedObject& object = result_.object;
         result_.joined.assign(fragments_.size(), 0);
         for (std::size_t i = 0; i < number_.size(); ++i) result_.joined[static_cast<std::size_t>(number_[i])] = object.joined[i];
-        double area = 0, seen = 0;
+        double area = 0, observed_area = 0;
         for (const Face face : object.mesh.faces()) {
             if (object.fragment[face] >= 0) object.fragment[face] = number_[static_cast<std::size_t>(object.fragment[face])];
             const double a = face_area(object.mesh, face);
             area += a;
-            if (object.origin[face] == Origin::observed) seen += a;
+            if (object.origin[face] == Origin::observed) observed_area += a;
         }
-        result_.observed_share = area > 0 ? seen / area : 0;
+        result_.observed_share = area > 0 ? observed_area / area : 0;
         for (CompletionNote& note : object.notes) note.fragment = number_[static_cast<std::size_t>(note.fragment)];
         if (!prepared_.crossings) prepared_.crossings = self_intersections(to_soup(prepared_.mesh)).pairs;
         const auto before = shaped_ ? self_intersections(to_soup(scaled_)).pairs : *prepared_.crossings,
@@ -341,15 +344,15 @@ private:
         }));
     }
 
-    void restore() {
-        const bool any = std::any_of(prepared_.graph.relationships.begin(), prepared_.graph.relationships.end(),
-                                     [](const Relationship& one) { return one.is_constraint; });
-        if (!any || !prepared_.options.restore) return;
+    void enforce_constraints() {
+        const bool has_constraints = std::any_of(prepared_.graph.relationships.begin(), prepared_.graph.relationships.end(),
+                                                 [](const Relationship& relationship) { return relationship.is_constraint; });
+        if (!has_constraints || !prepared_.options.restore) return;
         DeformOptions options;
         options.handles = 1e5;  // constraints must not move the observed part
         DeformResult restored = restore_constraints(
-            scaled_, prepared_.set, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, held_),
-            result_.points, held_, options, {}, "the template's graph");
+            scaled_, prepared_.set, with_observed_as_reference(prepared_.mesh, prepared_.set, prepared_.graph, observed_),
+            result_.points, observed_, options, {}, "the template's graph");
         result_.points = std::move(restored.points);
         result_.constraints = std::move(restored.constraints);
         result_.conflicts = std::move(restored.conflicts);
@@ -363,7 +366,7 @@ private:
     double diagonal_ = 0;
     std::vector<PlacedFragment> placed_;
     std::vector<int> number_;  ///< index of each placed fragment
-    std::vector<bool> held_;
+    std::vector<bool> observed_;
     Reconstruction result_;
 };
 
@@ -373,9 +376,9 @@ Reconstructor::Reconstructor(const Mesh& mesh, const AnnotationSet& set, const R
                              const ReconstructOptions& options, const ShapePrior* prior, const TemplateCage* cage) {
     check_options(options, "fit");
     if (options.fit.space != NonRigidOptions::Space::mesh && cage == nullptr)
-        fail_usage("the fit is to go through a cage, and there is none", "give the cage of the template");
+        fail_usage("the fit uses a cage, but the template has none", "give the cage of the template");
     if (options.fit.space != NonRigidOptions::Space::mesh && prior != nullptr)
-        fail_usage("a class changes the template's shape, and its cage does not follow",
+        fail_usage("a class changes the shape of the template, which its cage does not follow",
                    "fit in mesh space, or without the class");
     if (prior != nullptr) prior->check(mesh.number_of_vertices());
     if (inside_out(mesh)) fail_input("template", "is inside out", "run: ostraka mesh repair");
@@ -385,19 +388,19 @@ Reconstructor::~Reconstructor() = default;
 Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
 
 void Reconstructor::add(const Fragment& fragment, std::vector<StatedMatch> stated) {
-    if (inside_out(fragment.mesh)) fail_input("fragment '" + fragment.name + "'", "is inside out", "run: ostraka mesh repair");
-    KnownFragment known;
-    known.fragment = &fragment;
-    known.stated = std::move(stated);
-    known.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &known.notes);
-    known.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
-    known_->fragments.push_back(std::move(known));
+    if (inside_out(fragment.mesh))
+        fail_input(fmt::format("fragment '{}'", fragment.name), "is inside out", "run: ostraka mesh repair");
+    KnownFragment added;
+    added.fragment = &fragment;
+    added.stated = std::move(stated);
+    added.pairs = common_landmarks(known_->mesh, known_->set, fragment.mesh, fragment.annotations, &added.notes);
+    added.trees = std::make_shared<FragmentTrees>(fragment.mesh, fragment.facets);
+    known_->fragments.push_back(std::move(added));
 }
 
 void Reconstructor::remove(std::size_t position) {
     if (position >= size())
-        fail_usage("there is no fragment at position " + std::to_string(position),
-                   "give a position below " + std::to_string(size()));
+        fail_usage(fmt::format("there is no fragment at position {}", position), fmt::format("give a position below {}", size()));
     known_->fragments.erase(known_->fragments.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
@@ -406,7 +409,7 @@ std::size_t Reconstructor::size() const { return known_->fragments.size(); }
 PoseSearches& Reconstructor::searches() { return known_->searches; }
 
 Reconstruction Reconstructor::run() {
-    if (size() == 0) fail_usage("there is no fragment", "give one or more");
+    if (size() == 0) fail_usage("there are no fragments", "give one or more");
     return ReconstructionRun(*known_).run();
 }
 
@@ -414,16 +417,16 @@ Reconstruction reconstruct(const Mesh& mesh, const AnnotationSet& set, const Rel
                            const std::vector<const Fragment*>& fragments, const ReconstructOptions& options,
                            const std::vector<std::vector<StatedMatch>>& stated, const ShapePrior* prior,
                            const TemplateCage* cage) {
-    Reconstructor all(mesh, set, graph, options, prior, cage);
+    Reconstructor reconstructor(mesh, set, graph, options, prior, cage);
     for (std::size_t k = 0; k < fragments.size(); ++k)
-        all.add(*fragments[k], k < stated.size() ? stated[k] : std::vector<StatedMatch>());
-    return all.run();
+        reconstructor.add(*fragments[k], k < stated.size() ? stated[k] : std::vector<StatedMatch>());
+    return reconstructor.run();
 }
 
 void ReconstructOptions::describe(OptionList& visit) {
     placement.describe(visit);
     search.describe(visit);
-    visit("refine", refine, "poses are refined by closest points of the surface, landmarks as anchors", Anything{});
+    visit("refine", refine, "refine poses by closest points of the surface, with landmarks as anchors", Anything{});
     alignment.describe(visit);
     rotations.describe(visit);
     annotations.describe(visit);

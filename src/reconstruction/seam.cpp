@@ -36,8 +36,8 @@ Drawing draw(const Mesh& surface, const Patch& patch, const std::vector<std::opt
             up = up / std::sqrt(up.squared_length());
             Vector other = area_vector(surface, Face(b.face));
             up = up + other / std::sqrt(other.squared_length());
-            const double straight = std::sqrt(CGAL::squared_distance(from.point, to.point));
-            const auto piece = straight > 0 ? trace_line(surface, from, to, up, 3 * straight) : std::nullopt;
+            const double distance = std::sqrt(CGAL::squared_distance(from.point, to.point));
+            const auto piece = distance > 0 ? trace_line(surface, from, to, up, 3 * distance) : std::nullopt;
             first.push_back(curve.nodes.empty() ? 0 : curve.nodes.size() - 1);
             if (!piece || piece->nodes.size() < 2) {
                 drawing.failed.push_back(loop[i]);
@@ -99,12 +99,12 @@ FacePieces regions_between(const InsertedCurves& cut) {
         mesh, [](Face) { return true; }, [&](Halfedge h) { return !fence[mesh.edge(h)]; });
 }
 
-Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
-    constexpr auto none = static_cast<std::size_t>(-1);
+Sides partition_surface(const InsertedCurves& cut, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places) {
+    constexpr auto no_loop = static_cast<std::size_t>(-1);
     const Mesh& mesh = cut.mesh;
     const auto [region, count] = regions_between(cut);
     std::vector<bool> left(count, false);
-    std::vector<std::size_t> longest(count, none);                       // loop beside each region
+    std::vector<std::size_t> longest(count, no_loop);                    // loop beside each region
     std::vector<std::pair<std::size_t, std::size_t>> on_left, on_right;  // region and loop
     for (std::size_t l = 0; l < cut.node_vertex.size(); ++l)
         for (std::size_t i = 0; i + 1 < cut.node_vertex[l].size(); ++i) {
@@ -114,13 +114,13 @@ Sides part(const InsertedCurves& cut, const Patch& patch, const std::vector<std:
                 const std::size_t r = region[mesh.face(half)];
                 auto& side = half == h ? on_left : on_right;
                 if (side.empty() || side.back() != std::pair(r, l)) side.emplace_back(r, l);
-                if (longest[r] == none || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
+                if (longest[r] == no_loop || patch.loops()[l].size() > patch.loops()[longest[r]].size()) longest[r] = l;
             }
         }
     for (const Face face : patch.closed()) {
         const Index old = places[corners(patch.mesh(), face)[0]]->face;
-        const auto found = std::find(cut.face_origin.begin(), cut.face_origin.end(), old);
-        left[region[static_cast<std::size_t>(found - cut.face_origin.begin())]] = true;
+        const auto first_face = std::find(cut.face_origin.begin(), cut.face_origin.end(), old);
+        left[region[static_cast<std::size_t>(first_face - cut.face_origin.begin())]] = true;
     }
     for (const auto& [r, l] : on_left) left[r] = left[r] || l == longest[r];
     std::vector<bool> wrong(patch.loops().size(), false);
@@ -149,21 +149,21 @@ private:
 /// `joins(halfedge)` holds; returns those that were not in `front`.
 template <class Joins>
 std::vector<Vertex> rings_around(const Mesh& mesh, std::vector<Vertex> front, int rings, std::vector<bool>& near, Joins&& joins) {
-    std::vector<Vertex> found;
+    std::vector<Vertex> added;
     for (const Vertex v : front) near[v] = true;
     for (int r = 0; r < rings; ++r) {
-        std::vector<Vertex> then;
+        std::vector<Vertex> next;
         for (const Vertex v : front)
             for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
                 const Vertex other = mesh.source(h);
                 if (near[other] || !joins(h)) continue;
                 near[other] = true;
-                then.push_back(other);
+                next.push_back(other);
             }
-        found.insert(found.end(), then.begin(), then.end());
-        front = std::move(then);
+        added.insert(added.end(), next.begin(), next.end());
+        front = std::move(next);
     }
-    return found;
+    return added;
 }
 
 /// Moves the vertices of the surface near the seam by displacements that are harmonic between the seam and the `fixed`
@@ -203,13 +203,13 @@ using Splits = std::map<std::pair<Index, Index>, std::vector<Index>>;
 /// Triangulates the triangle with the additional vertices on its edges.
 void cut_triangle(std::array<Index, 3> t, const Splits& splits, std::vector<std::array<Index, 3>>& out) {
     for (int k = 0; k < 3; ++k) {
-        const auto found = splits.find({t[0], t[1]});
-        if (found == splits.end() || found->second.empty()) {
+        const auto split = splits.find({t[0], t[1]});
+        if (split == splits.end() || split->second.empty()) {
             t = {t[1], t[2], t[0]};
             continue;
         }
         std::vector<Index> vertex_path{t[0]};
-        vertex_path.insert(vertex_path.end(), found->second.begin(), found->second.end());
+        vertex_path.insert(vertex_path.end(), split->second.begin(), split->second.end());
         vertex_path.push_back(t[1]);
         for (std::size_t i = 0; i + 1 < vertex_path.size(); ++i)
             cut_triangle({vertex_path[i], vertex_path[i + 1], t[2]}, splits, out);
@@ -244,29 +244,29 @@ std::vector<Vertex> crossings_at_seam(const Mesh& surface, const Stitched& stitc
     const auto pairs = self_intersections(to_soup(near.mesh)).pairs;
     if (pairs.empty()) return {};
     // Finds the earlier intersections among the surface's own faces.
-    std::vector<bool> old(surface.number_of_faces(), false);
+    std::vector<bool> is_near(surface.number_of_faces(), false);
     for (const Index face : near.faces)
-        if (joint.old_face[face] != no_index) old[joint.old_face[face]] = true;
-    const SubMesh before = keep_faces(surface, old);
-    std::vector<std::pair<Index, Index>> known;
+        if (joint.old_face[face] != no_index) is_near[joint.old_face[face]] = true;
+    const SubMesh before = keep_faces(surface, is_near);
+    std::vector<std::pair<Index, Index>> earlier;
     for (const auto& [a, b] : self_intersections(to_soup(before.mesh)).pairs)
-        known.emplace_back(std::min(before.faces[a], before.faces[b]), std::max(before.faces[a], before.faces[b]));
-    std::sort(known.begin(), known.end());
-    std::vector<Vertex> found;
+        earlier.emplace_back(std::min(before.faces[a], before.faces[b]), std::max(before.faces[a], before.faces[b]));
+    std::sort(earlier.begin(), earlier.end());
+    std::vector<Vertex> vertices;
     for (const auto& [a, b] : pairs) {
         const Index f = joint.old_face[near.faces[a]], g = joint.old_face[near.faces[b]];
         if (f == no_index && g == no_index) continue;
         if (f != no_index && g != no_index &&
-            std::binary_search(known.begin(), known.end(), std::pair(std::min(f, g), std::max(f, g))))
+            std::binary_search(earlier.begin(), earlier.end(), std::pair(std::min(f, g), std::max(f, g))))
             continue;
         const Point place = centroid(near.mesh, Face(f == no_index ? b : a));
         Vertex nearest = patch.loops().front().front();
         for (const auto& loop : patch.loops())
             for (const Vertex v : loop)
                 if (CGAL::has_smaller_distance_to_point(place, patch.mesh().point(v), patch.mesh().point(nearest))) nearest = v;
-        found.push_back(nearest);
+        vertices.push_back(nearest);
     }
-    return found;
+    return vertices;
 }
 
 /// Joins the patch and the rest of the surface along the patch's border.
@@ -276,17 +276,17 @@ public:
         : patch_(patch),
           cut_(cut),
           drawing_(drawing),
-          of_patch_(patch.mesh().number_of_vertices(), no_index),
-          of_surface_(cut.mesh.number_of_vertices(), no_index) {
+          patch_vertex_(patch.mesh().number_of_vertices(), no_index),
+          surface_vertex_(cut.mesh.number_of_vertices(), no_index) {
         for (const Face face : patch.mesh().faces())
             if (patch.has(face))
                 for (const Vertex v : corners(patch.mesh(), face))
-                    if (of_patch_[v] == no_index) of_patch_[v] = add(eigen(patch.mesh().point(v)));
+                    if (patch_vertex_[v] == no_index) patch_vertex_[v] = add(eigen(patch.mesh().point(v)));
     }
 
     Stitched stitch(const std::vector<bool>& gone, double width, const std::vector<bool>& frozen) && {
         for (std::size_t l = 0; l < patch_.loops().size(); ++l)
-            for (std::size_t i = 0; i < patch_.loops()[l].size(); ++i) lay_seam(l, i);
+            for (std::size_t i = 0; i < patch_.loops()[l].size(); ++i) place_seam(l, i);
         result_.joint.patch_faces = patch_.size();
         add_surface(gone, width, frozen);
         add_patch();
@@ -302,29 +302,29 @@ private:
     }
 
     /// Moves the nodes of the curve between the ends of a border edge of the patch onto that edge.
-    void lay_seam(std::size_t l, std::size_t i) {
+    void place_seam(std::size_t l, std::size_t i) {
         const Mesh& surface = cut_.mesh;
         const auto& loop = patch_.loops()[l];
         const auto& nodes = cut_.node_vertex[l];
         const Vertex a = loop[i], b = loop[(i + 1) % loop.size()];
         const std::size_t begin = drawing_.first[l][i], end = drawing_.first[l][i + 1];
-        of_surface_[nodes[begin]] = of_patch_[a];
-        border_.emplace(of_patch_[a], a);
+        surface_vertex_[nodes[begin]] = patch_vertex_[a];
+        border_.emplace(patch_vertex_[a], a);
         seam_.emplace(nodes[begin], eigen(patch_.mesh().point(a)));
         double length = 0;
-        std::vector<double> way{0};
+        std::vector<double> lengths{0};
         for (std::size_t n = begin; n < end; ++n) {
             length += std::sqrt(CGAL::squared_distance(surface.point(Vertex(nodes[n])), surface.point(Vertex(nodes[n + 1]))));
-            way.push_back(length);
+            lengths.push_back(length);
         }
-        std::vector<Index>& split = splits_[{of_patch_[a], of_patch_[b]}];
+        std::vector<Index>& split = splits_[{patch_vertex_[a], patch_vertex_[b]}];
         for (std::size_t n = begin + 1; n < end; ++n) {
-            const double t = way[n - begin] / length;
+            const double t = lengths[n - begin] / length;
             const Vector3d place = (1 - t) * eigen(patch_.mesh().point(a)) + t * eigen(patch_.mesh().point(b));
-            of_surface_[nodes[n]] = add(place);
-            border_.emplace(of_surface_[nodes[n]], a);
+            surface_vertex_[nodes[n]] = add(place);
+            border_.emplace(surface_vertex_[nodes[n]], a);
             seam_.emplace(nodes[n], place);
-            split.push_back(of_surface_[nodes[n]]);
+            split.push_back(surface_vertex_[nodes[n]]);
         }
     }
 
@@ -338,8 +338,8 @@ private:
             std::array<Index, 3> triangle{};
             const auto c = corners(surface, face);
             for (std::size_t k = 0; k < 3; ++k) {
-                if (of_surface_[c[k]] == no_index) of_surface_[c[k]] = add(points[c[k]]);
-                triangle[k] = of_surface_[c[k]];
+                if (surface_vertex_[c[k]] == no_index) surface_vertex_[c[k]] = add(points[c[k]]);
+                triangle[k] = surface_vertex_[c[k]];
             }
             soup_.triangles.push_back(triangle);
             result_.joint.old_face.push_back(cut_.face_origin[face]);
@@ -353,7 +353,7 @@ private:
         for (const Face face : patch_.mesh().faces()) {
             if (!patch_.has(face)) continue;
             const auto c = corners(patch_.mesh(), face);
-            cut_triangle({of_patch_[c[0]], of_patch_[c[1]], of_patch_[c[2]]}, splits_, soup_.triangles);
+            cut_triangle({patch_vertex_[c[0]], patch_vertex_[c[1]], patch_vertex_[c[2]]}, splits_, soup_.triangles);
             const std::size_t count = soup_.triangles.size();
             result_.joint.old_face.resize(count, no_index);
             result_.joint.patch_face.resize(count, face);
@@ -378,7 +378,7 @@ private:
     const InsertedCurves& cut_;
     const Drawing& drawing_;
     TriangleSoup soup_;
-    std::vector<Index> of_patch_, of_surface_;  ///< from their vertices to the new ones
+    std::vector<Index> patch_vertex_, surface_vertex_;  ///< from their vertices to the new ones
     Splits splits_;
     std::map<Index, Vector3d> seam_;
     std::map<Index, Vertex> border_;  ///< from a new vertex to the border vertex of the patch that it is, or that precedes it
@@ -388,16 +388,16 @@ private:
 /// Without a joint if any border vertices `failed`.
 Stitched attempt_seam(const Mesh& surface, const Patch& patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
                       const std::vector<bool>& frozen) {
-    Stitched none;
+    Stitched failure;
     const Drawing drawing = draw(surface, patch, places);
-    none.failed = drawing.failed;
-    if (!none.failed.empty()) return none;
+    failure.failed = drawing.failed;
+    if (!failure.failed.empty()) return failure;
     const InsertedCurves cut = insert_curves(surface, drawing.curves);
-    none.failed = crossed(cut, patch, drawing);
-    if (!none.failed.empty()) return none;
-    const Sides sides = part(cut, patch, places);
-    none.failed = sides.failed;
-    if (!none.failed.empty()) return none;
+    failure.failed = crossed(cut, patch, drawing);
+    if (!failure.failed.empty()) return failure;
+    const Sides sides = partition_surface(cut, patch, places);
+    failure.failed = sides.failed;
+    if (!failure.failed.empty()) return failure;
     return Stitching(patch, cut, drawing).stitch(sides.left, width, frozen);
 }
 
@@ -406,14 +406,14 @@ Stitched attempt_seam(const Mesh& surface, const Patch& patch, const std::vector
 Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::optional<SurfaceHit>>& places, double width,
                  const std::vector<bool>& frozen) {
     constexpr int max_attempts = 40, max_crossed = 12;
-    Joint none, best;
+    Joint failure, best;
     std::size_t fewest = 0;
     int crossed_attempts = 0;
     for (int attempt = 0; attempt < max_attempts; ++attempt) {
         if (patch.size() == 0) {
             if (crossed_attempts > 0) return best;
-            none.problem = attempt == 0 ? "nothing of it lies on the fitted template" : "its border is not simple anywhere";
-            return none;
+            failure.problem = attempt == 0 ? "no part of it lies on the fitted template" : "its border is simple nowhere";
+            return failure;
         }
         Stitched stitched = attempt_seam(surface, patch, places, width, frozen);
         std::vector<Vertex> failed = std::move(stitched.failed);
@@ -429,8 +429,8 @@ Joint join_patch(const Mesh& surface, Patch patch, const std::vector<std::option
         patch.erode(std::move(failed), 1 << (attempt / 8));
     }
     if (crossed_attempts > 0) return best;
-    none.problem = "its border crosses itself on the template";
-    return none;
+    failure.problem = "its border crosses itself on the template";
+    return failure;
 }
 
 }  // namespace ostraka

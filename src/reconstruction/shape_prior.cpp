@@ -10,6 +10,8 @@
 #include "ostraka/geom/submesh.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,13 +27,13 @@ using Eigen::VectorXd;
 
 void ShapePrior::check(std::size_t vertices) const {
     if (mean.size() != vertices)
-        fail_input("class", "has " + std::to_string(mean.size()) + " vertices, and the template " + std::to_string(vertices),
+        fail_input("class", fmt::format("has {} vertices, but the template has {}", mean.size(), vertices),
                    "give the class that was learnt with this template");
     if (static_cast<std::size_t>(modes.rows()) != 3 * vertices || static_cast<std::size_t>(modes.cols()) != deviations.size())
-        fail_input("class", "its modes do not fit its mean", "learn it anew");
+        fail_input("class", "its modes do not fit its mean", "learn it again");
     if (!modes.allFinite() ||
         std::any_of(deviations.begin(), deviations.end(), [](double d) { return !(d > 0) || !std::isfinite(d); }))
-        fail_input("class", "has a mode that is not finite, or does not vary", "learn it anew");
+        fail_input("class", "has a mode that is not finite or does not vary", "learn it again");
 }
 
 namespace {
@@ -39,7 +41,7 @@ namespace {
 /// A point of the class's shape and the fragment's distance from its plane.
 struct Residual {
     Vector3d place, normal;
-    double off = 0, weight = 0;
+    double distance = 0, weight = 0;
     std::array<Index, 3> corners{};  ///< of the template
     std::array<double, 3> barycentric{};
 };
@@ -50,7 +52,7 @@ struct Residual {
 /// independent residuals of the patch.
 double independent_samples(std::vector<Residual> residuals, std::size_t unknowns, double minimum) {
     const auto wanted = std::max(static_cast<std::size_t>(minimum), 2 * unknowns);
-    std::erase_if(residuals, [](const Residual& one) { return !(one.weight > 0); });
+    std::erase_if(residuals, [](const Residual& residual) { return !(residual.weight > 0); });
     if (residuals.size() < 4 * wanted) return minimum;
     std::vector<std::pair<std::size_t, std::size_t>> patches{{0, residuals.size()}};
     while (patches.size() < wanted) {
@@ -70,21 +72,21 @@ double independent_samples(std::vector<Residual> residuals, std::size_t unknowns
         }
         patches = std::move(halves);
     }
-    double squares = 0, of_means = 0;
+    double squares = 0, mean_squares = 0;
     for (const auto& [from, to] : patches) {
         double sum = 0, weight = 0;
         for (std::size_t i = from; i < to; ++i) {
-            sum += residuals[i].weight * residuals[i].off;
+            sum += residuals[i].weight * residuals[i].distance;
             weight += residuals[i].weight;
-            squares += residuals[i].weight * residuals[i].off * residuals[i].off;
+            squares += residuals[i].weight * residuals[i].distance * residuals[i].distance;
         }
-        if (weight > 0) of_means += sum * sum / weight;
+        if (weight > 0) mean_squares += sum * sum / weight;
     }
     const auto count = static_cast<double>(patches.size());
     // The fitted parameters reduce the variance of the means.
-    of_means *= count / (count - static_cast<double>(unknowns));
+    mean_squares *= count / (count - static_cast<double>(unknowns));
     const double maximum = static_cast<double>(residuals.size());
-    return of_means > 0 ? std::clamp(count * squares / of_means, minimum, std::max(minimum, maximum)) : minimum;
+    return mean_squares > 0 ? std::clamp(count * squares / mean_squares, minimum, std::max(minimum, maximum)) : minimum;
 }
 
 class PriorFitter {
@@ -92,11 +94,11 @@ public:
     PriorFitter(const Mesh& scaled, const AnnotationSet& set, const std::vector<PlacedFragment>& fragments,
                 const ShapePrior& prior, const PriorOptions& options)
         : scaled_(scaled), prior_(prior), options_(options), diagonal_(box_diagonal(scaled)) {
-        std::vector<Vector3d> there;
-        for (const Vertex v : scaled.vertices()) there.push_back(eigen(scaled.point(v)));
-        FitOptions free;
-        free.scale = true;
-        place_ = fit_motion(prior.mean, there, {}, free);
+        std::vector<Vector3d> positions;
+        for (const Vertex v : scaled.vertices()) positions.push_back(eigen(scaled.point(v)));
+        FitOptions fit_options;
+        fit_options.scale = true;
+        registration_ = fit_motion(prior.mean, positions, {}, fit_options);
         coefficients_ = VectorXd::Zero(prior.modes.cols());
         const MatchSearch search(scaled, set, fragments);
         correspondences_ = search.correspondences();
@@ -113,16 +115,16 @@ public:
 
     PriorFit run() {
         PriorFit fit;
-        Points now = shape();
+        Points current = shape();
         for (; fit.iterations < options_.iterations; ++fit.iterations) {
-            if (!step(now, fit)) break;
-            const Points then = shape();
-            const double change = (then - now).colwise().norm().maxCoeff();
-            now = then;
+            if (!step(current, fit)) break;
+            const Points next = shape();
+            const double change = (next - current).colwise().norm().maxCoeff();
+            current = next;
             if (change < 1e-5 * diagonal_) break;
         }
         fit.mesh = scaled_;
-        for (const Vertex v : fit.mesh.vertices()) fit.mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(v)));
+        for (const Vertex v : fit.mesh.vertices()) fit.mesh.point(v) = point_of(current.col(static_cast<Eigen::Index>(v)));
         for (Eigen::Index k = 0; k < coefficients_.size(); ++k)
             fit.coefficients.push_back(coefficients_[k] / prior_.deviations[static_cast<std::size_t>(k)]);
         return fit;
@@ -133,103 +135,104 @@ private:
         Points points(3, static_cast<Eigen::Index>(prior_.mean.size()));
         const VectorXd offset = prior_.modes * coefficients_;
         for (Eigen::Index i = 0; i < points.cols(); ++i)
-            points.col(i) = place_(prior_.mean[static_cast<std::size_t>(i)] + offset.segment<3>(3 * i));
+            points.col(i) = registration_(prior_.mean[static_cast<std::size_t>(i)] + offset.segment<3>(3 * i));
         return points;
     }
 
     /// Distances of the fragments' samples from the planes of the class's shape, which is smooth while the fragments are not.
-    [[nodiscard]] std::vector<Residual> residuals(const Points& now) {
-        std::vector<Residual> found;
+    [[nodiscard]] std::vector<Residual> residuals(const Points& current) {
+        std::vector<Residual> result;
         const double cosine = std::cos(options_.angle * pi / 180), search_radius = options_.search_radius * diagonal_;
         for (auto& [label, part] : parts_) {
             if (part.faces.empty()) continue;
             for (const Vertex v : part.mesh.vertices())
-                part.mesh.point(v) = point_of(now.col(static_cast<Eigen::Index>(part.vertices[v])));
+                part.mesh.point(v) = point_of(current.col(static_cast<Eigen::Index>(part.vertices[v])));
             const SurfaceSearch search(part.mesh);
-            std::vector<std::optional<Residual>> of_sample(samples_.size());
+            std::vector<std::optional<Residual>> sample_residuals(samples_.size());
             parallel_for(samples_.size(), [&, label = label, part = &part](std::size_t i) {
                 const FragmentSample& sample = samples_[i];
                 if (sample.label != label) return;
                 const auto hit =
                     search.closest_compatible(point_of(sample.place), vector_of(sample.normal), cosine, search_radius);
                 if (!hit) return;
-                Residual one;
-                one.place = eigen(hit->point);
-                one.normal = eigen(search.normal(hit->face));
-                one.off = one.normal.dot(sample.place - one.place);
+                Residual residual;
+                residual.place = eigen(hit->point);
+                residual.normal = eigen(search.normal(hit->face));
+                residual.distance = residual.normal.dot(sample.place - residual.place);
                 const auto c = corners(part->mesh, Face(hit->face));
-                for (std::size_t k = 0; k < 3; ++k) one.corners[k] = part->vertices[c[k]];
-                one.barycentric = hit->barycentric;
-                of_sample[i] = one;
+                for (std::size_t k = 0; k < 3; ++k) residual.corners[k] = part->vertices[c[k]];
+                residual.barycentric = hit->barycentric;
+                sample_residuals[i] = residual;
             });
-            for (const auto& one : of_sample)
-                if (one) found.push_back(*one);
+            for (const auto& residual : sample_residuals)
+                if (residual) result.push_back(*residual);
         }
-        return found;
+        return result;
     }
 
     /// False if nothing is matched.
-    bool step(const Points& now, PriorFit& fit) {
-        std::vector<Residual> matches = residuals(now);
+    bool step(const Points& current, PriorFit& fit) {
+        std::vector<Residual> matches = residuals(current);
         fit.matched = matches.size();
         if (matches.size() < 3) return false;
         // Outliers far beyond the typical residual get no weight (Tukey's biweight).
         std::vector<double> sizes;
-        for (const Residual& one : matches) sizes.push_back(std::abs(one.off));
+        for (const Residual& residual : matches) sizes.push_back(std::abs(residual.distance));
         const double min_error = 1e-4 * diagonal_, limit = 4.685 * std::max(1.4826 * upper_median(std::move(sizes)), min_error);
         double weight = 0;
-        for (Residual& one : matches) {
-            const double t = one.off / limit;
-            one.weight = std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0;
-            weight += one.weight;
+        for (Residual& residual : matches) {
+            const double t = residual.distance / limit;
+            residual.weight = std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0;
+            weight += residual.weight;
         }
         if (!(weight > 0)) return false;
         Vector3d centre = Vector3d::Zero();
         double squares = 0, spread = 0;
-        for (Residual& one : matches) {
-            one.weight /= weight;
-            centre += one.weight * one.place;
-            squares += one.weight * one.off * one.off;
+        for (Residual& residual : matches) {
+            residual.weight /= weight;
+            centre += residual.weight * residual.place;
+            squares += residual.weight * residual.distance * residual.distance;
         }
-        for (const Residual& one : matches) spread += one.weight * (one.place - centre).squaredNorm();
+        for (const Residual& residual : matches) spread += residual.weight * (residual.place - centre).squaredNorm();
         spread = std::sqrt(spread);
         if (!(spread > 0)) return false;
         // Unknowns: rotation and scale (times the spread), translation, coefficients (in deviations).
         const Eigen::Index modes = coefficients_.size(), unknowns = 7 + modes;
         MatrixXd normal = MatrixXd::Zero(unknowns, unknowns);
         VectorXd right = VectorXd::Zero(unknowns), row(unknowns);
-        const Matrix3d linear = place_.scale * place_.rotation;
-        const auto add = [&](const Residual& one) {
-            const Vector3d arm = (one.place - centre) / spread;
-            row.head<3>() = arm.cross(one.normal);
-            row[3] = one.normal.dot(arm);
-            row.segment<3>(4) = one.normal;
-            const Eigen::RowVector3d rotated = one.normal.transpose() * linear;
+        const Matrix3d linear = registration_.scale * registration_.rotation;
+        const auto add = [&](const Residual& residual) {
+            const Vector3d arm = (residual.place - centre) / spread;
+            row.head<3>() = arm.cross(residual.normal);
+            row[3] = residual.normal.dot(arm);
+            row.segment<3>(4) = residual.normal;
+            const Eigen::RowVector3d rotated = residual.normal.transpose() * linear;
             row.tail(modes).setZero();
             for (std::size_t c = 0; c < 3; ++c)
-                for (Eigen::Index k = 0; k < modes && one.barycentric[c] > 0; ++k)
-                    row[7 + k] += one.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
-                                  rotated.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(one.corners[c])));
-            normal.selfadjointView<Eigen::Lower>().rankUpdate(row, one.weight);
-            right += one.weight * one.off * row;
+                for (Eigen::Index k = 0; k < modes && residual.barycentric[c] > 0; ++k)
+                    row[7 + k] += residual.barycentric[c] * prior_.deviations[static_cast<std::size_t>(k)] *
+                                  rotated.dot(prior_.modes.col(k).segment<3>(3 * static_cast<Eigen::Index>(residual.corners[c])));
+            normal.selfadjointView<Eigen::Lower>().rankUpdate(row, residual.weight);
+            right += residual.weight * residual.distance * row;
         };
-        for (const Residual& one : matches)
-            if (one.weight > 0) add(one);
+        for (const Residual& residual : matches)
+            if (residual.weight > 0) add(residual);
         fit.residual = std::sqrt(squares);
         fit.samples = independent_samples(matches, static_cast<std::size_t>(unknowns), options_.samples);
         // A landmark counts as one more sample, with less weight if the landmarks have larger residuals than the surface.
-        double apart = 0;
+        double landmark_squares = 0;
         for (const CorrespondenceConstraint& correspondence : correspondences_)
-            apart += (correspondence.place - now.col(static_cast<Eigen::Index>(correspondence.vertex))).squaredNorm() /
-                     (3 * static_cast<double>(correspondences_.size()));
-        const double of_landmark = (apart > squares ? squares / apart : 1) / fit.samples;
+            landmark_squares +=
+                (correspondence.place - current.col(static_cast<Eigen::Index>(correspondence.vertex))).squaredNorm() /
+                (3 * static_cast<double>(correspondences_.size()));
+        const double landmark_weight = (landmark_squares > squares ? squares / landmark_squares : 1) / fit.samples;
         for (const CorrespondenceConstraint& correspondence : correspondences_) {
-            const Vector3d p = now.col(static_cast<Eigen::Index>(correspondence.vertex));
+            const Vector3d p = current.col(static_cast<Eigen::Index>(correspondence.vertex));
             for (int axis = 0; axis < 3; ++axis)
                 add({p,
                      Vector3d::Unit(axis),
                      correspondence.place[axis] - p[axis],
-                     of_landmark,
+                     landmark_weight,
                      {correspondence.vertex, 0, 0},
                      {1, 0, 0}});
         }
@@ -253,11 +256,11 @@ private:
         }
         const Vector3d rotation = x.head<3>() / spread;
         const double angle = rotation.norm();
-        Motion about;
-        if (angle > 0) about.rotation = Eigen::AngleAxisd(std::min(angle, 0.5), rotation / angle).toRotationMatrix();
-        about.scale = std::clamp(1 + x[3] / spread, 0.8, 1.25);
-        about.translation = centre + x.segment<3>(4) - about.scale * (about.rotation * centre);
-        place_ = about.after(place_);
+        Motion increment;
+        if (angle > 0) increment.rotation = Eigen::AngleAxisd(std::min(angle, 0.5), rotation / angle).toRotationMatrix();
+        increment.scale = std::clamp(1 + x[3] / spread, 0.8, 1.25);
+        increment.translation = centre + x.segment<3>(4) - increment.scale * (increment.rotation * centre);
+        registration_ = increment.after(registration_);
         return true;
     }
 
@@ -268,7 +271,7 @@ private:
     std::vector<CorrespondenceConstraint> correspondences_;
     std::vector<FragmentSample> samples_;
     std::map<int, SubMesh> parts_;  ///< of the template, by label
-    Motion place_;
+    Motion registration_;
     VectorXd coefficients_;
 };
 

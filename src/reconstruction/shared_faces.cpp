@@ -12,12 +12,12 @@ namespace ostraka {
 
 namespace {
 
-constexpr std::size_t neighbourhood = 30;   // number of vertices whose degrees identify an edge
-constexpr std::size_t most_seeds = 64;      // max number of edges that are searched: one bit of a mask each
-constexpr std::size_t least_faces = 50;     // min faces of a piece
-constexpr std::size_t most_places = 64;     // max candidate positions of an edge, for symmetries
-constexpr std::size_t most_tries = 8;       // max number of seeds that are followed
-using Degrees = std::vector<std::uint8_t>;  // 0: at a border or a fracture
+constexpr std::size_t neighbourhood = 30;      // number of vertices whose degrees identify an edge
+constexpr std::size_t max_seeds = 64;          // max number of edges that are searched: one bit of a mask each
+constexpr std::size_t min_piece_faces = 50;    // min faces of a piece
+constexpr std::size_t max_positions = 64;      // max candidate positions of an edge, for symmetries
+constexpr std::size_t max_followed_seeds = 8;  // max number of seeds that are followed
+using Degrees = std::vector<std::uint8_t>;     // 0: at a border or a fracture
 
 Degrees degrees_of(const Mesh& mesh, const std::vector<bool>& broken) {
     Degrees degrees(mesh.number_of_vertices(), 0);
@@ -60,7 +60,7 @@ void walk(const Mesh& mesh, Halfedge start, Visit&& visit) {
 struct Seed {
     Halfedge edge;
     Degrees degrees;
-    std::vector<Halfedge> there;  ///< candidate positions; more than `most_places`: too many
+    std::vector<Halfedge> positions;  ///< candidate positions; more than `max_positions`: too many
 };
 
 std::optional<Seed> seed_at(const Mesh& mesh, const Degrees& degrees, Halfedge edge) {
@@ -80,46 +80,48 @@ std::optional<Seed> seed_at(const Mesh& mesh, const Degrees& degrees, Halfedge e
 std::vector<Seed> seeds_of(const Mesh& mesh, const Degrees& degrees, const std::vector<Index>& faces) {
     constexpr std::size_t tried = 512;
     constexpr std::uint8_t regular = 6;
-    std::vector<std::pair<std::ptrdiff_t, Seed>> found;
+    std::vector<std::pair<std::ptrdiff_t, Seed>> candidates;
     const std::size_t stride = std::max<std::size_t>(1, faces.size() / tried);
     for (std::size_t k = 0; k < faces.size(); k += stride)
         if (auto seed = seed_at(mesh, degrees, mesh.halfedge(Face(faces[k]))))
-            found.emplace_back(std::count(seed->degrees.begin(), seed->degrees.end(), regular), std::move(*seed));
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (found.size() > most_seeds) found.resize(most_seeds);
+            candidates.emplace_back(std::count(seed->degrees.begin(), seed->degrees.end(), regular), std::move(*seed));
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (candidates.size() > max_seeds) candidates.resize(max_seeds);
     std::vector<Seed> seeds;
-    for (auto& [count, seed] : found) seeds.push_back(std::move(seed));
+    for (auto& [count, seed] : candidates) seeds.push_back(std::move(seed));
     return seeds;
 }
 
 /// Finds the candidate positions of each seed on `mesh`; keeps the seeds with few positions, fewest first.
 void find_seeds(const Mesh& mesh, const Degrees& degrees, std::vector<Seed>& seeds) {
-    std::vector<std::uint64_t> found(mesh.number_of_halfedges(), 0);
-    const std::uint64_t all = seeds.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << seeds.size()) - 1;
+    std::vector<std::uint64_t> matching_seeds(mesh.number_of_halfedges(), 0);
+    const std::uint64_t all_seeds = seeds.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << seeds.size()) - 1;
     parallel_for(
-        found.size(),
+        matching_seeds.size(),
         [&](std::size_t i) {
             const Halfedge h(static_cast<Index>(i));
             if (mesh.is_border(h) || mesh.is_border(mesh.opposite(h))) return;
-            std::uint64_t left = all;
+            std::uint64_t remaining = all_seeds;
             std::size_t position = 0;
             walk(mesh, h, [&](Vertex v) {
                 for (std::size_t s = 0; s < seeds.size(); ++s)
-                    if ((left >> s & 1U) != 0 && seeds[s].degrees[position] != degrees[v]) left &= ~(std::uint64_t{1} << s);
-                if (degrees[v] == 0) left = 0;
-                return left != 0 && ++position < neighbourhood;
+                    if ((remaining >> s & 1U) != 0 && seeds[s].degrees[position] != degrees[v])
+                        remaining &= ~(std::uint64_t{1} << s);
+                if (degrees[v] == 0) remaining = 0;
+                return remaining != 0 && ++position < neighbourhood;
             });
-            if (position == neighbourhood) found[i] = left;
+            if (position == neighbourhood) matching_seeds[i] = remaining;
         },
         256);
-    for (std::size_t i = 0; i < found.size(); ++i)
-        for (std::size_t s = 0; found[i] != 0 && s < seeds.size(); ++s) {
-            if ((found[i] >> s & 1U) != 0 && seeds[s].there.size() <= most_places)
-                seeds[s].there.emplace_back(static_cast<Index>(i));
+    for (std::size_t i = 0; i < matching_seeds.size(); ++i)
+        for (std::size_t s = 0; matching_seeds[i] != 0 && s < seeds.size(); ++s) {
+            if ((matching_seeds[i] >> s & 1U) != 0 && seeds[s].positions.size() <= max_positions)
+                seeds[s].positions.emplace_back(static_cast<Index>(i));
         }
-    std::erase_if(seeds, [](const Seed& seed) { return seed.there.empty() || seed.there.size() > most_places; });
-    std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.there.size() < b.there.size(); });
-    if (seeds.size() > most_tries) seeds.resize(most_tries);
+    std::erase_if(seeds, [](const Seed& seed) { return seed.positions.empty() || seed.positions.size() > max_positions; });
+    std::stable_sort(seeds.begin(), seeds.end(),
+                     [](const Seed& a, const Seed& b) { return a.positions.size() < b.positions.size(); });
+    if (seeds.size() > max_followed_seeds) seeds.resize(max_followed_seeds);
 }
 
 using Pairs = std::vector<std::pair<Index, Index>>;  // vertices of the fragment and of the mesh
@@ -132,41 +134,45 @@ struct Piece {
     std::vector<Index> vertices;  ///< per vertex of the fragment, that of the mesh; restored after use
     std::vector<bool> done;       ///< per face; restored after use
 
-    Piece(const Mesh& of, const std::vector<Index>& pieces)
-        : fragment(of), piece_of(pieces), vertices(of.number_of_vertices(), no_index), done(of.number_of_faces(), false) {}
+    Piece(const Mesh& fragment_mesh, const std::vector<Index>& pieces)
+        : fragment(fragment_mesh),
+          piece_of(pieces),
+          vertices(fragment_mesh.number_of_vertices(), no_index),
+          done(fragment_mesh.number_of_faces(), false) {}
 
     /// Vertex pairs from traversing both meshes from an edge; empty if the faces differ.
     Pairs follow(const Mesh& mesh, Halfedge edge, Halfedge edge_there) {
         Pairs pairs;
         std::vector<Face> walked;
-        const bool same = walk_both(mesh, edge, edge_there, pairs, walked) && walked.size() == faces && each_once(pairs);
+        const bool is_same = walk_both(mesh, edge, edge_there, pairs, walked) && walked.size() == faces && each_once(pairs);
         for (const auto& [v, there] : pairs) vertices[v] = no_index;
         for (const Face face : walked) done[face] = false;
-        return same ? pairs : Pairs();
+        return is_same ? pairs : Pairs();
     }
 
 private:
     bool walk_both(const Mesh& mesh, Halfedge edge, Halfedge edge_there, Pairs& pairs, std::vector<Face>& walked) {
         const Index piece = piece_of[fragment.face(edge)];
         std::vector<std::pair<Halfedge, Halfedge>> stack{{edge, edge_there}};
-        const auto reach = [&](Halfedge h) {
+        const auto mark_visited = [&](Halfedge h) {
             done[fragment.face(h)] = true;
             walked.push_back(fragment.face(h));
         };
-        reach(edge);
+        mark_visited(edge);
         while (!stack.empty()) {
             auto [h, g] = stack.back();
             stack.pop_back();
             for (int side = 0; side < 3; ++side, h = fragment.next(h), g = mesh.next(g)) {
-                Index& known = vertices[fragment.target(h)];
+                Index& mapped = vertices[fragment.target(h)];
                 const auto there = static_cast<Index>(mesh.target(g));
-                if (known == no_index) pairs.emplace_back(static_cast<Index>(fragment.target(h)), known = there);
-                if (known != there) return false;
-                const Halfedge over = fragment.opposite(h), over_there = mesh.opposite(g);
-                if (fragment.is_border(over) || piece_of[fragment.face(over)] != piece || done[fragment.face(over)]) continue;
-                if (mesh.is_border(over_there)) return false;
-                reach(over);
-                stack.emplace_back(over, over_there);
+                if (mapped == no_index) pairs.emplace_back(static_cast<Index>(fragment.target(h)), mapped = there);
+                if (mapped != there) return false;
+                const Halfedge across = fragment.opposite(h), across_there = mesh.opposite(g);
+                if (fragment.is_border(across) || piece_of[fragment.face(across)] != piece || done[fragment.face(across)])
+                    continue;
+                if (mesh.is_border(across_there)) return false;
+                mark_visited(across);
+                stack.emplace_back(across, across_there);
             }
         }
         return true;
@@ -181,18 +187,18 @@ private:
 };
 
 /// The candidate position of the seeds at which the piece lies nearest.
-Pairs nearest_place(Piece& piece, const Mesh& mesh, double scale, const std::vector<Seed>& seeds) {
+Pairs nearest_position(Piece& piece, const Mesh& mesh, double scale, const std::vector<Seed>& seeds) {
     Pairs best;
-    double least = 0;
+    double min_sum = 0;
     for (const Seed& seed : seeds) {
-        for (const Halfedge there : seed.there) {
+        for (const Halfedge there : seed.positions) {
             Pairs pairs = piece.follow(mesh, seed.edge, there);
             if (pairs.empty()) continue;
             double sum = 0;
             for (const auto& [v, ours] : pairs)
                 sum += (scale * eigen(mesh.point(Vertex(ours))) - eigen(piece.fragment.point(Vertex(v)))).squaredNorm();
-            if (!best.empty() && !(sum < least)) continue;
-            least = sum;
+            if (!best.empty() && !(sum < min_sum)) continue;
+            min_sum = sum;
             best = std::move(pairs);
         }
         if (!best.empty()) break;
@@ -211,13 +217,13 @@ std::vector<Index> shared_vertices(const Mesh& mesh, const Mesh& fragment, doubl
         if (pieces.of_face[f] != no_index) faces[pieces.of_face[f]].push_back(f);
     const Degrees ours = degrees_of(mesh, {}), theirs = degrees_of(fragment, broken);
     Piece piece(fragment, pieces.of_face);
-    for (const std::vector<Index>& list : faces) {
-        if (list.size() < least_faces || list.size() > mesh.number_of_faces()) continue;
-        std::vector<Seed> seeds = seeds_of(fragment, theirs, list);
+    for (const std::vector<Index>& piece_faces : faces) {
+        if (piece_faces.size() < min_piece_faces || piece_faces.size() > mesh.number_of_faces()) continue;
+        std::vector<Seed> seeds = seeds_of(fragment, theirs, piece_faces);
         if (seeds.empty()) continue;
         find_seeds(mesh, ours, seeds);
-        piece.faces = list.size();
-        for (const auto& [v, there] : nearest_place(piece, mesh, scale, seeds)) vertices[v] = there;
+        piece.faces = piece_faces.size();
+        for (const auto& [v, there] : nearest_position(piece, mesh, scale, seeds)) vertices[v] = there;
     }
     return vertices;
 }

@@ -11,18 +11,18 @@ TemplateCage template_in_cage(const Mesh& mesh, Mesh cage) {
     if (!check.valid()) {
         for (const Finding& finding : findings(check, ""))
             if (finding.defect)
-                fail_input("cage" + (finding.where.empty() ? std::string() : ", " + finding.where), finding.text,
-                           "give a sound cage around the template: 'cage check' tells all, 'cage make' makes one");
+                fail_input(finding.where.empty() ? "cage" : "cage, " + finding.where, finding.text,
+                           "give a valid cage around the template: 'cage check' lists all defects, 'cage make' generates one");
     }
     Coordinates coordinates = compute_coordinates("mean-value", cage, mesh);
     return {std::move(cage), std::move(coordinates)};
 }
 
-std::optional<TemplateCage> cage_of(const Template& known) {
-    const Mesh& mesh = known.mesh->mesh;
-    for (const std::optional<Mesh>& cage : known.cages) {
+std::optional<TemplateCage> cage_of(const Template& package) {
+    const Mesh& mesh = package.mesh->mesh;
+    for (const std::optional<Mesh>& cage : package.cages) {
         if (!cage) continue;
-        for (const PackagedFile* part : known.file.of("coordinates")) {
+        for (const PackagedFile* part : package.file.of("coordinates")) {
             try {
                 Coordinates coordinates = read_coordinates(part->file, mesh, *cage);
                 if (!coordinates.has_normals()) return TemplateCage{*cage, std::move(coordinates)};

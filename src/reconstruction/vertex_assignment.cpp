@@ -8,6 +8,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/point_tree.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,14 +27,14 @@ struct Part {
     std::vector<bool> boundary;
     std::vector<int> inner, outer;  ///< positions in `vertices` of interior and outline vertices
     /// Arc length along the outline for each outline vertex and each landmark; negative: none.
-    std::vector<std::vector<double>> ways;
+    std::vector<std::vector<double>> arc_lengths;
 };
 
 /// Arc lengths from each vertex of a path onwards to one of them, continuing at the start of a closed path; negative if there
 /// is no path.
-std::vector<double> ways_to(const Mesh& mesh, const VertexPath& vertex_path, std::size_t goal) {
+std::vector<double> arc_lengths_to(const Mesh& mesh, const VertexPath& vertex_path, std::size_t goal) {
     const std::size_t n = vertex_path.vertices.size();
-    std::vector<double> ways(n, -1);
+    std::vector<double> arc_lengths(n, -1);
     double length = 0;
     for (std::size_t k = 0; k < n; ++k) {
         if (k > 0) {
@@ -41,16 +43,16 @@ std::vector<double> ways_to(const Mesh& mesh, const VertexPath& vertex_path, std
             length += std::sqrt(
                 CGAL::squared_distance(mesh.point(Vertex(vertex_path.vertices[a])), mesh.point(Vertex(vertex_path.vertices[b]))));
         }
-        ways[(goal + n - k) % n] = length;
+        arc_lengths[(goal + n - k) % n] = length;
     }
-    return ways;
+    return arc_lengths;
 }
 
 Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<Index>& landmarks, const std::string& whose) {
     Part part;
     part.vertices = touched_vertices(mesh, annotation);
     if (part.vertices.empty())
-        fail_input(whose + ", annotation '" + annotation.tag + "'", "has no vertices", "leave its match out");
+        fail_input(fmt::format("{}, annotation '{}'", whose, annotation.tag), "has no vertices", "remove its match");
     std::map<Index, int> position;
     for (std::size_t i = 0; i < part.vertices.size(); ++i) {
         position.emplace(part.vertices[i], static_cast<int>(i));
@@ -61,7 +63,7 @@ Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<I
     part.boundary.assign(part.vertices.size(), annotation.type != AnnotationType::region);
     for (const VertexPath& vertex_path : vertex_paths)
         for (const Index v : vertex_path.vertices) part.boundary[static_cast<std::size_t>(position.at(v))] = true;
-    part.ways.assign(part.vertices.size(), std::vector<double>(landmarks.size(), -1));
+    part.arc_lengths.assign(part.vertices.size(), std::vector<double>(landmarks.size(), -1));
     for (std::size_t l = 0; l < landmarks.size(); ++l) {
         const Point& place = mesh.point(Vertex(landmarks[l]));
         const VertexPath* nearest = nullptr;
@@ -75,9 +77,9 @@ Part part_of(const Mesh& mesh, const Annotation& annotation, const std::vector<I
                     goal = i;
                 }
         if (nearest == nullptr) continue;
-        const std::vector<double> ways = ways_to(mesh, *nearest, goal);
-        for (std::size_t i = 0; i < ways.size(); ++i)
-            part.ways[static_cast<std::size_t>(position.at(nearest->vertices[i]))][l] = ways[i];
+        const std::vector<double> arc_lengths = arc_lengths_to(mesh, *nearest, goal);
+        for (std::size_t i = 0; i < arc_lengths.size(); ++i)
+            part.arc_lengths[static_cast<std::size_t>(position.at(nearest->vertices[i]))][l] = arc_lengths[i];
     }
     for (std::size_t i = 0; i < part.vertices.size(); ++i)
         (part.boundary[i] ? part.outer : part.inner).push_back(static_cast<int>(i));
@@ -119,22 +121,22 @@ public:
         const std::size_t n = result.vertices.size();
         result.counterpart.assign(n, no_index);
         result.cost.assign(n, std::numeric_limits<double>::infinity());
-        const bool once = options_.counterpart == VertexAssignmentOptions::Counterpart::one_to_one;
-        const auto wanted = static_cast<std::size_t>(once ? options_.candidates : 1);
-        std::vector<std::vector<std::pair<double, int>>> lists(n);
+        const bool each_once = options_.counterpart == VertexAssignmentOptions::Counterpart::one_to_one;
+        const auto max_count = static_cast<std::size_t>(each_once ? options_.candidates : 1);
+        std::vector<std::vector<std::pair<double, int>>> candidates(n);
         parallel_for(
-            n, [&](std::size_t i) { lists[i] = best(static_cast<int>(i), wanted); }, 64);
+            n, [&](std::size_t i) { candidates[i] = best(static_cast<int>(i), max_count); }, 64);
         std::vector<int> chosen(n, -1);
-        if (once) {
+        if (each_once) {
             const double sum = options_.boundary + options_.distance + options_.outline, unit = 1e9 / std::max(sum, 1e-300);
             std::vector<fitting::AssignmentArc> arcs;
             for (std::size_t i = 0; i < n; ++i)
-                for (const auto& [cost, j] : lists[i]) arcs.push_back({static_cast<int>(i), j, std::llround(unit * cost)});
+                for (const auto& [cost, j] : candidates[i]) arcs.push_back({static_cast<int>(i), j, std::llround(unit * cost)});
             chosen = fitting::assign_columns(static_cast<int>(n), static_cast<int>(theirs_.vertices.size()), arcs,
                                              std::llround(1e9 * options_.unassigned));
         } else {
             for (std::size_t i = 0; i < n; ++i)
-                if (!lists[i].empty()) chosen[i] = lists[i].front().second;
+                if (!candidates[i].empty()) chosen[i] = candidates[i].front().second;
         }
         for (std::size_t i = 0; i < n; ++i) {
             if (chosen[i] < 0) continue;
@@ -153,14 +155,15 @@ private:
     [[nodiscard]] bool both_outer(int i, int j) const {
         return ours_.boundary[static_cast<std::size_t>(i)] && theirs_.boundary[static_cast<std::size_t>(j)];
     }
-    [[nodiscard]] double ways(int i, int j) const {
-        return both_outer(i, j) ? outline_cost(ours_.ways[static_cast<std::size_t>(i)], theirs_.ways[static_cast<std::size_t>(j)])
+    [[nodiscard]] double outline_difference(int i, int j) const {
+        return both_outer(i, j) ? outline_cost(ours_.arc_lengths[static_cast<std::size_t>(i)],
+                                               theirs_.arc_lengths[static_cast<std::size_t>(j)])
                                 : 0;
     }
     [[nodiscard]] double cost(int i, int j) const {
         const bool differ = ours_.boundary[static_cast<std::size_t>(i)] != theirs_.boundary[static_cast<std::size_t>(j)];
         return options_.boundary * boundary_(differ ? 1 : 0) + options_.distance * distance_(distance(i, j)) +
-               options_.outline * outline_(ways(i, j));
+               options_.outline * outline_(outline_difference(i, j));
     }
     [[nodiscard]] bool allowed(int i, int j) const {
         if (options_.search_radius > 0 && distance(i, j) > options_.search_radius) return false;
@@ -191,45 +194,45 @@ private:
             ours_.outer.size(),
             [&](std::size_t k) {
                 for (const int j : theirs_.outer) {
-                    const double d = ways(ours_.outer[k], j);
+                    const double d = outline_difference(ours_.outer[k], j);
                     minimum[k] = std::min(minimum[k], d);
                     maximum[k] = std::max(maximum[k], d);
                 }
             },
             16);
-        const bool zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with an interior vertex cost nothing
+        const bool has_zero = !(ours_.inner.empty() && theirs_.inner.empty());  // pairs with an interior vertex cost nothing
         if (!ours_.outer.empty() && !theirs_.outer.empty())
-            outline_ = {zero ? 0.0 : *std::min_element(minimum.begin(), minimum.end()),
+            outline_ = {has_zero ? 0.0 : *std::min_element(minimum.begin(), minimum.end()),
                         *std::max_element(maximum.begin(), maximum.end())};
     }
 
     /// The best admissible counterparts of a vertex, best first; examines more than wanted of each kind if some are not
     /// admissible.
-    [[nodiscard]] std::vector<std::pair<double, int>> best(int i, std::size_t wanted) const {
-        std::vector<std::pair<double, int>> list;
+    [[nodiscard]] std::vector<std::pair<double, int>> best(int i, std::size_t max_count) const {
+        std::vector<std::pair<double, int>> candidates;
         for (const int kind : {0, 1}) {
             const auto& group = kind == 1 ? theirs_.outer : theirs_.inner;
             if (group.empty()) continue;
             if (kind == 1 && ours_.boundary[static_cast<std::size_t>(i)]) {
                 for (const int j : group)
-                    if (allowed(i, j)) list.emplace_back(cost(i, j), j);
+                    if (allowed(i, j)) candidates.emplace_back(cost(i, j), j);
                 continue;
             }
-            for (std::size_t count = std::min(wanted + 4, group.size());; count = std::min(4 * count, group.size())) {
-                std::vector<std::pair<double, int>> found;
+            for (std::size_t count = std::min(max_count + 4, group.size());; count = std::min(4 * count, group.size())) {
+                std::vector<std::pair<double, int>> admissible;
                 const auto near = trees_[kind].neighbours(ours_.places[static_cast<std::size_t>(i)], count);
-                for (const PointTree::Near& one : near)
-                    if (const int j = group[one.index]; allowed(i, j)) found.emplace_back(cost(i, j), j);
+                for (const PointTree::Near& neighbour : near)
+                    if (const int j = group[neighbour.index]; allowed(i, j)) admissible.emplace_back(cost(i, j), j);
                 const bool beyond =
                     options_.search_radius > 0 && near.back().squared > options_.search_radius * options_.search_radius;
-                if (found.size() < wanted && count < group.size() && !beyond) continue;
-                list.insert(list.end(), found.begin(), found.end());
+                if (admissible.size() < max_count && count < group.size() && !beyond) continue;
+                candidates.insert(candidates.end(), admissible.begin(), admissible.end());
                 break;
             }
         }
-        std::sort(list.begin(), list.end());
-        if (list.size() > wanted) list.resize(wanted);
-        return list;
+        std::sort(candidates.begin(), candidates.end());
+        if (candidates.size() > max_count) candidates.resize(max_count);
+        return candidates;
     }
 
     Part ours_, theirs_;
@@ -249,7 +252,7 @@ VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const
     std::vector<Index> ours, theirs;
     for (const auto& [a, b] : landmarks) {
         if (a >= mesh.number_of_vertices() || b >= fragment.number_of_vertices())
-            fail_input("landmark", "names a vertex that is not there", "give vertices of the template and of the fragment");
+            fail_input("landmark", "names a vertex that does not exist", "give vertices of the template and of the fragment");
         ours.push_back(a);
         theirs.push_back(b);
     }
@@ -257,14 +260,16 @@ VertexAssignment assign_vertices(const Mesh& mesh, const Annotation& part, const
 }
 
 void VertexAssignmentOptions::describe(OptionList& visit) {
-    visit("counterpart", counterpart, "of a template vertex: its best one, or one-to-one", Choices{"best", "one-to-one"});
-    visit("boundary-weight", boundary, "of vertices on an outline against vertices inside", Range{0, 1e6});
-    visit("distance-weight", distance, "of the distance of counterparts", Range{0, 1e6});
-    visit("outline-weight", outline, "of the positions along the outline, from landmark to landmark", Range{0, 1e6});
-    visit("assignment-reach", search_radius, "farthest counterpart, in the meshes' unit; 0: any", Range{0, 1e60});
-    visit("assignment-angle", angle, "of the normals of counterparts", Range{0, 180}, "degrees");
-    visit("candidates", candidates, "one-to-one: counterparts tried for each vertex", Range{1, 1000});
-    visit("unassigned", unassigned, "one-to-one: cost of a vertex without counterpart", Range{0, 1e6},
+    visit("counterpart", counterpart, "counterpart of a template vertex: its best one, or one-to-one",
+          Choices{"best", "one-to-one"});
+    visit("boundary-weight", boundary, "weight of vertices on an outline against vertices inside", Range{0, 1e6});
+    visit("distance-weight", distance, "weight of the distance of counterparts", Range{0, 1e6});
+    visit("outline-weight", outline, "weight of the positions along the outline, from landmark to landmark", Range{0, 1e6});
+    visit("assignment-reach", search_radius, "maximum distance of a counterpart, in the unit of the meshes; 0: unlimited",
+          Range{0, 1e60});
+    visit("assignment-angle", angle, "maximum angle between the normals of counterparts", Range{0, 180}, "degrees");
+    visit("candidates", candidates, "one-to-one: number of counterparts tried per vertex", Range{1, 1000});
+    visit("unassigned", unassigned, "one-to-one: cost of a vertex without a counterpart", Range{0, 1e6},
           "share of the weights' sum");
 }
 

@@ -8,6 +8,8 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/point_tree.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,9 +33,8 @@ struct AlignSurface::State {
 AlignSurface::AlignSurface(const Mesh& mesh, int samples) : state_(std::make_unique<State>()) {
     State& s = *state_;
     const double area = surface_area(mesh);
-    if (!(area > 0)) fail_input("mesh", "it has no area, so that nothing can be laid onto it", "is it the right file?");
-    if (samples < 1)
-        fail_usage("a surface is to be laid onto another by " + std::to_string(samples) + " points", "take at least one");
+    if (!(area > 0)) fail_input("mesh", "it has no area, so nothing can be registered to it", "check that it is the right file");
+    if (samples < 1) fail_usage(fmt::format("a surface cannot be registered by {} points", samples), "use at least one point");
     s.size = std::sqrt(area);
     std::vector<Point> places;
     for (const Vertex v : mesh.vertices()) {
@@ -88,41 +89,42 @@ public:
         : a_(a.state()), b_(b.state()), options_(options), cosine_(std::cos(options.angle * pi / 180)) {}
 
     Alignment run(const Motion& start) {
-        const detail::Registration found = detail::register_from(
+        const detail::Registration registration = detail::register_from(
             start, options_.iterations, 1e-3, pairs_, [&](const Motion& motion) { return measure(motion); },
             [&](const Motion& motion) { return step(motion); });
-        return {found.pose, found.fit.residual / (0.5 * (a_.size + b_.size)), found.fit.overlap, found.iterations, found.settled};
+        return {registration.pose, registration.fit.residual / (0.5 * (a_.size + b_.size)), registration.fit.overlap,
+                registration.iterations, registration.settled};
     }
 
 private:
     /// Trimmed pairs under a motion; their root mean square.
     detail::PoseFit measure(const Motion& motion) {
-        pairs_.list.clear();
+        pairs_.pairs.clear();
         const Motion back = motion.inverse();
         collect(a_, b_, motion, back, true);
         collect(b_, a_, back, motion, false);
-        const std::size_t all = a_.sample_points.size() + b_.sample_points.size(), met = pairs_.list.size();
-        const std::size_t wanted = pairs_.trim(options_.trim, all);
+        const std::size_t sample_count = a_.sample_points.size() + b_.sample_points.size(), pair_count = pairs_.pairs.size();
+        const std::size_t kept_count = pairs_.trim(options_.trim, sample_count);
         // Points without a partner count with the largest kept distance, so that a pose with few pairs does not score better.
         double sum = pairs_.squares();
-        if (met > 0) sum += static_cast<double>(wanted - pairs_.list.size()) * pairs_.list.back().squared;
-        const double rms = met > 0 ? std::sqrt(sum / static_cast<double>(wanted)) : b_.size;
-        return {rms, rms, static_cast<double>(met) / static_cast<double>(all)};
+        if (pair_count > 0) sum += static_cast<double>(kept_count - pairs_.pairs.size()) * pairs_.pairs.back().squared;
+        const double rms = pair_count > 0 ? std::sqrt(sum / static_cast<double>(kept_count)) : b_.size;
+        return {rms, rms, static_cast<double>(pair_count) / static_cast<double>(sample_count)};
     }
 
-    void collect(const AlignSurface::State& from, const AlignSurface::State& to, const Motion& there, const Motion& back,
+    void collect(const AlignSurface::State& from, const AlignSurface::State& to, const Motion& to_target, const Motion& back,
                  bool forward) {
         for (std::size_t i = 0; i < from.sample_points.size(); ++i) {
-            const Vector3d p = there(from.sample_points[i]), n = there.rotation * from.sample_normals[i];
+            const Vector3d p = to_target(from.sample_points[i]), n = to_target.rotation * from.sample_normals[i];
             const std::size_t v = to.nearest(p);
             if (v == no_index || to.border[v] || n.dot(to.normals[v]) < cosine_) continue;  // none: the pose is not finite
             // Distances and planes are compared in the frame of the second surface.
             if (forward) {
-                pairs_.list.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm()});
+                pairs_.pairs.push_back({p, to.points[v], to.normals[v], (p - to.points[v]).squaredNorm()});
             } else {
                 const Vector3d q = back(to.points[v]);
                 const Vector3d normal = back.rotation * to.normals[v];
-                pairs_.list.push_back({q, from.sample_points[i], normal, (q - from.sample_points[i]).squaredNorm()});
+                pairs_.pairs.push_back({q, from.sample_points[i], normal, (q - from.sample_points[i]).squaredNorm()});
             }
         }
     }

@@ -25,8 +25,8 @@ public:
           matches_(matches),
           tolerance_(options.tolerance * (a.size + b.size) / 2),
           cosine_(std::cos(options.angle * pi / 180)),
-          taken_a_(points(a)),
-          taken_b_(points(b)) {}
+          used_a_(points(a)),
+          used_b_(points(b)) {}
 
     /// The matches consistent with the motion; the first match of each salient point.
     const std::vector<std::size_t>& explained(const Motion& motion) {
@@ -36,8 +36,8 @@ public:
             const Feature &from = a_.features[matches_[i].a], &to = b_.features[matches_[i].b];
             if ((motion(from.point) - to.point).squaredNorm() > tolerance_ * tolerance_) continue;
             if ((motion.rotation * from.normal).dot(to.normal) < cosine_) continue;
-            if (taken_a_[from.vertex] == stamp_ || taken_b_[to.vertex] == stamp_) continue;
-            taken_a_[from.vertex] = taken_b_[to.vertex] = stamp_;
+            if (used_a_[from.vertex] == stamp_ || used_b_[to.vertex] == stamp_) continue;
+            used_a_[from.vertex] = used_b_[to.vertex] = stamp_;
             explained_.push_back(i);
         }
         return explained_;
@@ -52,7 +52,7 @@ private:
     const FeatureSet &a_, &b_;
     const std::vector<FeatureMatch>& matches_;
     double tolerance_, cosine_;
-    std::vector<std::uint32_t> taken_a_, taken_b_;
+    std::vector<std::uint32_t> used_a_, used_b_;
     std::uint32_t stamp_ = 0;
     std::vector<std::size_t> explained_;
 };
@@ -88,10 +88,10 @@ ConsistentMatches consistent_matches(const FeatureSet& a, const FeatureSet& b, c
         const Motion motion = fit_motion(from, to, {}, fit);
         const auto& explained = consistency.explained(motion);
         if (explained.size() < best.size()) break;
-        const bool settled = explained == best;
+        const bool unchanged = explained == best;
         best = explained;
         result.motion = motion;
-        if (settled) break;
+        if (unchanged) break;
     }
     for (const std::size_t i : best) result.matches.push_back(matches[i]);
     return result;

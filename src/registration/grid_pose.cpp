@@ -12,13 +12,13 @@ using Eigen::Vector3d;
 
 SurfacePoints thinned(const SurfacePoints& points, std::size_t count) {
     if (points.size() <= count) return points;
-    SurfacePoints some;
-    some.spacing = points.spacing;
+    SurfacePoints result;
+    result.spacing = points.spacing;
     for (std::size_t k = 0; k < count; ++k) {
-        some.places.push_back(points.places[k * points.size() / count]);
-        some.normals.push_back(points.normals[k * points.size() / count]);
+        result.places.push_back(points.places[k * points.size() / count]);
+        result.normals.push_back(points.normals[k * points.size() / count]);
     }
-    return some;
+    return result;
 }
 
 double score_on(const NearestGrid& grid, const SurfacePoints& part, const Motion& pose, const Nearness& near) {
@@ -31,8 +31,8 @@ double score_on(const NearestGrid& grid, const SurfacePoints& part, const Motion
         const Vector3d& m = grid.points().normals[k];
         const Vector3d d = p - grid.points().places[k];
         // The distance from the tangent plane, unless the point is off to the side, beyond a border.
-        const double off = d.dot(m), aside = (d - off * m).norm();
-        sum += near(std::hypot(off, std::max(0.0, aside - grid.points().spacing))) * std::clamp(2 * n.dot(m) - 1, 0.0, 1.0);
+        const double distance = d.dot(m), aside = (d - distance * m).norm();
+        sum += near(std::hypot(distance, std::max(0.0, aside - grid.points().spacing))) * std::clamp(2 * n.dot(m) - 1, 0.0, 1.0);
     }
     return sum / static_cast<double>(part.size());
 }
@@ -51,9 +51,10 @@ Motion refined_on(const NearestGrid& grid, const SurfacePoints& part, Motion pos
             if (j < 0) continue;
             const auto k = static_cast<std::size_t>(j);
             const Vector3d& to = grid.points().normals[k];
-            const double off = to.dot(grid.points().places[k] - p), ratio = (grid.points().places[k] - p).norm() / search_radius;
+            const double distance = to.dot(grid.points().places[k] - p),
+                         ratio = (grid.points().places[k] - p).norm() / search_radius;
             if (ratio >= 1 || normal.dot(to) < 0.5) continue;
-            planes.add(p, to, off, (1 - ratio * ratio) * (1 - ratio * ratio));
+            planes.add(p, to, distance, (1 - ratio * ratio) * (1 - ratio * ratio));
         }
         PlaneMotion::Step step = planes.solve(1e-6, scale);
         if (const double angle = step.rotation.norm(); angle > 0.5) step.rotation *= 0.5 / angle;

@@ -12,6 +12,8 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/geom/surface_search.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -27,8 +29,8 @@ namespace {
 // Lengths here are in units of the root mean square distance of a surface from its centre.
 constexpr double grid_radius = 0.3, coarse_tolerance = 0.1, fine_tolerance = 0.02, farthest_pair = 0.5;
 constexpr double min_cosine = 0.3;  // of the normals of a pair
-constexpr int all_rotations = 16384;
-constexpr std::size_t judged_points = 250, refined_points = 500, refined_on_grid = 48, refined_on_faces = 8;
+constexpr int rotation_count = 16384;
+constexpr std::size_t scored_points = 250, refined_points = 500, refined_on_grid = 48, refined_on_faces = 8;
 
 /// A point of a surface with its normal, and the local distance of the flat face from the curved surface that it approximates.
 struct AreaSample {
@@ -70,7 +72,7 @@ AreaMoments area_moments(const Mesh& mesh, const std::string& name) {
         moments.centre += area * (p + q + r) / 3;
     });
     if (!(moments.area > 0) || !std::isfinite(moments.area))
-        fail_input(name, "it has no area, so that nothing can be registered to it", "is it the right file?");
+        fail_input(name, "it has no area, so nothing can be registered to it", "check that it is the right file");
     moments.centre /= moments.area;
     each_face([&](const Vector3d& a, const Vector3d& b, const Vector3d& c, double area) {
         const Vector3d p = a - moments.centre, q = b - moments.centre, r = c - moments.centre, s = p + q + r;
@@ -78,7 +80,7 @@ AreaMoments area_moments(const Mesh& mesh, const std::string& name) {
     });
     const Vector3d spread = symmetric_eigenvalues(moments.covariance);
     if (!(spread[0] > 1e-10 * spread[2]))
-        fail_input(name, "it is flat: nothing but its border says where it belongs", "give a surface with some relief");
+        fail_input(name, "it is flat: only its border determines its position", "give a surface with some relief");
     moments.centre += middle;
     return moments;
 }
@@ -131,12 +133,12 @@ std::vector<AreaSample> area_samples(const UnitSurface& surface, int count, doub
         const double sagitta = sagitta_of(mesh, *surface.search, face);
         for (; next < sum && samples.size() < static_cast<std::size_t>(count); next += step) {
             const std::size_t k = samples.size();
-            double whole = 0, s = std::modf(0.5 + 0.7548776662466927 * static_cast<double>(k), &whole),
-                   t = std::modf(0.5 + 0.5698402909980532 * static_cast<double>(k), &whole);
+            double integer_part = 0, s = std::modf(0.5 + 0.7548776662466927 * static_cast<double>(k), &integer_part),
+                   t = std::modf(0.5 + 0.5698402909980532 * static_cast<double>(k), &integer_part);
             if (s + t > 1) s = 1 - s, t = 1 - t;
             const Vector3d corner[3]{eigen(mesh.point(c[0])), eigen(mesh.point(c[1])), eigen(mesh.point(c[2]))};
             const bool at_corner =
-                area < small * step && std::modf(0.6180339887498949 * static_cast<double>(k), &whole) < corner_share;
+                area < small * step && std::modf(0.6180339887498949 * static_cast<double>(k), &integer_part) < corner_share;
             samples.push_back(
                 {at_corner ? corner[k % 3] : Vector3d(corner[0] + s * (corner[1] - corner[0]) + t * (corner[2] - corner[0])),
                  normal, sagitta});
@@ -147,9 +149,9 @@ std::vector<AreaSample> area_samples(const UnitSurface& surface, int count, doub
 
 /// Variants of the source: as given or mirrored, faces as given or flipped.
 struct Handedness {
-    bool mirrored = false, turned_round = false;
+    bool mirrored = false, flipped = false;
     [[nodiscard]] Vector3d place(const Vector3d& p) const { return mirrored ? Vector3d(-p.x(), p.y(), p.z()) : p; }
-    [[nodiscard]] Vector3d normal(const Vector3d& n) const { return (turned_round ? -1.0 : 1.0) * place(n); }
+    [[nodiscard]] Vector3d normal(const Vector3d& n) const { return (flipped ? -1.0 : 1.0) * place(n); }
 };
 
 /// Rotations evenly spread over SO(3): super-Fibonacci spirals (Alexa, "Super-Fibonacci spirals: fast, low-discrepancy sampling
@@ -163,20 +165,21 @@ Matrix3d spread_rotation(int i, int count) {
         .toRotationMatrix();
 }
 
-double angle_apart_of(const Motion& a, const Motion& b) {
+double rotation_angle_between(const Motion& a, const Motion& b) {
     return std::acos(std::clamp(((a.rotation.transpose() * b.rotation).trace() - 1) / 2, -1.0, 1.0));
 }
 
-/// Poses in the order of their scores, best first, each at least `apart` from the previous ones.
-std::vector<Motion> best_apart(const std::vector<Motion>& poses, const std::vector<double>& scores, std::size_t count,
-                               double apart) {
+/// Poses in the order of their scores, best first, each at least `min_angle` from the previous ones.
+std::vector<Motion> best_distinct(const std::vector<Motion>& poses, const std::vector<double>& scores, std::size_t count,
+                                  double min_angle) {
     std::vector<std::size_t> order(poses.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
     std::vector<Motion> kept;
     for (const std::size_t i : order) {
         if (kept.size() == count) break;
-        if (std::all_of(kept.begin(), kept.end(), [&](const Motion& k) { return angle_apart_of(k, poses[i]) > apart; }))
+        if (std::all_of(kept.begin(), kept.end(),
+                        [&](const Motion& k) { return rotation_angle_between(k, poses[i]) > min_angle; }))
             kept.push_back(poses[i]);
     }
     return kept;
@@ -189,17 +192,17 @@ std::vector<Motion> poses_on_grid(const UnitSurface& source, const detail::Neare
     SurfacePoints points = detail::thinned(source.points, refined_points);
     for (Vector3d& p : points.places) p = hand.place(p);
     for (Vector3d& n : points.normals) n = hand.normal(n);
-    const SurfacePoints some = detail::thinned(points, judged_points);
-    std::vector<Motion> poses(all_rotations);
+    const SurfacePoints sample = detail::thinned(points, scored_points);
+    std::vector<Motion> poses(rotation_count);
     std::vector<double> scores(poses.size());
     parallel_for(
         poses.size(),
         [&](std::size_t i) {
-            poses[i].rotation = spread_rotation(static_cast<int>(i), all_rotations);
-            scores[i] = score_on(grid, some, poses[i], detail::Nearness(coarse_tolerance));
+            poses[i].rotation = spread_rotation(static_cast<int>(i), rotation_count);
+            scores[i] = score_on(grid, sample, poses[i], detail::Nearness(coarse_tolerance));
         },
         64);
-    poses = best_apart(poses, scores, refined_on_grid, 10 * degree);
+    poses = best_distinct(poses, scores, refined_on_grid, 10 * degree);
     scores.resize(poses.size());
     parallel_for(
         poses.size(),
@@ -208,7 +211,7 @@ std::vector<Motion> poses_on_grid(const UnitSurface& source, const detail::Neare
             scores[i] = score_on(grid, points, poses[i], detail::Nearness(fine_tolerance));
         },
         1);
-    return best_apart(poses, scores, refined_on_faces, 5 * degree);
+    return best_distinct(poses, scores, refined_on_faces, 5 * degree);
 }
 
 /// ICP, point to plane, in both directions.
@@ -217,8 +220,8 @@ public:
     UnitAligner(const UnitSurface& a, const UnitSurface& b, const Handedness& hand, bool scaled, int samples, double corner_share)
         : a_(a), b_(b), hand_(hand), scaled_(scaled) {
         const double share = std::clamp(a.face_area / (a.face_area + b.face_area), 0.1, 0.9);
-        of_a_ = area_samples(a, std::max(10, static_cast<int>(share * samples)), corner_share);
-        of_b_ = area_samples(b, std::max(10, static_cast<int>((1 - share) * samples)), corner_share);
+        samples_a_ = area_samples(a, std::max(10, static_cast<int>(share * samples)), corner_share);
+        samples_b_ = area_samples(b, std::max(10, static_cast<int>((1 - share) * samples)), corner_share);
     }
 
     detail::Registration run(const Motion& start, int iterations, double min_gain) {
@@ -249,31 +252,31 @@ public:
 
 private:
     detail::PoseFit measure(const Motion& pose) {
-        const std::size_t count = of_a_.size() + of_b_.size();
-        std::vector<std::optional<detail::PlanePair>> found(count);
+        const std::size_t count = samples_a_.size() + samples_b_.size();
+        std::vector<std::optional<detail::PlanePair>> partners(count);
         const Motion back = pose.inverse();
         parallel_for(
             count,
             [&](std::size_t i) {
-                const bool first = i < of_a_.size();
-                found[i] = partner(first ? of_a_[i] : of_b_[i - of_a_.size()], first, pose, back);
+                const bool first = i < samples_a_.size();
+                partners[i] = partner(first ? samples_a_[i] : samples_b_[i - samples_a_.size()], first, pose, back);
             },
             64);
-        pairs_.list.clear();
-        for (const auto& pair : found)
-            if (pair) pairs_.list.push_back(*pair);
+        pairs_.pairs.clear();
+        for (const auto& pair : partners)
+            if (pair) pairs_.pairs.push_back(*pair);
         detail::PoseFit fit;
-        fit.overlap = static_cast<double>(pairs_.list.size()) / static_cast<double>(count);
-        const std::size_t wanted = pairs_.trim(0.9, count), met = pairs_.list.size();
-        const double sum = pairs_.squares() + static_cast<double>(wanted - met) * farthest_pair * farthest_pair;
-        fit.minimised = fit.residual = std::sqrt(sum / static_cast<double>(wanted));
+        fit.overlap = static_cast<double>(pairs_.pairs.size()) / static_cast<double>(count);
+        const std::size_t kept_count = pairs_.trim(0.9, count), pair_count = pairs_.pairs.size();
+        const double sum = pairs_.squares() + static_cast<double>(kept_count - pair_count) * farthest_pair * farthest_pair;
+        fit.minimised = fit.residual = std::sqrt(sum / static_cast<double>(kept_count));
         return fit;
     }
 
     const UnitSurface &a_, &b_;
     Handedness hand_;
     bool scaled_;
-    std::vector<AreaSample> of_a_, of_b_;
+    std::vector<AreaSample> samples_a_, samples_b_;
     detail::PlanePairs pairs_;
 };
 
@@ -296,8 +299,8 @@ public:
         a_ = unit_surface(source, a, options.scale ? std::sqrt(a.covariance.trace()) : unit_);
         b_ = unit_surface(target, b, unit_);
         grid_ = std::make_unique<detail::NearestGrid>(b_.points, grid_radius);
-        of_a_ = area_samples(a_, options.samples, 0);
-        of_b_ = area_samples(b_, options.samples, 0);
+        samples_a_ = area_samples(a_, options.samples, 0);
+        samples_b_ = area_samples(b_, options.samples, 0);
         fixed_tolerance_ = options.tolerance * b_.search->diagonal();
     }
 
@@ -305,26 +308,27 @@ public:
     /// vertices on the surface, a decimated one neither vertices nor faces: samples of both kinds are weighted by the inverse
     /// of their squared residuals.
     [[nodiscard]] std::vector<UnitPose> search(const Handedness& hand, double bound) const {
-        std::vector<UnitPose> found;
+        std::vector<UnitPose> poses;
         UnitAligner coarse(a_, b_, hand, options_.scale, std::min(1000, options_.samples), 1);
         std::vector<Motion> starts = poses_on_grid(a_, *grid_, hand, options_.scale);
         starts.emplace_back();  // may be the intended pose of a symmetric object
         for (const Motion& start : starts) {
-            const detail::Registration one = coarse.run(start, 20, 1e-2);
-            found.push_back({one.pose, one.fit.residual});
+            const detail::Registration registration = coarse.run(start, 20, 1e-2);
+            poses.push_back({registration.pose, registration.fit.residual});
         }
-        sort(found);
-        const double best = found.front().residual;
-        if (best > bound) return found;
-        std::erase_if(found, [&](const UnitPose& one) { return one.residual > 2 * best + 1e-3; });
-        refine(found, hand, 1);
-        const Motion pose = found.front().pose;
-        const auto left = [&](double corner_share) {
+        sort(poses);
+        const double best = poses.front().residual;
+        if (best > bound) return poses;
+        std::erase_if(poses, [&](const UnitPose& candidate) { return candidate.residual > 2 * best + 1e-3; });
+        refine(poses, hand, 1);
+        const Motion pose = poses.front().pose;
+        const auto residual_at = [&](double corner_share) {
             return UnitAligner(a_, b_, hand, options_.scale, options_.samples, corner_share).run(pose, 0, 0).fit.residual;
         };
-        const double corners = left(1), inside = left(0), share = inside * inside / (inside * inside + corners * corners + 1e-30);
-        if (share < 0.9) refine(found, hand, share);
-        return found;
+        const double corners = residual_at(1), inside = residual_at(0),
+                     share = inside * inside / (inside * inside + corners * corners + 1e-30);
+        if (share < 0.9) refine(poses, hand, share);
+        return poses;
     }
 
     /// Tests the samples of either mesh against the other, each with its own tolerance.
@@ -335,7 +339,7 @@ public:
         agreement.share = agreement.close = 1;
         double squares = 0, tolerances = 0;
         for (const bool of_source : {true, false}) {
-            const std::vector<AreaSample>& samples = of_source ? of_a_ : of_b_;
+            const std::vector<AreaSample>& samples = of_source ? samples_a_ : samples_b_;
             std::vector<double> distances(samples.size(), farthest_pair), allowed(samples.size());
             parallel_for(
                 samples.size(),
@@ -347,8 +351,8 @@ public:
                 64);
             std::size_t within = 0, close = 0;
             for (std::size_t i = 0; i < samples.size(); ++i) {
-                squares += distances[i] * distances[i] / static_cast<double>(of_a_.size() + of_b_.size());
-                tolerances += allowed[i] / static_cast<double>(of_a_.size() + of_b_.size());
+                squares += distances[i] * distances[i] / static_cast<double>(samples_a_.size() + samples_b_.size());
+                tolerances += allowed[i] / static_cast<double>(samples_a_.size() + samples_b_.size());
                 if (distances[i] <= allowed[i]) ++within;
                 if (distances[i] <= allowed[i] / 3) ++close;
             }
@@ -383,35 +387,35 @@ public:
     }
 
 private:
-    void refine(std::vector<UnitPose>& list, const Handedness& hand, double corner_share) const {
+    void refine(std::vector<UnitPose>& poses, const Handedness& hand, double corner_share) const {
         UnitAligner fine(a_, b_, hand, options_.scale, options_.samples, corner_share);
-        for (UnitPose& one : list) {
-            const detail::Registration better = fine.run(one.pose, 60, 1e-5);
-            one = {better.pose, better.fit.residual};
+        for (UnitPose& candidate : poses) {
+            const detail::Registration refined = fine.run(candidate.pose, 60, 1e-5);
+            candidate = {refined.pose, refined.fit.residual};
         }
-        sort(list);
+        sort(poses);
     }
-    static void sort(std::vector<UnitPose>& list) {
-        std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.residual < b.residual; });
+    static void sort(std::vector<UnitPose>& poses) {
+        std::stable_sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.residual < b.residual; });
     }
 
     /// Three times the distance of flat faces from the curved surface, from the dihedral angles here and at the nearest point
     /// of the other mesh.
     [[nodiscard]] double tolerance_at(const AreaSample& sample, bool of_source, const Handedness& hand, const Motion& pose,
                                       const Motion& back) const {
-        constexpr double least = 3e-4, most = 0.03;
+        constexpr double minimum = 3e-4, maximum = 0.03;
         if (fixed_tolerance_ > 0) return fixed_tolerance_;
         const UnitSurface& other = of_source ? b_ : a_;
         const Vector3d place = of_source ? pose(hand.place(sample.place)) : hand.place(back(sample.place));
         const Face face(other.search->closest(point_of(place)).face);
-        return std::min(most, 3 * (sample.sagitta + sagitta_of(*other.mesh, *other.search, face)) + least);
+        return std::min(maximum, 3 * (sample.sagitta + sagitta_of(*other.mesh, *other.search, face)) + minimum);
     }
 
     const MeshRegistrationOptions& options_;
     double unit_ = 1, fixed_tolerance_ = 0;
     UnitSurface a_, b_;
     std::unique_ptr<detail::NearestGrid> grid_;
-    std::vector<AreaSample> of_a_, of_b_;
+    std::vector<AreaSample> samples_a_, samples_b_;
 };
 
 constexpr double max_rough_residual = 0.05;  // residual of a rough registration beyond which the meshes count as different
@@ -420,30 +424,30 @@ constexpr double mirrored_gain =
 constexpr double equal_residual = 1.5;  // max residual ratio of poses that fit equally, besides an absolute 1e-4
 
 /// Selects, among the poses that fit as well as the best, the one that moves the source least, and stores the others.
-void choose_pose(const MeshRegistrar& registrar, const std::vector<UnitPose>& found, MeshRegistration& result) {
+void choose_pose(const MeshRegistrar& registrar, const std::vector<UnitPose>& poses, MeshRegistration& result) {
     const SlippableMotions open = registrar.slippable();
     result.slippable = registrar.in_target(open);
     std::vector<UnitPose> equal;
-    for (const UnitPose& one : found)
-        if (one.residual <= equal_residual * found.front().residual + 1e-4 &&
-            (&one == found.data() || registrar.aligned(registrar.judge(one.pose, {}))))
-            equal.push_back(one);
+    for (const UnitPose& candidate : poses)
+        if (candidate.residual <= equal_residual * poses.front().residual + 1e-4 &&
+            (&candidate == poses.data() || registrar.aligned(registrar.judge(candidate.pose, {}))))
+            equal.push_back(candidate);
     const auto by_angle = [](const UnitPose& a, const UnitPose& b) {
-        return angle_apart_of(a.pose, Motion()) < angle_apart_of(b.pose, Motion()) - 0.1 * degree;
+        return rotation_angle_between(a.pose, Motion()) < rotation_angle_between(b.pose, Motion()) - 0.1 * degree;
     };
     const Motion best = std::min_element(equal.begin(), equal.end(), by_angle)->pose;
     result.motion = registrar.in_files(best);
     result.agreement = registrar.judge(best, {}, &result.tolerance);
     std::vector<Motion> kept{best};
-    for (const UnitPose& one : equal) {
-        const auto same = [&](const Motion& other) {
-            const Motion between = one.pose.after(other.inverse());
-            return angle_apart_of(one.pose, other) < 5 * degree ||
+    for (const UnitPose& candidate : equal) {
+        const auto is_equal = [&](const Motion& other) {
+            const Motion between = candidate.pose.after(other.inverse());
+            return rotation_angle_between(candidate.pose, other) < 5 * degree ||
                    (open.kind != SlippableKind::none && open.contains(between, Vector3d::Zero(), 5 * degree, 0.05));
         };
-        if (std::any_of(kept.begin(), kept.end(), same)) continue;
-        kept.push_back(one.pose);
-        result.others.push_back(registrar.in_files(one.pose));
+        if (std::any_of(kept.begin(), kept.end(), is_equal)) continue;
+        kept.push_back(candidate.pose);
+        result.others.push_back(registrar.in_files(candidate.pose));
     }
 }
 
@@ -460,25 +464,25 @@ MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const Mes
     const MeshRegistrar registrar(source, target, options);
     MeshRegistration result;
     progress.advance();
-    const std::vector<UnitPose> found = registrar.search({}, max_rough_residual);
+    const std::vector<UnitPose> poses = registrar.search({}, max_rough_residual);
     progress.advance();
     const std::vector<UnitPose> reflected =
-        registrar.search({.mirrored = true}, std::min(max_rough_residual, 2 * found.front().residual));
+        registrar.search({.mirrored = true}, std::min(max_rough_residual, 2 * poses.front().residual));
     progress.advance();
-    choose_pose(registrar, found, result);
+    choose_pose(registrar, poses, result);
     result.mirrored = registrar.judge(reflected.front().pose, {.mirrored = true});
     const bool mirrored = registrar.aligned(result.mirrored), aligned = registrar.aligned(result.agreement);
-    if (mirrored && (!aligned || reflected.front().residual < mirrored_gain * found.front().residual - 1e-4)) {
+    if (mirrored && (!aligned || reflected.front().residual < mirrored_gain * poses.front().residual - 1e-4)) {
         result.verdict = RegistrationVerdict::mirrored;
     } else if (aligned) {
         result.verdict = RegistrationVerdict::aligned;
     } else {
-        for (const bool too : {false, true}) {
-            const Handedness hand{.mirrored = too, .turned_round = true};
+        for (const bool with_mirror : {false, true}) {
+            const Handedness hand{.mirrored = with_mirror, .flipped = true};
             const SurfaceAgreement agreement = registrar.judge(registrar.search(hand, max_rough_residual).front().pose, hand);
             if (!registrar.aligned(agreement)) continue;
-            result.verdict = too ? RegistrationVerdict::mirrored : RegistrationVerdict::inside_out;
-            if (too) result.mirrored = agreement;
+            result.verdict = with_mirror ? RegistrationVerdict::mirrored : RegistrationVerdict::inside_out;
+            if (with_mirror) result.mirrored = agreement;
             break;
         }
     }
@@ -487,33 +491,35 @@ MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const Mes
     return result;
 }
 
-std::string in_words(const MeshRegistration& found, double diagonal) {
+std::string in_words(const MeshRegistration& registration, double diagonal) {
     const auto share = [](double x) { return digits(100 * x, 3) + " %"; };
-    const std::string residual = "rms distance " + share(found.agreement.rms / diagonal) + " of the diagonal, " +
-                                 share(found.agreement.share) + " of the surfaces within what their resolutions explain";
-    switch (found.verdict) {
+    const std::string residual =
+        fmt::format("rms distance {} of the diagonal, {} of the surfaces within the tolerance given by their resolutions",
+                    share(registration.agreement.rms / diagonal), share(registration.agreement.share));
+    switch (registration.verdict) {
         case RegistrationVerdict::aligned:
             return "aligned: " + residual;
         case RegistrationVerdict::mirrored:
-            return "a mirror image: reflected, the source would fit with an rms distance of " +
-                   share(found.mirrored.rms / diagonal) + " of the diagonal (without: " + share(found.agreement.rms / diagonal) +
-                   ")";
+            return fmt::format(
+                "a mirror image: reflected, the source would fit with an rms distance of {} of the diagonal (unreflected: {})",
+                share(registration.mirrored.rms / diagonal), share(registration.agreement.rms / diagonal));
         case RegistrationVerdict::inside_out:
             return "one of the meshes is inside out; run: ostraka mesh repair";
         default:
-            return "not the same object, or too coarse to tell: " + residual;
+            return "not the same object, or too coarse to decide: " + residual;
     }
 }
 
-std::vector<std::string> remarks_on(const MeshRegistration& found) {
+std::vector<std::string> remarks_on(const MeshRegistration& registration) {
     std::vector<std::string> remarks;
-    if (found.verdict != RegistrationVerdict::aligned) return remarks;
-    if (!found.others.empty())
-        remarks.push_back((found.others.size() >= refined_on_faces - 1 ? "at least " : "") +
-                          std::to_string(found.others.size() + 1) +
-                          " poses fit equally: the object is symmetric; the one that turns the source least was taken");
-    if (found.slippable.kind != SlippableKind::none)
-        remarks.push_back("the shape leaves open a " + found.slippable.text() + ": how far the source is moved so is not known");
+    if (registration.verdict != RegistrationVerdict::aligned) return remarks;
+    if (!registration.others.empty())
+        remarks.push_back(
+            fmt::format("{}{} poses fit equally: the object is symmetric; the one that rotates the source least was chosen",
+                        registration.others.size() >= refined_on_faces - 1 ? "at least " : "", registration.others.size() + 1));
+    if (registration.slippable.kind != SlippableKind::none)
+        remarks.push_back(fmt::format("the shape leaves a motion open ({}): the displacement of the source along it is unknown",
+                                      registration.slippable.text()));
     return remarks;
 }
 
@@ -522,7 +528,7 @@ void MeshRegistrationOptions::describe(OptionList& visit) {
     visit("tolerance", tolerance,
           "maximum distance between places of the same surface; 0: estimated from the resolutions of the meshes", Range{0, 1},
           "share of the target's diagonal");
-    visit("samples", samples, "points by which the meshes are registered and compared", Range{100, 1e6});
+    visit("samples", samples, "number of points by which the meshes are registered and compared", Range{100, 1e6});
 }
 
 }  // namespace ostraka

@@ -77,7 +77,7 @@ std::vector<Salient> extrema(const Mesh& mesh, const std::vector<Level>& levels,
         auto& d = differences.emplace_back(mesh.number_of_vertices());
         for (std::size_t v = 0; v < d.size(); ++v) d[v] = levels[s].sigma * (levels[s + 1].mean[v] - levels[s].mean[v]);
     }
-    std::vector<Salient> found;
+    std::vector<Salient> salient_points;
     for (std::size_t s = 1; s + 1 < differences.size(); ++s) {
         for (const Vertex v : mesh.vertices()) {
             const double value = differences[s][v];
@@ -92,10 +92,10 @@ std::vector<Salient> extrema(const Mesh& mesh, const std::vector<Level>& levels,
                     if (!largest && !smallest) break;
                 }
             }
-            if (largest || smallest) found.push_back({v, s});
+            if (largest || smallest) salient_points.push_back({v, s});
         }
     }
-    return found;
+    return salient_points;
 }
 
 /// Neighbours of a salient point, projected to its tangent plane, with weights.
@@ -131,10 +131,10 @@ public:
         for (std::size_t i = 0; i < around_.place.size(); ++i) {
             const double weight = std::exp(-around_.place[i].squaredNorm() / (2 * 4.5 * 4.5)) * around_.tilt[i].norm() *
                                   level_.area[around_.vertex[i]];
-            const double at = bins * (std::atan2(around_.tilt[i].y(), around_.tilt[i].x()) / (2 * pi) + 0.5);
-            const int low = static_cast<int>(std::floor(at));
-            histogram[static_cast<std::size_t>(low % bins)] += weight * (1 - (at - low));
-            histogram[static_cast<std::size_t>((low + 1) % bins)] += weight * (at - low);
+            const double position = bins * (std::atan2(around_.tilt[i].y(), around_.tilt[i].x()) / (2 * pi) + 0.5);
+            const int low = static_cast<int>(std::floor(position));
+            histogram[static_cast<std::size_t>(low % bins)] += weight * (1 - (position - low));
+            histogram[static_cast<std::size_t>((low + 1) % bins)] += weight * (position - low);
         }
         constexpr int half = 51;  // three standard deviations of 17 degrees
         for (int i = 0; i < bins; ++i)
@@ -144,12 +144,12 @@ public:
         const double highest = *std::max_element(smooth.begin(), smooth.end());
         std::vector<std::pair<double, double>> peaks;  // height (negative), direction
         for (int i = 0; i < bins; ++i) {
-            const double here = smooth[static_cast<std::size_t>(i)],
+            const double value = smooth[static_cast<std::size_t>(i)],
                          before = smooth[static_cast<std::size_t>((i + bins - 1) % bins)],
                          after = smooth[static_cast<std::size_t>((i + 1) % bins)];
-            if (!(here > 0) || here < share * highest || here <= before || here < after) continue;
-            const double shift = 0.5 * (before - after) / (before - 2 * here + after);
-            peaks.emplace_back(-here, (i + shift) / bins * 2 * pi - pi);
+            if (!(value > 0) || value < share * highest || value <= before || value < after) continue;
+            const double shift = 0.5 * (before - after) / (before - 2 * value + after);
+            peaks.emplace_back(-value, (i + shift) / bins * 2 * pi - pi);
         }
         std::sort(peaks.begin(), peaks.end());
         std::vector<double> directions;
@@ -193,13 +193,13 @@ public:
         }
         const double maximum = 1 / std::sqrt(static_cast<double>(FeatureSet::bins));
         for (int disc = 0; disc < FeatureSet::discs; ++disc) {
-            const bool there = covered[disc] > 0.5 * pi * disc_radius * disc_radius;
+            const bool is_covered = covered[disc] > 0.5 * pi * disc_radius * disc_radius;
             for (int part = 0; part < 2; ++part) {
                 auto h = histograms.col(disc).segment<FeatureSet::bins>(part * FeatureSet::bins);
                 const double norm = h.norm();
                 if (norm > 0) h /= norm;
                 h = h.cwiseMin(maximum);
-                if (!there) h.setZero();
+                if (!is_covered) h.setZero();
             }
             descriptor.segment<2 * FeatureSet::bins>(disc * 2 * FeatureSet::bins) = histograms.col(disc).cast<float>();
         }
@@ -223,7 +223,7 @@ private:
 FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options) {
     check_options(options, "features");
     const double area = surface_area(mesh);
-    if (!(area > 0)) fail_input("mesh", "it has no area, so that nothing on it can be salient", "is it the right file?");
+    if (!(area > 0)) fail_input("mesh", "it has no area and thus no salient points", "check that it is the right file");
     FeatureSet set;
     set.size = options.size > 0 ? options.size : std::sqrt(area);
     const Diffusion diffusion(mesh);
@@ -251,7 +251,8 @@ FeatureSet mesh_sift(const Mesh& mesh, const SiftOptions& options) {
             }
         },
         8);
-    for (const auto& list : features) set.features.insert(set.features.end(), list.begin(), list.end());
+    for (const auto& point_features : features)
+        set.features.insert(set.features.end(), point_features.begin(), point_features.end());
     set.descriptors.resize(FeatureSet::length, static_cast<Eigen::Index>(set.features.size()));
     Eigen::Index column = 0;
     for (std::size_t i = 0; i < salient.size(); ++i) {
@@ -266,8 +267,8 @@ std::vector<FeatureMatch> match_features(const FeatureSet& a, const FeatureSet& 
     std::vector<FeatureMatch> matches;
     if (a.features.empty() || b.features.size() < 2) return matches;
     const auto norms = [](const FeatureSet& set) {
-        Eigen::VectorXf list = set.descriptors.colwise().norm().transpose();
-        return list;
+        Eigen::VectorXf result = set.descriptors.colwise().norm().transpose();
+        return result;
     };
     const Eigen::VectorXf na = norms(a), nb = norms(b);
     const Eigen::MatrixXf dots = b.descriptors.transpose() * a.descriptors;

@@ -35,7 +35,7 @@ NearestGrid::NearestGrid(const SurfacePoints& points, double search_radius) : po
     const std::size_t cells =
         static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(count_[2]);
     nearest_.assign(cells, -1);
-    other_.assign(cells, -1);
+    opposite_.assign(cells, -1);
     std::vector<float> distance(cells, std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < points.size(); ++i)
         around(i, [&](std::size_t cell, float squared) {
@@ -45,7 +45,7 @@ NearestGrid::NearestGrid(const SurfacePoints& points, double search_radius) : po
     for (std::size_t i = 0; i < points.size(); ++i)
         around(i, [&](std::size_t cell, float squared) {
             if (squared < distance[cell] && points.normals[i].dot(points.normals[static_cast<std::size_t>(nearest_[cell])]) < 0.3)
-                distance[cell] = squared, other_[cell] = static_cast<int>(i);
+                distance[cell] = squared, opposite_[cell] = static_cast<int>(i);
         });
 }
 

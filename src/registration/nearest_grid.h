@@ -15,10 +15,13 @@ public:
 
     /// The nearest point of the surface whose normal has a cosine of more than 0.3 with `normal`; -1 if there is none near.
     [[nodiscard]] int find(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) const {
-        const Eigen::Vector3d at = (place - low_) / side_;
-        if (!(at.minCoeff() >= 0 && at.x() < count_[0] && at.y() < count_[1] && at.z() < count_[2])) return -1;
-        const std::size_t cell = index(static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z()));
-        for (const int i : {nearest_[cell], other_[cell]})
+        const Eigen::Vector3d cell_place = (place - low_) / side_;
+        if (!(cell_place.minCoeff() >= 0 && cell_place.x() < count_[0] && cell_place.y() < count_[1] &&
+              cell_place.z() < count_[2]))
+            return -1;
+        const std::size_t cell =
+            index(static_cast<int>(cell_place.x()), static_cast<int>(cell_place.y()), static_cast<int>(cell_place.z()));
+        for (const int i : {nearest_[cell], opposite_[cell]})
             if (i >= 0 && points_.normals[static_cast<std::size_t>(i)].dot(normal) > 0.3) return i;
         return -1;
     }
@@ -38,7 +41,7 @@ private:
     double search_radius_, side_ = 0;
     Eigen::Vector3d low_;
     Eigen::Vector3i count_;
-    std::vector<int> nearest_, other_;
+    std::vector<int> nearest_, opposite_;
 };
 
 }  // namespace ostraka::detail

@@ -5,6 +5,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,7 +64,8 @@ long PairTable::key(const Vector3d& p, const Vector3d& n, const Vector3d& q, con
 
 PairTable::PairTable(SurfacePoints points, double max_distance, double step)
     : points_(std::move(points)), max_distance_(max_distance), step_(step) {
-    if (points_.size() > 4096) fail_usage("pairs of " + std::to_string(points_.size()) + " points are too many", "4096 at most");
+    if (points_.size() > 4096)
+        fail_usage(fmt::format("pairs of {} points are too many", points_.size()), "use at most 4096 points");
     if (!(max_distance > 0 && step > 0)) fail_usage("pairs of points need lengths above 0");
     distances_ = static_cast<int>(std::min(1000.0, std::ceil(max_distance / step)));
     const std::size_t n = points_.size();
@@ -97,10 +100,10 @@ PairTable::PairTable(SurfacePoints points, double max_distance, double step)
 
 std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int references, int partners, int kept,
                                          std::uint64_t seed) const {
-    const std::size_t n = part.size(), whole = points_.size();
-    if (n < 2 || whole == 0) return {};
+    const std::size_t n = part.size(), point_count = points_.size();
+    if (n < 2 || point_count == 0) return {};
     const std::size_t count = std::min(n, static_cast<std::size_t>(references));
-    std::vector<std::vector<VotedMotion>> found(count);
+    std::vector<std::vector<VotedMotion>> reference_motions(count);
     parallel_for(
         count,
         [&](std::size_t r) {
@@ -113,7 +116,7 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 others.resize(static_cast<std::size_t>(partners));
             }
             const Matrix3d axes = frame(part.normals[i]);
-            std::vector<float> votes(whole * rotation_bins, 0.0F);
+            std::vector<float> votes(point_count * rotation_bins, 0.0F);
             // Rare features first, within the budget: on a sphere or a plane all pairs have few distinct features.
             struct Kind {
                 std::size_t begin, end, partner;
@@ -127,15 +130,15 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
             }
             std::stable_sort(kinds.begin(), kinds.end(),
                              [](const Kind& a, const Kind& b) { return a.end - a.begin < b.end - b.begin; });
-            std::size_t seen = 0;
+            std::size_t visited = 0;
             for (const auto& [begin, end, j] : kinds) {
-                if (seen > max_entries) break;
-                seen += end - begin;
+                if (visited > max_entries) break;
+                visited += end - begin;
                 const Vector3d d = part.places[j] - part.places[i];
-                const double mine = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * rotation_bins;
+                const double part_bin = std::atan2(axes.col(1).dot(d), axes.col(0).dot(d)) / (2 * pi) * rotation_bins;
                 const auto weight = static_cast<float>(1 / std::sqrt(static_cast<double>(end - begin)));
                 for (std::size_t e = begin; e < end; ++e) {
-                    const double turn = entries_[e].angle * (rotation_bins / 65536.0) - mine + rotation_bins;
+                    const double turn = entries_[e].angle * (rotation_bins / 65536.0) - part_bin + rotation_bins;
                     int bin = static_cast<int>(turn + 0.5);
                     if (bin >= rotation_bins) bin -= rotation_bins;
                     if (bin >= rotation_bins) bin -= rotation_bins;
@@ -150,37 +153,38 @@ std::vector<VotedMotion> PairTable::vote(const SurfacePoints& part, int referenc
                 double turn;
             };
             std::vector<ReferencePeak> best;
-            best.reserve(whole);
-            for (std::size_t p = 0; p < whole; ++p) {
+            best.reserve(point_count);
+            for (std::size_t p = 0; p < point_count; ++p) {
                 const float* v = &votes[p * rotation_bins];
                 float maximum = 0;
-                int at = 0;
+                int best_bin = 0;
                 for (int b = 0; b < rotation_bins; ++b) {
                     const float sum = v[b] + 0.5F * (v[(b + 1) % rotation_bins] + v[(b + rotation_bins - 1) % rotation_bins]);
-                    if (sum > maximum) maximum = sum, at = b;
+                    if (sum > maximum) maximum = sum, best_bin = b;
                 }
-                const float before = v[(at + rotation_bins - 1) % rotation_bins], after = v[(at + 1) % rotation_bins];
-                const double shift = v[at] + before + after > 0 ? double(after - before) / double(v[at] + before + after) : 0;
-                if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), at + shift});
+                const float before = v[(best_bin + rotation_bins - 1) % rotation_bins], after = v[(best_bin + 1) % rotation_bins];
+                const double shift =
+                    v[best_bin] + before + after > 0 ? double(after - before) / double(v[best_bin] + before + after) : 0;
+                if (maximum > 0) best.push_back({maximum, static_cast<std::uint32_t>(p), best_bin + shift});
             }
             const auto better = [](const ReferencePeak& a, const ReferencePeak& b) {
                 return a.votes != b.votes ? a.votes > b.votes : a.reference < b.reference;
             };
-            const std::size_t take = std::min(best.size(), static_cast<std::size_t>(kept));
-            std::partial_sort(best.begin(), best.begin() + static_cast<long>(take), best.end(), better);
-            for (std::size_t k = 0; k < take; ++k) {
+            const std::size_t kept_count = std::min(best.size(), static_cast<std::size_t>(kept));
+            std::partial_sort(best.begin(), best.begin() + static_cast<long>(kept_count), best.end(), better);
+            for (std::size_t k = 0; k < kept_count; ++k) {
                 const double angle = 2 * pi * best[k].turn / rotation_bins;
                 Motion motion;
                 motion.rotation = frame(points_.normals[best[k].reference]) *
                                   Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * axes.transpose();
                 motion.translation = points_.places[best[k].reference] - motion.rotation * part.places[i];
-                found[r].push_back({motion, best[k].votes});
+                reference_motions[r].push_back({motion, best[k].votes});
             }
         },
         1);
-    std::vector<VotedMotion> all;
-    for (auto& list : found) all.insert(all.end(), list.begin(), list.end());
-    return all;
+    std::vector<VotedMotion> result;
+    for (auto& motions : reference_motions) result.insert(result.end(), motions.begin(), motions.end());
+    return result;
 }
 
 }  // namespace ostraka

@@ -8,6 +8,8 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/registration/surface_points.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <optional>
 
@@ -24,7 +26,7 @@ struct Sample {
 /// Centroids of faces, each representing the same area.
 std::vector<Sample> samples_of(const Mesh& part, const std::vector<bool>& of_part, int count) {
     const double area = marked_area(part, of_part);
-    if (!(area > 0)) fail_input("fragment", "has no area that could be laid onto a template", "look at its faces and facets");
+    if (!(area > 0)) fail_input("fragment", "has no area that could be registered to a template", "check its faces and facets");
     std::vector<Sample> samples;
     double sum = 0, next = 0.5 * area / count;
     for (const Face face : part.faces()) {
@@ -44,35 +46,37 @@ public:
         : samples_(std::move(samples)), whole_(whole), anchors_(anchors), options_(options) {}
 
     PartAlignment run(const Motion& start) {
-        const detail::Registration found = detail::register_from(
+        const detail::Registration registration = detail::register_from(
             start, options_.iterations, 1e-4, pairs_, [&](const Motion& pose) { return measure(pose); },
             [&](const Motion& pose) { return step(pose); });
-        return {found.pose, found.fit.residual, found.fit.overlap, found.iterations, found.settled};
+        return {registration.pose, registration.fit.residual, registration.fit.overlap, registration.iterations,
+                registration.settled};
     }
 
 private:
     /// Trimmed pairs under a pose; the objective includes anchors and samples without a partner.
     detail::PoseFit measure(const Motion& pose) {
-        std::vector<std::optional<detail::PlanePair>> found(samples_.size());
+        std::vector<std::optional<detail::PlanePair>> partners(samples_.size());
         const double search_radius = options_.search_radius * whole_.diagonal(), cosine = std::cos(options_.angle * pi / 180);
         parallel_for(samples_.size(), [&](std::size_t i) {
             const Vector3d p = pose(samples_[i].place), n = pose.rotation * samples_[i].normal;
             const auto hit = whole_.closest_compatible(point_of(p), vector_of(n), cosine, search_radius);
             if (hit)
-                found[i] =
+                partners[i] =
                     detail::PlanePair{p, eigen(hit->point), eigen(whole_.normal(hit->face)), hit->distance * hit->distance};
         });
-        pairs_.list.clear();
-        for (const auto& pair : found)
-            if (pair) pairs_.list.push_back(*pair);
+        pairs_.pairs.clear();
+        for (const auto& pair : partners)
+            if (pair) pairs_.pairs.push_back(*pair);
         detail::PoseFit fit;
-        fit.overlap = static_cast<double>(pairs_.list.size()) / static_cast<double>(samples_.size());
-        const std::size_t wanted = pairs_.trim(options_.trim, samples_.size()), met = pairs_.list.size();
+        fit.overlap = static_cast<double>(pairs_.pairs.size()) / static_cast<double>(samples_.size());
+        const std::size_t kept_count = pairs_.trim(options_.trim, samples_.size()), pair_count = pairs_.pairs.size();
         double sum = pairs_.squares();
-        fit.residual = met == 0 ? search_radius : std::sqrt(sum / static_cast<double>(met));
+        fit.residual = pair_count == 0 ? search_radius : std::sqrt(sum / static_cast<double>(pair_count));
         // A sample without a partner counts with the search radius, so that a pose with few pairs does not score better.
-        sum += static_cast<double>(wanted - met) * search_radius * search_radius;
-        weight_ = anchors_.empty() ? 0 : options_.anchors * static_cast<double>(wanted) / static_cast<double>(anchors_.size());
+        sum += static_cast<double>(kept_count - pair_count) * search_radius * search_radius;
+        weight_ =
+            anchors_.empty() ? 0 : options_.anchors * static_cast<double>(kept_count) / static_cast<double>(anchors_.size());
         for (const Anchor& anchor : anchors_) sum += weight_ * (pose(anchor.of_part) - anchor.of_whole).squaredNorm();
         fit.minimised = sum;
         return fit;
@@ -102,8 +106,7 @@ PartAlignment align_part(const Mesh& part, const std::vector<bool>& of_part, con
                          const std::vector<Anchor>& anchors, const PartAlignmentOptions& options) {
     check_options(options, "registration");
     if (!of_part.empty() && of_part.size() != part.number_of_faces())
-        fail_usage("there are " + std::to_string(of_part.size()) + " marks for " + std::to_string(part.number_of_faces()) +
-                   " faces");
+        fail_usage(fmt::format("there are {} marks for {} faces", of_part.size(), part.number_of_faces()));
     return PartAligner(samples_of(part, of_part, options.samples), whole, anchors, options).run(start);
 }
 

@@ -5,6 +5,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 
+#include <fmt/core.h>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -24,13 +25,13 @@ Eigen::RowVector3d centroid_of(const Landmarks& landmarks) {
 
 void check(const Landmarks& landmarks, Eigen::Index count, const std::string& where) {
     if (landmarks.rows() != count)
-        fail_input(where, "it has " + std::to_string(landmarks.rows()) + " landmarks, the first has " + std::to_string(count),
+        fail_input(where, fmt::format("it has {} landmarks, but the first has {}", landmarks.rows(), count),
                    "give the same landmarks everywhere, in the same order");
-    if (count < 3) fail_input(where, "there are " + std::to_string(count) + " landmarks", "give at least three");
+    if (count < 3) fail_input(where, fmt::format("there are {} landmarks", count), "give at least three");
     if (!landmarks.allFinite())
         fail_input(where, "a coordinate is not a finite number",
                    "give a finite coordinate, or leave that landmark out of all specimens");
-    if (!(centroid_size(landmarks) > 0)) fail_input(where, "all landmarks are in one place", "leave it out");
+    if (!(centroid_size(landmarks) > 0)) fail_input(where, "all landmarks coincide", "leave it out");
 }
 
 /// The rotation R that maximises trace(R A) for A = from^T to of centred configurations (rows), and the trace.
@@ -58,7 +59,7 @@ Landmarks SimilarityMap::apply(const Landmarks& landmarks) const {
 
 SimilarityMap procrustes(const Landmarks& from, const Landmarks& to, const ProcrustesOptions& options) {
     check(from, from.rows(), "the landmarks to be moved");
-    check(to, from.rows(), "the landmarks of the goal");
+    check(to, from.rows(), "the target landmarks");
     const Eigen::RowVector3d a = centroid_of(from), b = centroid_of(to);
     // Normalised to size 1, so that products neither overflow nor underflow.
     const double from_size = centroid_size(from), to_size = centroid_size(to);
@@ -93,8 +94,8 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
     result.aligned = centred;
     std::vector<Eigen::Matrix3d> rotations(n, Eigen::Matrix3d::Identity());
     result.mean = centred.front();
-    double before = std::numeric_limits<double>::infinity(), all = 0;
-    for (const Landmarks& x : centred) all += x.squaredNorm();
+    double before = std::numeric_limits<double>::infinity(), total_squares = 0;
+    for (const Landmarks& x : centred) total_squares += x.squaredNorm();
     while (result.iterations < max_iterations && !result.converged) {
         check_cancelled();
         ++result.iterations;
@@ -108,7 +109,7 @@ GeneralisedProcrustes generalised_procrustes(const std::vector<Landmarks>& confi
         for (const Landmarks& x : result.aligned) sum += (x - mean).squaredNorm();
         // Near convergence the mean moves by the square root of the remaining decrease of the sum.
         const double moved = (mean - result.mean).squaredNorm() * static_cast<double>(n);
-        result.converged = std::abs(before - sum) <= 1e-15 * all && (n == 1 || moved <= 1e-26 * all);
+        result.converged = std::abs(before - sum) <= 1e-15 * total_squares && (n == 1 || moved <= 1e-26 * total_squares);
         before = sum;
         result.mean = mean;
     }

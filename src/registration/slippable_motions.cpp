@@ -15,14 +15,14 @@ std::string to_string(SlippableKind kind) {
 }
 
 std::string SlippableMotions::text() const {
-    return word_for(
-        kind, {"none", "turn about a line", "shift along a line", "screw along a line", "turn about a line and shift along it",
-               "turn about a point", "shift in a plane and turn about its normal", "nearly any motion"});
+    return word_for(kind, {"none", "rotation about a line", "translation along a line", "screw motion along a line",
+                           "rotation about a line and translation along it", "rotation about a point",
+                           "translation in a plane and rotation about its normal", "nearly any motion"});
 }
 
 namespace {
 
-Motion turned(const Vector3d& point, const Vector3d& direction, double angle, double along = 0) {
+Motion rotation_about(const Vector3d& point, const Vector3d& direction, double angle, double along = 0) {
     Motion motion;
     motion.rotation = Eigen::AngleAxisd(angle, direction).toRotationMatrix();
     motion.translation = point - motion.rotation * point + along * direction;
@@ -36,16 +36,16 @@ Vector3d across(const Vector3d& direction) {
 }  // namespace
 
 std::vector<std::vector<SlippableMotions::Step>> SlippableMotions::ways(double radians, double length, int steps) const {
-    std::vector<std::vector<Step>> all;
+    std::vector<std::vector<Step>> result;
     const auto add_rotation = [&](const Vector3d& axis, double sign, double along) {
-        auto& way = all.emplace_back();
+        auto& way = result.emplace_back();
         for (int k = 1; k <= steps; ++k) {
             const double angle = sign * radians * k / steps;
-            way.push_back({true, turned(point, axis, angle, along * angle), angle});
+            way.push_back({true, rotation_about(point, axis, angle, along * angle), angle});
         }
     };
     const auto add_translation = [&](const Vector3d& axis, double sign) {
-        auto& way = all.emplace_back();
+        auto& way = result.emplace_back();
         for (int k = 1; k <= steps; ++k) {
             const double amount = sign * length * k / steps;
             Motion motion;
@@ -80,7 +80,7 @@ std::vector<std::vector<SlippableMotions::Step>> SlippableMotions::ways(double r
                 break;
         }
     }
-    return all;
+    return result;
 }
 
 bool SlippableMotions::contains(const Motion& motion, const Vector3d& around, double angle, double length) const {
@@ -94,12 +94,12 @@ bool SlippableMotions::contains(const Motion& motion, const Vector3d& around, do
             return lean < angle && (moved - along * direction).norm() < length;
         case SlippableKind::translation:
             return rotation.angle() < angle && [&] {
-                const Vector3d way = motion(around) - around;
-                return (way - way.dot(direction) * direction).norm() < length;
+                const Vector3d displacement = motion(around) - around;
+                return (displacement - displacement.dot(direction) * direction).norm() < length;
             }();
         case SlippableKind::helix: {
-            const double by = rotation.angle() * (rotation.axis().dot(direction) < 0 ? -1 : 1);
-            return lean < angle && (moved - pitch * by * direction).norm() < length;
+            const double rotated = rotation.angle() * (rotation.axis().dot(direction) < 0 ? -1 : 1);
+            return lean < angle && (moved - pitch * rotated * direction).norm() < length;
         }
         case SlippableKind::sphere:
             return moved.norm() < length;
@@ -130,7 +130,7 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
     }
     // Generalised eigenvalue problem: square of the motion along the normals against that of the whole motion.
     using Matrix6 = Eigen::Matrix<double, 6, 6>;
-    Matrix6 along = Matrix6::Zero(), whole = Matrix6::Zero();
+    Matrix6 along = Matrix6::Zero(), motion_squares = Matrix6::Zero();
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Vector3d p = (places[i] - middle) / size;
         Eigen::Matrix<double, 6, 1> row;
@@ -139,19 +139,19 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
         Eigen::Matrix<double, 3, 6> move;
         move.leftCols<3>() << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
         move.rightCols<3>() = Matrix3d::Identity();
-        whole += move.transpose() * move / count;
+        motion_squares += move.transpose() * move / count;
     }
-    whole.diagonal().array() += 1e-9;
-    const SymmetricEigenX solver = generalised_eigen(along, whole);
-    int open = 0;
-    while (open < 6 && solver.eigenvalues()[open] < tolerance * tolerance) ++open;
-    if (open == 0) return slippable;
-    const auto motions = solver.eigenvectors().leftCols(open).eval();
+    motion_squares.diagonal().array() += 1e-9;
+    const SymmetricEigenX solver = generalised_eigen(along, motion_squares);
+    int slippable_count = 0;
+    while (slippable_count < 6 && solver.eigenvalues()[slippable_count] < tolerance * tolerance) ++slippable_count;
+    if (slippable_count == 0) return slippable;
+    const auto motions = solver.eigenvectors().leftCols(slippable_count).eval();
     // Translations among the slippable motions are those without a rotational part.
     const SvdX rotational(motions.topRows(3), true);
     const auto& singular = rotational.singularValues();
-    const double part = 0.15 * motions.colwise().norm().maxCoeff();
-    const int rotations = static_cast<int>((singular.array() > part).count()), translations = open - rotations;
+    const double threshold = 0.15 * motions.colwise().norm().maxCoeff();
+    const int rotations = static_cast<int>((singular.array() > threshold).count()), translations = slippable_count - rotations;
     const auto motion_of = [&](int k) -> Eigen::Matrix<double, 6, 1> { return motions * rotational.matrixV().col(k); };
     // The axis of a motion: w about it, v at the middle.
     const auto line_of = [&](const Eigen::Matrix<double, 6, 1>& motion) {
@@ -160,18 +160,18 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
         slippable.point = middle + size * w.cross(v) / w.squaredNorm();
         slippable.pitch = size * w.dot(v) / w.squaredNorm();
     };
-    if (open == 1 && rotations == 0) {
+    if (slippable_count == 1 && rotations == 0) {
         slippable.kind = SlippableKind::translation;
         slippable.direction = motion_of(0).tail<3>().normalized();
-    } else if (open == 1) {
+    } else if (slippable_count == 1) {
         line_of(motion_of(0));
         slippable.kind = std::abs(slippable.pitch) < 0.1 * size ? SlippableKind::rotation : SlippableKind::helix;
         if (slippable.kind == SlippableKind::rotation) slippable.pitch = 0;
-    } else if (open == 2 && rotations == 1 && translations == 1) {
+    } else if (slippable_count == 2 && rotations == 1 && translations == 1) {
         line_of(motion_of(0));
         slippable.kind = SlippableKind::cylinder;
         slippable.pitch = 0;
-    } else if (open == 3 && rotations == 3) {
+    } else if (slippable_count == 3 && rotations == 3) {
         // The centre is fixed: v + w x c = 0 for each of the three.
         Eigen::Matrix<double, 9, 3> A;
         Eigen::Matrix<double, 9, 1> b;
@@ -182,7 +182,7 @@ SlippableMotions slippable_motions_of(const std::vector<Vector3d>& places, const
         }
         slippable.point = middle + size * Vector3d(solve_full_rank(A, b));
         slippable.kind = SlippableKind::sphere;
-    } else if (open == 3 && rotations == 1) {
+    } else if (slippable_count == 3 && rotations == 1) {
         line_of(motion_of(0));
         slippable.point = middle;
         slippable.pitch = 0;

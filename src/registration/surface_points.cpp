@@ -5,6 +5,8 @@
 #include "ostraka/geom/eigen.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,9 +37,9 @@ DenseSamples dense_samples(const Mesh& mesh, const std::vector<bool>& faces, dou
             // A low-discrepancy sequence (Roberts 2018), folded into the triangle; the first point is the centroid.
             double s = 1.0 / 3, t = 1.0 / 3;
             if (k > 0) {
-                double whole = 0;
-                s = std::modf(0.5 + 0.7548776662466927 * k, &whole);
-                t = std::modf(0.5 + 0.5698402909980532 * k, &whole);
+                double integer_part = 0;
+                s = std::modf(0.5 + 0.7548776662466927 * k, &integer_part);
+                t = std::modf(0.5 + 0.5698402909980532 * k, &integer_part);
                 if (s + t > 1) s = 1 - s, t = 1 - t;
             }
             dense.places.push_back(a + s * u + t * v);
@@ -108,23 +110,22 @@ double marked_area(const Mesh& mesh, const std::vector<bool>& faces) {
 
 SurfacePoints spread_points(const Mesh& mesh, const std::vector<bool>& faces, double spacing, double radius, std::uint64_t seed) {
     if (!(spacing > 0 && radius > 0))
-        fail_usage("points are to be spread without a distance between them", "give lengths above 0");
+        fail_usage("points cannot be spread without a distance between them", "give lengths above 0");
     if (!faces.empty() && faces.size() != mesh.number_of_faces())
-        fail_usage("there are " + std::to_string(faces.size()) + " marks for " + std::to_string(mesh.number_of_faces()) +
-                   " faces");
+        fail_usage(fmt::format("there are {} marks for {} faces", faces.size(), mesh.number_of_faces()));
     SurfacePoints points;
     points.spacing = spacing;
     const DenseSamples dense = dense_samples(mesh, faces, spacing * spacing / 6);
     if (dense.places.empty()) return points;
     const Cells cells(dense.places, std::max(spacing, radius));
     std::vector<Index> chosen;
-    std::vector<bool> taken(dense.places.size(), false);
+    std::vector<bool> is_chosen(dense.places.size(), false);
     for (const std::size_t i : Random(seed).permutation(dense.places.size())) {
-        bool room = true;
+        bool has_room = true;
         cells.near(dense.places[i], spacing,
-                   [&](Index j) { room = room && !(taken[j] && dense.normals[j].dot(dense.normals[i]) > 0); });
-        if (!room) continue;
-        taken[i] = true;
+                   [&](Index j) { has_room = has_room && !(is_chosen[j] && dense.normals[j].dot(dense.normals[i]) > 0); });
+        if (!has_room) continue;
+        is_chosen[i] = true;
         chosen.push_back(static_cast<Index>(i));
     }
     std::sort(chosen.begin(), chosen.end());

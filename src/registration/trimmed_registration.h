@@ -21,31 +21,32 @@ struct PoseFit {
 
 class PlanePairs {
 public:
-    std::vector<PlanePair> list;
+    std::vector<PlanePair> pairs;
 
     /// Keeps the nearest pairs, at most `share` of `samples` and at least one; returns the number if every sample had a
     /// partner.
     std::size_t trim(double share, std::size_t samples) {
-        const auto wanted = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(samples)));
-        std::stable_sort(list.begin(), list.end(), [](const PlanePair& a, const PlanePair& b) { return a.squared < b.squared; });
-        if (list.size() > wanted) list.resize(wanted);
-        return wanted;
+        const auto kept_count = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(samples)));
+        std::stable_sort(pairs.begin(), pairs.end(),
+                         [](const PlanePair& a, const PlanePair& b) { return a.squared < b.squared; });
+        if (pairs.size() > kept_count) pairs.resize(kept_count);
+        return kept_count;
     }
     /// Sum of the squared distances from the planes.
     [[nodiscard]] double squares() const {
         double sum = 0;
-        for (const PlanePair& pair : list) {
-            const double off = pair.normal.dot(pair.point - pair.place);
-            sum += off * off;
+        for (const PlanePair& pair : pairs) {
+            const double distance = pair.normal.dot(pair.point - pair.place);
+            sum += distance * distance;
         }
         return sum;
     }
     /// Linearised motion of the points onto the planes, about the centre of the pairs.
     [[nodiscard]] PlaneMotion planes(double unit) const {
         Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-        for (const PlanePair& pair : list) centre += pair.point / static_cast<double>(list.size());
+        for (const PlanePair& pair : pairs) centre += pair.point / static_cast<double>(pairs.size());
         PlaneMotion planes(centre, unit);
-        for (const PlanePair& pair : list) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
+        for (const PlanePair& pair : pairs) planes.add(pair.point, pair.normal, pair.normal.dot(pair.place - pair.point));
         return planes;
     }
 };
@@ -66,12 +67,13 @@ Registration register_from(const Motion& start, int iterations, double min_gain,
     constexpr int patience = 4;
     Registration result{start, measure(start)};
     Motion pose = start;
-    for (int since = 0; result.iterations < iterations && since < patience && pairs.list.size() >= 6; ++result.iterations) {
+    for (int steps_without_gain = 0; result.iterations < iterations && steps_without_gain < patience && pairs.pairs.size() >= 6;
+         ++result.iterations) {
         pose = step(pose);
-        const PoseFit now = measure(pose);
-        since = now.minimised < result.fit.minimised * (1 - min_gain) ? 0 : since + 1;
-        if (now.minimised < result.fit.minimised) result.pose = pose, result.fit = now;
-        result.settled = since >= patience;
+        const PoseFit current = measure(pose);
+        steps_without_gain = current.minimised < result.fit.minimised * (1 - min_gain) ? 0 : steps_without_gain + 1;
+        if (current.minimised < result.fit.minimised) result.pose = pose, result.fit = current;
+        result.settled = steps_without_gain >= patience;
     }
     return result;
 }

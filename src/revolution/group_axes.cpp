@@ -6,6 +6,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,11 +27,11 @@ JoinAxes compare_axes(const GroupAxis& group, const std::vector<Vector3d>& middl
     if (u.dot(v) < 0) v = -v;
     join.angle = 180 / pi * std::acos(std::min(1.0, u.dot(v)));
     const Vector3d middle = 0.5 * (middles[first] + middles[second]), mean = (u + v).normalized();
-    const auto at = [&](const Axis& axis, const Vector3d& d) -> Vector3d {
+    const auto point_on = [&](const Axis& axis, const Vector3d& d) -> Vector3d {
         const Vector3d p = eigen(axis.point);
         return p + d * ((middle - p).dot(mean) / d.dot(mean));
     };
-    join.offset = (at(a, u) - at(b, v)).norm() / group.diagonal;
+    join.offset = (point_on(a, u) - point_on(b, v)).norm() / group.diagonal;
     const auto error = [&](const char* name) { return 3 * std::hypot(a.figure(name)->value, b.figure(name)->value); };
     join.agree =
         join.angle > degrees + error("direction error") || join.offset > share + 0.5 * error("diameter error") / group.diagonal
@@ -54,50 +56,51 @@ std::string to_string(AxesAgree agree) {
 
 GroupAxis axis_of_group(const std::vector<Fragment>& placed, const std::vector<std::pair<std::size_t, std::size_t>>& joins,
                         const RevolutionOptions& options) {
-    check_options(options, "turned template");
+    check_options(options, "surface of revolution");
     GroupAxis group;
-    RevolutionTemplate found;
+    RevolutionTemplate revolution;
     std::vector<LaidSherd> sherds;
     std::vector<Vector3d> middles;
     std::vector<double> areas;
     CGAL::Bbox_3 box;
-    for (const Fragment& one : placed) {
-        sherds.emplace_back().fragment = &one;
-        found.sherds.emplace_back().name = one.name;
+    for (const Fragment& fragment : placed) {
+        sherds.emplace_back().fragment = &fragment;
+        revolution.sherds.emplace_back().name = fragment.name;
         Vector3d middle = Vector3d::Zero();
         double area = 0;
-        for (const Face f : one.mesh.faces()) {
-            if (!one.facets.empty() && one.facets[f] == Facet::fracture) continue;
-            const double own = face_area(one.mesh, f);
-            area += own, middle += own * eigen(centroid(one.mesh, f));
+        for (const Face f : fragment.mesh.faces()) {
+            if (!fragment.facets.empty() && fragment.facets[f] == Facet::fracture) continue;
+            const double weight = face_area(fragment.mesh, f);
+            area += weight, middle += weight * eigen(centroid(fragment.mesh, f));
         }
-        for (const Vertex v : one.mesh.vertices()) box += one.mesh.point(v).bbox();
+        for (const Vertex v : fragment.mesh.vertices()) box += fragment.mesh.point(v).bbox();
         areas.push_back(area);
         middles.push_back(area > 0 ? Vector3d(middle / area) : middle);
-        if (one.mesh.number_of_faces() == 0) leave_out(found.sherds.back(), "has no faces");
+        if (fragment.mesh.number_of_faces() == 0) leave_out(revolution.sherds.back(), "has no faces");
     }
     group.diagonal = placed.empty() ? 0 : std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
     try {
-        find_common_axis(sherds, options, found);
-        group.axis = found.axis;
+        find_common_axis(sherds, options, revolution);
+        group.axis = revolution.axis;
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::input) throw;
         group.axis.reason = "no axis of revolution is common to its fragments";
     }
-    group.direction_error = found.direction_error, group.place_error = found.place_error;
-    group.fragments = std::move(found.sherds);
-    double all = 0, round = 0;
+    group.direction_error = revolution.direction_error, group.place_error = revolution.place_error;
+    group.fragments = std::move(revolution.sherds);
+    double total_area = 0, round = 0;
     for (std::size_t k = 0; k < placed.size(); ++k) {
-        all += areas[k];
-        const SherdOnProfile& one = group.fragments[k];
-        if (one.use == SherdUse::left_out) continue;
+        total_area += areas[k];
+        const SherdOnProfile& sherd = group.fragments[k];
+        if (sherd.use == SherdUse::left_out) continue;
         round += areas[k];
-        if (one.axis.found) group.diameter = std::max(group.diameter, one.axis.figure("largest diameter")->value);
+        if (sherd.axis.found) group.diameter = std::max(group.diameter, sherd.axis.figure("largest diameter")->value);
     }
-    group.round = all > 0 ? round / all : 0;
+    group.round = total_area > 0 ? round / total_area : 0;
     if (group.axis.found && group.round < options.axis.min_quality) {
         group.axis.found = false;
-        group.axis.reason = "fragments with " + digits(100 * group.round, 2) + " % of its area are round about one axis";
+        group.axis.reason =
+            fmt::format("only fragments with {} % of its area are round about one axis", digits(100 * group.round, 2));
     }
     for (const auto& [first, second] : joins) group.joins.push_back(compare_axes(group, middles, first, second));
     return group;

@@ -2,6 +2,8 @@
 
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,8 +16,8 @@ using Eigen::Vector2d;
 void ProfileImage::add(std::vector<double>& cells, std::size_t row, double from, double to) const {
     const double a = from / step, b = to / step;
     for (auto c = static_cast<std::size_t>(std::max(0.0, a)); c < columns && static_cast<double>(c) < b; ++c) {
-        const auto left = static_cast<double>(c);
-        cells[row * columns + c] += std::max(0.0, std::min(b, left + 1) - std::max(a, left));
+        const auto cell_start = static_cast<double>(c);
+        cells[row * columns + c] += std::max(0.0, std::min(b, cell_start + 1) - std::max(a, cell_start));
     }
 }
 
@@ -38,13 +40,13 @@ bool ProfileImage::reaches_axis(std::size_t first, std::size_t end) const {
 
 void ProfileImage::bridge(std::vector<std::string>* notes) {
     const auto wall = [&](std::size_t row) {
-        std::pair<double, double> found{-1, -1};
+        std::pair<double, double> bounds{-1, -1};
         for (std::size_t c = 0; c < columns; ++c)
             if (wall_share[row * columns + c] > 0.5) {
-                if (found.first < 0) found.first = static_cast<double>(c) * step;
-                found.second = static_cast<double>(c + 1) * step;
+                if (bounds.first < 0) bounds.first = static_cast<double>(c) * step;
+                bounds.second = static_cast<double>(c + 1) * step;
             }
-        return found;
+        return bounds;
     };
     std::size_t last = rows;
     for (std::size_t row = 0; row < rows; ++row) {
@@ -57,8 +59,9 @@ void ProfileImage::bridge(std::vector<std::string>* notes) {
                 add(wall_share, between, (1 - t) * a.first + t * b.first, (1 - t) * a.second + t * b.second);
             }
             if (notes != nullptr)
-                notes->push_back("no wall from height " + digits(static_cast<double>(last + 1) * step, 4) + " to " +
-                                 digits(static_cast<double>(row) * step, 4) + ": bridged straight");
+                notes->push_back(fmt::format("no wall from height {} to {}: bridged by a straight line",
+                                             digits(static_cast<double>(last + 1) * step, 4),
+                                             digits(static_cast<double>(row) * step, 4)));
         }
         last = row;
     }
@@ -144,13 +147,13 @@ Outline ProfileImage::outline() const {
     while (!next.empty()) {
         std::vector<Vector2d> loop;
         const Crossing first = next.begin()->first;
-        for (Crossing here = first;;) {
-            const auto it = next.find(here);
-            if (it == next.end()) break;
-            loop.push_back(place(here));
-            here = it->second;
-            next.erase(it);
-            if (here == first) break;
+        for (Crossing current = first;;) {
+            const auto entry = next.find(current);
+            if (entry == next.end()) break;
+            loop.push_back(place(current));
+            current = entry->second;
+            next.erase(entry);
+            if (current == first) break;
         }
         double area = 0, radius = 0;
         for (std::size_t i = 0; i < loop.size(); ++i) {

@@ -18,13 +18,13 @@ AxisFrame frame_of(const Axis& axis) {
     return frame;
 }
 
-void ProfileSweep::ring(const Vector2d& at) {
+void ProfileSweep::ring(const Vector2d& point) {
     Ring ring;
-    ring.pole = at.x() < 1e-9 * edge_;
-    const int count = ring.pole ? 1 : std::max(6, static_cast<int>(std::lround(2 * pi * at.x() / edge_)));
+    ring.pole = point.x() < 1e-9 * edge_;
+    const int count = ring.pole ? 1 : std::max(6, static_cast<int>(std::lround(2 * pi * point.x() / edge_)));
     for (int k = 0; k < count; ++k)
         ring.vertices.push_back(mesh_.add_vertex(
-            point_of(frame_.foot + (lowest_ + at.y()) * frame_.up + at.x() * frame_.direction(2 * pi * k / count))));
+            point_of(frame_.foot + (lowest_ + point.y()) * frame_.up + point.x() * frame_.direction(2 * pi * k / count))));
     rings.push_back(std::move(ring));
 }
 

@@ -8,9 +8,9 @@ namespace ostraka {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& made) {
-    const std::vector<std::vector<Vertex>>& rings = made.vertices;
-    const std::vector<std::size_t>& ring_of = made.of_vertex;
+void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& profile_rings) {
+    const std::vector<std::vector<Vertex>>& rings = profile_rings.vertices;
+    const std::vector<std::size_t>& ring_of = profile_rings.of_vertex;
     AnnotationSet& set = result.annotations;
     set.object_class = "turned vessel";
     set.up = {frame.up.x(), frame.up.y(), frame.up.z()};
@@ -42,29 +42,29 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
     for (const Vector3d& v : {Vector3d(frame.foot + lowest * frame.up), frame.up})
         for (int k = 0; k < 3; ++k) axis.descriptor.values.push_back(v[k]);
     set.annotations.front().attributes.push_back(axis);
-    const auto started = [&](const std::string& tag, const std::array<int, 3>& colour) {
-        Annotation one;
-        one.id = free_id(set);
-        one.tag = tag;
-        one.colour = colour;
-        return one;
+    const auto new_annotation = [&](const std::string& tag, const std::array<int, 3>& colour) {
+        Annotation annotation;
+        annotation.id = free_id(set);
+        annotation.tag = tag;
+        annotation.colour = colour;
+        return annotation;
     };
     const auto region = [&](const std::string& tag, std::array<int, 3> colour, const std::function<bool(Index)>& in) {
-        Annotation one = started(tag, colour);
+        Annotation annotation = new_annotation(tag, colour);
         for (Index f = 0; f < outer.size(); ++f)
-            if (in(f)) one.faces.push_back(f);
-        if (!one.faces.empty()) set.annotations.push_back(std::move(one));
+            if (in(f)) annotation.faces.push_back(f);
+        if (!annotation.faces.empty()) set.annotations.push_back(std::move(annotation));
     };
     region("outer", {186, 120, 82}, [&](Index f) { return outer[f]; });
     region("inner", {150, 110, 90}, [&](Index f) { return !outer[f]; });
     region("base", {90, 70, 60}, [&](Index f) { return base[f]; });
     const auto ring = [&](const std::string& tag, std::size_t i, std::array<int, 3> colour) {
         if (rings[i].size() < 3) return;
-        Annotation one = started(tag, colour);
-        one.type = AnnotationType::line;
-        auto& way = one.polylines.emplace_back();
-        for (const Vertex v : rings[i]) way.push_back(Index(v));
-        way.push_back(Index(rings[i].front()));
+        Annotation annotation = new_annotation(tag, colour);
+        annotation.type = AnnotationType::line;
+        auto& polyline = annotation.polylines.emplace_back();
+        for (const Vertex v : rings[i]) polyline.push_back(Index(v));
+        polyline.push_back(Index(rings[i].front()));
         Attribute diameter;
         diameter.name = "diameter";
         diameter.type = AttributeType::measure;
@@ -72,18 +72,18 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
         diameter.measure.points = {Index(rings[i].front()), Index(rings[i][rings[i].size() / 2])};
         diameter.measure.value =
             (eigen(result.mesh.point(rings[i].front())) - eigen(result.mesh.point(rings[i][rings[i].size() / 2]))).norm();
-        one.attributes.push_back(std::move(diameter));
-        set.annotations.push_back(std::move(one));
+        annotation.attributes.push_back(std::move(diameter));
+        set.annotations.push_back(std::move(annotation));
     };
     ring(result.rim ? "rim" : "upper end", top, {40, 60, 120});
     ring("widest girth", widest, {40, 120, 60});
     if (result.base) ring("foot", foot, {60, 40, 40});
     const auto pole = [&](const std::string& tag, std::size_t i) {
         if (rings[i].size() != 1) return;
-        Annotation one = started(tag, {30, 30, 30});
-        one.type = AnnotationType::point;
-        one.points = {Index(rings[i].front())};
-        set.annotations.push_back(std::move(one));
+        Annotation annotation = new_annotation(tag, {30, 30, 30});
+        annotation.type = AnnotationType::point;
+        annotation.points = {Index(rings[i].front())};
+        set.annotations.push_back(std::move(annotation));
     };
     pole("base centre", 0);
     pole("floor centre", line.size() - 1);

@@ -22,9 +22,9 @@ struct Outline {
 struct ProfileImage {
     double step = 0;
     std::size_t rows = 0, columns = 0;
-    std::vector<double> wall_share;  ///< share of the informative rays that are inside the wall
-    std::vector<double> telling;     ///< number of informative rays: those that determine whether there is wall
-    std::vector<double> present;     ///< per row, number of rays that hit anything
+    std::vector<double> wall_share;   ///< share of the informative rays that are inside the wall
+    std::vector<double> informative;  ///< number of informative rays: those that determine whether there is wall
+    std::vector<double> present;      ///< per row, number of rays that hit anything
 
     /// Adds to the cells of a row between two radii; `cells` is one of the two arrays above.
     void add(std::vector<double>& cells, std::size_t row, double from, double to) const;
@@ -77,8 +77,8 @@ struct JoinedSherds {
     [[nodiscard]] std::vector<bool> broken() const;  ///< per face of the mesh
 };
 
-/// The moved sherds for which `take` is true; the others contribute no faces.
-JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& take);
+/// The moved sherds for which `selected` is true; the others contribute no faces.
+JoinedSherds joined(const std::vector<LaidSherd>& sherds, const std::vector<bool>& selected);
 
 /// Estimates the axis of all sherds that are not left out, and the motion that aligns each sherd's own axis with it: fills in
 /// axis, errors and sherds of the template, and the motions. Leaves out sherds without information and those that contradict
@@ -103,7 +103,7 @@ struct WallSection {
 /// through a fracture (`broken` of its face, or a normal far from the plane through the axis) gives no information on the wall
 /// beyond.
 WallSection wall_section(const SurfaceSearch& search, const std::vector<bool>& broken, const AxisFrame& frame, double low,
-                         double high, double far, const RevolutionOptions& options);
+                         double high, double max_radius, const RevolutionOptions& options);
 
 /// Rings of vertices around the axis, with a vertex count proportional to their circumference, connected by triangles.
 class ProfileSweep {
@@ -112,7 +112,7 @@ public:
     ProfileSweep(const AxisFrame& frame, double lowest, double edge) : frame_(frame), lowest_(lowest), edge_(edge) {}
 
     /// Adds a ring at this radius and height; a single vertex for radius 0.
-    void ring(const Eigen::Vector2d& at);
+    void ring(const Eigen::Vector2d& point);
     /// Connects two rings by triangles.
     void sew(std::size_t a, std::size_t b);
     [[nodiscard]] TriangleSoup soup() const;
@@ -139,6 +139,6 @@ struct ProfileRings {
 
 /// Regions "outer", "inner", "base", lines "rim" or "upper end", "widest girth", "foot", points "base centre", "floor centre",
 /// and the axis, whose foot is `lowest` above that of the frame.
-void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& made);
+void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, double lowest, const ProfileRings& profile_rings);
 
 }  // namespace ostraka

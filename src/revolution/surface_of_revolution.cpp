@@ -8,6 +8,8 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,23 +31,23 @@ public:
             result_.sherds.emplace_back();
             result_.sherds.back().name = sherd->name;
         }
-        for (SherdOnProfile& one : left_out) result_.sherds.push_back(std::move(one));
+        for (SherdOnProfile& sherd : left_out) result_.sherds.push_back(std::move(sherd));
     }
 
     RevolutionTemplate run() {
-        look_at_each();
+        check_sherds();
         for (;;) {
-            for (LaidSherd& one : sherds_) one.motion = {};
+            for (LaidSherd& sherd : sherds_) sherd.motion = {};
             find_common_axis(sherds_, options_, result_);
             if (!any_walls()) {
-                for (SherdOnProfile& one : result_.sherds)
-                    if (one.use != SherdUse::left_out) leave_out(one, one.reason, one.remedy);
+                for (SherdOnProfile& sherd : result_.sherds)
+                    if (sherd.use != SherdUse::left_out) leave_out(sherd, sherd.reason, sherd.remedy);
                 fail_all_left_out(result_);
             }
-            const bool again = turn() ? drop_one_off_the_template() || take_back() : drop_the_least_sure();
+            const bool again = build() ? drop_one_off_the_template() || readmit_sherds() : drop_least_informative();
             if (!again) break;
         }
-        say_what_is_partly_used();
+        report_partly_used();
         result_.notes.insert(result_.notes.end(), bridged_.begin(), bridged_.end());
         annotate_revolution(result_, frame_, lowest_, rings_);
         return std::move(result_);
@@ -54,23 +56,24 @@ public:
 private:
     static constexpr int height_rounds = 4;
     /// Min share of a sherd's area that lies on the template. Unknown fractures take up to half of the area.
-    static double least_on_template(const Fragment& sherd) { return sherd.facets.empty() ? 0.3 : 0.5; }
+    static double min_on_template(const Fragment& sherd) { return sherd.facets.empty() ? 0.3 : 0.5; }
     /// Min share for a sherd whose own axis contradicts the others.
-    static constexpr double enough_on_template = 0.6;
+    static constexpr double min_readmitted = 0.6;
 
-    void look_at_each() {
+    void check_sherds() {
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
             const Mesh& mesh = sherds_[k].fragment->mesh;
-            SherdOnProfile& one = result_.sherds[k];
+            SherdOnProfile& sherd = result_.sherds[k];
             if (mesh.number_of_faces() == 0) {
-                leave_out(one, "has no faces", "give a mesh, or points of its surface");
+                leave_out(sherd, "has no faces", "give a mesh, or points of its surface");
                 continue;
             }
             sherds_[k].walls = CGAL::is_closed(mesh);
             if (!sherds_[k].walls) {
-                one.use = SherdUse::partly;
-                one.reason = "is not closed, so that where its clay is cannot be told: of it the axis counts, not the walls";
-                one.remedy = "close it ('mesh repair')";
+                sherd.use = SherdUse::partly;
+                sherd.reason =
+                    "is not closed, so the inside of its wall cannot be determined: only its axis is used, not its walls";
+                sherd.remedy = "close it ('mesh repair')";
                 continue;
             }
             double volume = 0;
@@ -81,63 +84,63 @@ private:
                     (eigen(mesh.point(a)) - origin).dot((eigen(mesh.point(b)) - origin).cross(eigen(mesh.point(c)) - origin));
             }
             sherds_[k].inside_out = volume < 0;
-            if (volume < 0) result_.notes.push_back("sherd " + one.name + " is inside out: its faces count the other way round");
+            if (volume < 0) result_.notes.push_back(fmt::format("sherd {} is inside out: its faces are reversed", sherd.name));
         }
     }
 
-    [[nodiscard]] std::vector<bool> of_walls() const {
-        std::vector<bool> take;
+    [[nodiscard]] std::vector<bool> walled_sherds() const {
+        std::vector<bool> selected;
         for (std::size_t k = 0; k < sherds_.size(); ++k)
-            take.push_back(sherds_[k].walls && result_.sherds[k].use != SherdUse::left_out);
-        return take;
+            selected.push_back(sherds_[k].walls && result_.sherds[k].use != SherdUse::left_out);
+        return selected;
     }
 
     [[nodiscard]] bool any_walls() const {
-        const std::vector<bool> take = of_walls();
-        return std::find(take.begin(), take.end(), true) != take.end();
+        const std::vector<bool> selected = walled_sherds();
+        return std::find(selected.begin(), selected.end(), true) != selected.end();
     }
 
     /// Builds the template from the sherds that are not left out, and refines the heights of the sherds by registering each to
     /// it. False if they have no profile.
-    bool turn() {
-        const std::vector<bool> take = of_walls();
-        const auto count = std::count(take.begin(), take.end(), true);
+    bool build() {
+        const std::vector<bool> selected = walled_sherds();
+        const auto count = std::count(selected.begin(), selected.end(), true);
         heights_.assign(sherds_.size(), 0);
         for (int round = 0;; ++round) {
-            const JoinedSherds all = joined(sherds_, take);
-            const SurfaceSearch search(all.mesh);
-            if (!profile(search, all)) return false;
-            make();
+            const JoinedSherds joined_walls = joined(sherds_, selected);
+            const SurfaceSearch search(joined_walls.mesh);
+            if (!profile(search, joined_walls)) return false;
+            sweep_profile();
             if (round == height_rounds || count == 1) {
-                for (std::size_t k = 0; k < sherds_.size(); ++k) compare(all, k);
+                for (std::size_t k = 0; k < sherds_.size(); ++k) compare(joined_walls, k);
                 return true;
             }
-            mend_heights(all);
+            adjust_heights(joined_walls);
         }
     }
 
     /// Drops the sherd with the smallest share on the template.
     bool drop_one_off_the_template() {
-        const std::vector<bool> take = of_walls();
+        const std::vector<bool> selected = walled_sherds();
         std::size_t worst = 0;
-        double least = 1;
+        double min_ratio = 1;
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
-            const double share = result_.sherds[k].on_template / least_on_template(*sherds_[k].fragment);
-            if (take[k] && share < least) worst = k, least = share;
+            const double ratio = result_.sherds[k].on_template / min_on_template(*sherds_[k].fragment);
+            if (selected[k] && ratio < min_ratio) worst = k, min_ratio = ratio;
         }
-        if (!(least < 1)) return false;
+        if (!(min_ratio < 1)) return false;
         leave_out(result_.sherds[worst],
-                  "has walls that are not on the vessel that the others make (" +
-                      digits(100 * result_.sherds[worst].on_template, 2) + " % of its area is)",
-                  "is it in another unit than the others, of another vessel, or not where it lay?");
+                  fmt::format("has walls that are not on the vessel formed by the others ({} % of its area is)",
+                              digits(100 * result_.sherds[worst].on_template, 2)),
+                  "check whether it is in another unit, from another vessel, or misplaced");
         if (!any_walls()) fail_all_left_out(result_);
         return true;
     }
 
     /// Takes back sherds whose own axis contradicts the others (a short arc, unknown fractures), but whose walls lie on the
     /// vessel formed by the others: their walls are used, their axis is not.
-    bool take_back() {
-        bool any = false;
+    bool readmit_sherds() {
+        bool readmitted = false;
         const SurfaceSearch surface(result_.mesh);
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
             LaidSherd& sherd = sherds_[k];
@@ -146,80 +149,85 @@ private:
             sherd.motion = {};
             std::vector<bool> alone(sherds_.size(), false);
             alone[k] = true;
-            const JoinedSherds own = joined(sherds_, alone);
-            if (on_template(surface, own.mesh, own.of_fragment[k]).share < enough_on_template) continue;
-            SherdOnProfile& one = result_.sherds[k];
-            one.use = SherdUse::partly;
-            one.reason = "tells radius and height where it lies; by itself it " + one.reason;
-            one.remedy.clear();
-            any = true;
+            const JoinedSherds single = joined(sherds_, alone);
+            if (on_template(surface, single.mesh, single.of_fragment[k]).share < min_readmitted) continue;
+            SherdOnProfile& on_profile = result_.sherds[k];
+            on_profile.use = SherdUse::partly;
+            on_profile.reason = "contributes radius and height in its given position; by itself it " + on_profile.reason;
+            on_profile.remedy.clear();
+            readmitted = true;
         }
-        return any;
+        return readmitted;
     }
 
     /// If the walls have no common radius at any height, drops the sherd with the least information on the axis.
-    bool drop_the_least_sure() {
-        const std::vector<bool> take = of_walls();
-        std::size_t least = take.size();
-        for (std::size_t k = 0; k < take.size(); ++k)
-            if (take[k] && (least == take.size() || result_.sherds[k].weight < result_.sherds[least].weight)) least = k;
-        leave_out(result_.sherds[least], "has walls that are at no height where those of the others are",
-                  "ask for less presence (--presence), or look whether it is of the same vessel");
+    bool drop_least_informative() {
+        const std::vector<bool> selected = walled_sherds();
+        std::size_t least_informative = selected.size();
+        for (std::size_t k = 0; k < selected.size(); ++k)
+            if (selected[k] &&
+                (least_informative == selected.size() || result_.sherds[k].weight < result_.sherds[least_informative].weight))
+                least_informative = k;
+        leave_out(result_.sherds[least_informative], "has walls at no height at which the others have walls",
+                  "lower --presence, or check whether it belongs to the same vessel");
         if (!any_walls()) fail_all_left_out(result_);
         return true;
     }
 
-    void say_what_is_partly_used() {
-        for (SherdOnProfile& one : result_.sherds)
-            if (one.use == SherdUse::used && !one.axis.found) {
-                one.use = SherdUse::partly;
-                one.reason = "tells radius and height where it lies; by itself it has no axis: " + one.axis.reason;
+    void report_partly_used() {
+        for (SherdOnProfile& sherd : result_.sherds)
+            if (sherd.use == SherdUse::used && !sherd.axis.found) {
+                sherd.use = SherdUse::partly;
+                sherd.reason =
+                    "contributes radius and height in its given position; by itself it has no axis: " + sherd.axis.reason;
             }
     }
 
-    void mend_heights(const JoinedSherds& all) {
+    void adjust_heights(const JoinedSherds& joined_walls) {
         const SurfaceSearch surface(result_.mesh);
         const double search_radius = 0.05 * surface.diagonal();
         for (std::size_t k = 0; k < sherds_.size(); ++k) {
             struct Place {
-                double area, up, off;
+                double area, up, distance;
             };
             std::vector<Place> places;
-            std::vector<double> offs;
-            for (const Index f : all.of_fragment[k]) {
-                const Vector3d n = eigen(area_vector(all.mesh, Face(f))), p = eigen(centroid(all.mesh, Face(f)));
+            std::vector<double> distances;
+            for (const Index f : joined_walls.of_fragment[k]) {
+                const Vector3d n = eigen(area_vector(joined_walls.mesh, Face(f))),
+                               p = eigen(centroid(joined_walls.mesh, Face(f)));
                 if (!(n.norm() > 0)) continue;
                 const auto hit = surface.closest_compatible(point_of(p), vector_of(n.normalized()), 0.8, search_radius);
                 if (!hit) continue;
                 const Vector3d m = eigen(surface.normal(hit->face));
                 places.push_back({n.norm(), m.dot(frame_.up), m.dot(eigen(hit->point) - p)});
-                offs.push_back(std::abs(places.back().off));
+                distances.push_back(std::abs(places.back().distance));
             }
             if (places.empty()) continue;
             // An unknown fracture may face the template from far away: Tukey's weights.
-            const double limit = std::max(4.685 * 1.4826 * upper_median(std::move(offs)), 0.002 * surface.diagonal());
+            const double limit = std::max(4.685 * 1.4826 * upper_median(std::move(distances)), 0.002 * surface.diagonal());
             double a = 0, b = 0, area = 0;
             for (const Place& place : places) {
-                const double t = place.off / limit;
+                const double t = place.distance / limit;
                 if (std::abs(t) >= 1) continue;
                 const double weight = place.area * std::pow(1 - t * t, 2);
                 area += weight;
                 a += weight * place.up * place.up;
-                b += weight * place.up * place.off;
+                b += weight * place.up * place.distance;
             }
             if (!(area > 0)) continue;
             // Radii are accurate to about 0.2 % of the diagonal: the layout determines the height of a wall without slope.
-            const double hold = area * std::pow(0.002 / options_.layout_shift, 2);
+            const double layout_weight = area * std::pow(0.002 / options_.layout_shift, 2);
             double& height = heights_[k];
             // Over-relaxed: the sherd itself is part of the template there.
-            const double step = std::clamp(1.3 * (b - hold * height) / (a + hold), -search_radius, search_radius);
+            const double step =
+                std::clamp(1.3 * (b - layout_weight * height) / (a + layout_weight), -search_radius, search_radius);
             height += step;
             sherds_[k].motion.translation += step * frame_.up;
         }
     }
 
     /// False if there is no profile.
-    bool profile(const SurfaceSearch& search, const JoinedSherds& all) {
+    bool profile(const SurfaceSearch& search, const JoinedSherds& joined_walls) {
         double low = 1e300, high = -1e300, far = 0;
         bridged_.clear();
         result_.present.clear();
@@ -227,13 +235,13 @@ private:
         for (int attempt = 0; attempt < 2; ++attempt) {
             frame_ = frame_of(result_.axis);
             low = 1e300, high = -1e300, far = 0;
-            for (const Vertex v : all.mesh.vertices()) {
-                const Vector3d p = eigen(all.mesh.point(v));
+            for (const Vertex v : joined_walls.mesh.vertices()) {
+                const Vector3d p = eigen(joined_walls.mesh.point(v));
                 low = std::min(low, frame_.height(p));
                 high = std::max(high, frame_.height(p));
                 far = std::max(far, frame_.across(p).norm());
             }
-            WallSection section = wall_section(search, all.broken(), frame_, low, high, far, options_);
+            WallSection section = wall_section(search, joined_walls.broken(), frame_, low, high, far, options_);
             section.drop_rare(options_);
             result_.rim = section.has_rim(options_);
             image_ = std::move(section.image);
@@ -259,7 +267,7 @@ private:
         return true;
     }
 
-    void make() {
+    void sweep_profile() {
         double length = 0, area = 0;
         const auto& line = result_.profile;
         const std::size_t pieces = closed_ ? line.size() : line.size() - 1;
@@ -280,10 +288,10 @@ private:
         if (closed_) sweep.sew(count - 1, 0);
         TriangleSoup soup = sweep.soup();
         double volume = 0;
-        const auto at = [&](Index i) -> Vector3d {
+        const auto point_at = [&](Index i) -> Vector3d {
             return Vector3d(soup.points[i][0], soup.points[i][1], soup.points[i][2]) - frame_.foot;
         };
-        for (const auto& t : soup.triangles) volume += at(t[0]).cross(at(t[1])).dot(at(t[2]));
+        for (const auto& t : soup.triangles) volume += point_at(t[0]).cross(point_at(t[1])).dot(point_at(t[2]));
         if (volume < 0)
             for (auto& t : soup.triangles) std::swap(t[1], t[2]);
         result_.mesh = build_mesh(soup);
@@ -293,18 +301,18 @@ private:
         }
     }
 
-    void compare(const JoinedSherds& all, std::size_t k) {
-        SherdOnProfile& one = result_.sherds[k];
-        one.motion = sherds_[k].motion;
-        one.on_template = one.residual = one.lowest = one.highest = 0;
-        if (all.of_fragment[k].empty()) return;
-        one.lowest = 1e300, one.highest = -1e300;
-        for (const Index f : all.of_fragment[k]) {
-            const double height = frame_.height(eigen(centroid(all.mesh, Face(f)))) - lowest_;
-            one.lowest = std::min(one.lowest, height), one.highest = std::max(one.highest, height);
+    void compare(const JoinedSherds& joined_walls, std::size_t k) {
+        SherdOnProfile& sherd = result_.sherds[k];
+        sherd.motion = sherds_[k].motion;
+        sherd.on_template = sherd.residual = sherd.lowest = sherd.highest = 0;
+        if (joined_walls.of_fragment[k].empty()) return;
+        sherd.lowest = 1e300, sherd.highest = -1e300;
+        for (const Index f : joined_walls.of_fragment[k]) {
+            const double height = frame_.height(eigen(centroid(joined_walls.mesh, Face(f)))) - lowest_;
+            sherd.lowest = std::min(sherd.lowest, height), sherd.highest = std::max(sherd.highest, height);
         }
-        const OnTemplate found = on_template(SurfaceSearch(result_.mesh), all.mesh, all.of_fragment[k]);
-        one.on_template = found.share, one.residual = found.distance;
+        const OnTemplate coverage = on_template(SurfaceSearch(result_.mesh), joined_walls.mesh, joined_walls.of_fragment[k]);
+        sherd.on_template = coverage.share, sherd.residual = coverage.distance;
     }
 
     struct OnTemplate {
@@ -312,18 +320,18 @@ private:
     };
     static OnTemplate on_template(const SurfaceSearch& surface, const Mesh& mesh, const std::vector<Index>& faces) {
         const double tolerance = 0.02 * surface.diagonal();
-        double all = 0, on = 0, squares = 0;
+        double total_area = 0, covered_area = 0, squares = 0;
         for (const Index f : faces) {
             const Vector3d n = eigen(area_vector(mesh, Face(f)));
             if (!(n.norm() > 0)) continue;
-            all += n.norm();
+            total_area += n.norm();
             const auto hit = surface.closest_compatible(centroid(mesh, Face(f)), vector_of(n.normalized()), 0.8, tolerance);
             if (!hit) continue;  // fracture
-            on += n.norm();
+            covered_area += n.norm();
             squares += n.norm() * hit->distance * hit->distance;
         }
-        if (!(on > 0)) return {};
-        return {on / all, std::sqrt(squares / on)};
+        if (!(covered_area > 0)) return {};
+        return {covered_area / total_area, std::sqrt(squares / covered_area)};
     }
 
     std::vector<LaidSherd> sherds_;
@@ -342,8 +350,8 @@ private:
 
 RevolutionTemplate template_of_revolution(const std::vector<const Fragment*>& sherds, const RevolutionOptions& options,
                                           std::vector<SherdOnProfile> left_out) {
-    check_options(options, "turned template");
-    if (sherds.empty() && left_out.empty()) fail_usage("there is no sherd", "give one or more");
+    check_options(options, "surface of revolution");
+    if (sherds.empty() && left_out.empty()) fail_usage("there are no sherds", "give one or more");
     return RevolutionBuilder(sherds, options, std::move(left_out)).run();
 }
 

@@ -11,7 +11,7 @@ using test::run_command;
 
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
-TEST(BreakCommand, TheMiddleIsAPlaceOrATag) {
+TEST(BreakCommand, TheCentreIsAPointOrATag) {
     const test::Scratch scratch;
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     write_mesh(scratch / "ball.ply", ball);

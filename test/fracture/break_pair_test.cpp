@@ -51,7 +51,7 @@ PairOptions quick() {
     return options;
 }
 
-TEST(BreakPair, NeighboursComeTogetherFromAnywhere) {
+TEST(BreakPair, NeighboursAreRegisteredFromAnyPose) {
     const SyntheticSherd a = synthetic_sherd(1, 2, 0, 1), b = synthetic_sherd(2, 3, 1, 2);
     for (const double scale : {1.0, 1e-6, 1e6}) {
         Motion unit;
@@ -69,7 +69,7 @@ TEST(BreakPair, NeighboursComeTogetherFromAnywhere) {
     }
 }
 
-TEST(BreakPair, ASolidThatBroke) {
+TEST(BreakPair, ABrokenSolid) {
     const SyntheticSherd below = synthetic_bar(), above = synthetic_bar(1, true);
     const Motion away = random_motion(3, 20);
     const Fragment first = fragment_of(below, "below"), second = fragment_of(above, "above", away);
@@ -83,55 +83,55 @@ TEST(BreakPair, ASolidThatBroke) {
     for (std::size_t i = 1; i < pair.candidates.size(); ++i) EXPECT_LE(pair.candidates[i].score, pair.candidates[i - 1].score);
 }
 
-TEST(BreakPair, StrangersAreLessSure) {
+TEST(BreakPair, UnrelatedFragmentsScoreLower) {
     const Fragment a = fragment_of(synthetic_bar(), "a");
     const Fragment mate = fragment_of(synthetic_bar(1, true), "mate");
-    // A bar with another break.
-    SyntheticSherd other = synthetic_bar(1, true);
-    for (const Vertex v : other.mesh.vertices()) {
-        const Point p = other.mesh.point(v);
+    // A bar with another fracture.
+    SyntheticSherd unrelated = synthetic_bar(1, true);
+    for (const Vertex v : unrelated.mesh.vertices()) {
+        const Point p = unrelated.mesh.point(v);
         const double fade = (8 - p.z()) / 4;
-        other.mesh.point(v) = Point(p.x(), p.y(), p.z() + fade * 0.2 * std::sin(7 * p.x() - 2 * p.y()));
+        unrelated.mesh.point(v) = Point(p.x(), p.y(), p.z() + fade * 0.2 * std::sin(7 * p.x() - 2 * p.y()));
     }
     const double with_mate = pair_breaks(a, mate, quick()).candidates.front().score,
-                 with_stranger = pair_breaks(a, fragment_of(other, "other"), quick()).candidates.front().score;
-    EXPECT_GT(with_mate, with_stranger + 0.2);
+                 with_unrelated = pair_breaks(a, fragment_of(unrelated, "other"), quick()).candidates.front().score;
+    EXPECT_GT(with_mate, with_unrelated + 0.2);
 }
 
-TEST(BreakPair, WhichIsNamedFirstDoesNotMatter) {
+TEST(BreakPair, TheOrderOfTheFragmentsDoesNotMatter) {
     // Right pairs and a wrong one, the larger named first and last.
     const Fragment a = fragment_of(synthetic_sherd(1, 2, 0, 1), "a"),
                    b = fragment_of(synthetic_sherd(2, 3, 1, 2), "b", random_motion(7, 30)),
                    c = fragment_of(synthetic_sherd(4, 5, 0, 1), "c", random_motion(8, 30));
     for (const auto& [x, y] : {std::pair(&a, &b), std::pair(&b, &c), std::pair(&a, &c)}) {
-        const BreakPair there = pair_breaks(*x, *y, quick()), back = pair_breaks(*y, *x, quick());
-        EXPECT_EQ(there.confidence, back.confidence);
-        EXPECT_EQ(there.undecided, back.undecided);
-        EXPECT_EQ(there.fracture_a, back.fracture_b);
-        EXPECT_EQ(there.tried, back.tried);
-        ASSERT_EQ(there.candidates.size(), back.candidates.size());
-        ASSERT_FALSE(there.candidates.empty());
-        for (std::size_t i = 0; i < there.candidates.size(); ++i) {
-            EXPECT_EQ(there.candidates[i].log_odds, back.candidates[i].log_odds);
-            EXPECT_EQ(there.candidates[i].score, back.candidates[i].score);
-            const Motion round = there.candidates[i].pose.after(back.candidates[i].pose);
+        const BreakPair forward = pair_breaks(*x, *y, quick()), backward = pair_breaks(*y, *x, quick());
+        EXPECT_EQ(forward.confidence, backward.confidence);
+        EXPECT_EQ(forward.undecided, backward.undecided);
+        EXPECT_EQ(forward.fracture_a, backward.fracture_b);
+        EXPECT_EQ(forward.tried, backward.tried);
+        ASSERT_EQ(forward.candidates.size(), backward.candidates.size());
+        ASSERT_FALSE(forward.candidates.empty());
+        for (std::size_t i = 0; i < forward.candidates.size(); ++i) {
+            EXPECT_EQ(forward.candidates[i].log_odds, backward.candidates[i].log_odds);
+            EXPECT_EQ(forward.candidates[i].score, backward.candidates[i].score);
+            const Motion round = forward.candidates[i].pose.after(backward.candidates[i].pose);
             EXPECT_LT((round.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-12);
             EXPECT_LT(round.translation.norm(), 1e-9);
         }
     }
 }
 
-TEST(JoinEvidence, TheCommonAxisIsSeenFarFromTheOriginToo) {
+TEST(JoinEvidence, TheCommonAxisIsMeasuredFarFromTheOriginToo) {
     Motion far;
     far.translation = {1e6, -2e6, 1e6};
-    const auto axis_of = [](const Motion& where) {
-        const PreparedBreak a(fragment_of(synthetic_sherd(1, 2, 0, 1), "a", where), quick()),
-            b(fragment_of(synthetic_sherd(2, 3, 1, 2), "b", where), quick());
+    const auto axis_of = [](const Motion& motion) {
+        const PreparedBreak a(fragment_of(synthetic_sherd(1, 2, 0, 1), "a", motion), quick()),
+            b(fragment_of(synthetic_sherd(2, 3, 1, 2), "b", motion), quick());
         return measure_join(a, b, {}, 0.01 * join_scale(a, b));
     };
-    const JoinEvidence near = axis_of({}), there = axis_of(far);
-    EXPECT_NEAR(near.own_axis, there.own_axis, 1e-5);
-    EXPECT_NEAR(near.axis, there.axis, 1e-3);
+    const JoinEvidence near = axis_of({}), far_away = axis_of(far);
+    EXPECT_NEAR(near.own_axis, far_away.own_axis, 1e-5);
+    EXPECT_NEAR(near.axis, far_away.axis, 1e-3);
 }
 
 TEST(BreakPair, ThreadsDoNotMatter) {
@@ -152,20 +152,20 @@ TEST(BreakPair, ThreadsDoNotMatter) {
     }
 }
 
-TEST(BreakPair, WhatCannotBeLaidTogetherIsSaid) {
+TEST(BreakPair, ReportsWhatCannotBeRegistered) {
     const Fragment a = fragment_of(synthetic_bar(), "a");
-    Fragment whole = fragment_of(synthetic_bar(1, true), "whole");
-    whole.facets.assign(whole.facets.size(), Facet::outer);
-    EXPECT_THROW(pair_breaks(a, whole, quick()), Error);
-    whole.facets.clear();
-    EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no facets: all outer";
-    whole.facets.assign(whole.mesh.number_of_faces(), Facet::fracture);
-    EXPECT_THROW(pair_breaks(a, whole, quick()), Error) << "no rim";
+    Fragment unbroken = fragment_of(synthetic_bar(1, true), "whole");
+    unbroken.facets.assign(unbroken.facets.size(), Facet::outer);
+    EXPECT_THROW(pair_breaks(a, unbroken, quick()), Error);
+    unbroken.facets.clear();
+    EXPECT_THROW(pair_breaks(a, unbroken, quick()), Error) << "no facets: all outer";
+    unbroken.facets.assign(unbroken.mesh.number_of_faces(), Facet::fracture);
+    EXPECT_THROW(pair_breaks(a, unbroken, quick()), Error) << "no rim";
     EXPECT_THROW(pair_breaks(a, Fragment(), quick()), Error);
     PairOptions options;
     options.search_radius = 2;
     EXPECT_THROW(pair_breaks(a, a, options), Error);
-    // A stranger, far smaller: cannot be determined.
+    // An unrelated, far smaller fragment: cannot be determined.
     options = quick();
     Motion smaller;
     smaller.scale = 0.2;
@@ -202,7 +202,7 @@ TEST(BreakPair, ScannedBottle) {
 
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
-TEST(PairCommand, MovesTheSecondToTheFirst) {
+TEST(PairCommand, MovesTheSecondOntoTheFirst) {
     const test::Scratch scratch;
     const SyntheticSherd below = synthetic_bar(), above = synthetic_bar(1, true);
     const Motion away = random_motion(5, 10);
@@ -227,11 +227,11 @@ TEST(PairCommand, MovesTheSecondToTheFirst) {
     for (const char* name : {"first.ply", "second.ply"}) {
         std::filesystem::copy(scratch / "b.ply", scratch / "own" / name);
         const std::string before = read_file(scratch / "own" / name);
-        const auto own =
+        const auto onto_input =
             test::run_command("pair " + quoted(scratch / "a.ply") + " " + quoted(scratch / "own" / name) +
                               " --frames 60 --samples 500 --starts 40 --refined 6 --output " + quoted(scratch / "own"));
-        EXPECT_EQ(own.code, 2);
-        EXPECT_NE(own.err.find("also an input"), std::string::npos) << own.err;
+        EXPECT_EQ(onto_input.code, 2);
+        EXPECT_NE(onto_input.err.find("also an input"), std::string::npos) << onto_input.err;
         EXPECT_EQ(read_file(scratch / "own" / name), before);
         std::filesystem::remove(scratch / "own" / name);
     }

@@ -21,35 +21,35 @@ using test::synthetic_bar;
 using test::synthetic_sherd;
 using test::SyntheticSherd;
 
-TEST(Facets, ASherdHasTwoSidesAndABreak) {
+TEST(Facets, ASherdHasTwoSidesAndAFracture) {
     const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
-    const Facets found = find_facets(sherd.mesh);
-    EXPECT_TRUE(found.shell);
-    EXPECT_NEAR(found.thickness, 0.7, 0.05);
-    EXPECT_GT(agreement(sherd, found.of_face), 0.95);
-    EXPECT_GT(found.confidence, 0.8);
+    const Facets facets = find_facets(sherd.mesh);
+    EXPECT_TRUE(facets.shell);
+    EXPECT_NEAR(facets.thickness, 0.7, 0.05);
+    EXPECT_GT(agreement(sherd, facets.of_face), 0.95);
+    EXPECT_GT(facets.confidence, 0.8);
     double area = 0;
-    std::vector<int> seen(sherd.mesh.number_of_faces(), 0);
-    for (const FacetSegment& segment : found.segments) {
+    std::vector<int> count(sherd.mesh.number_of_faces(), 0);
+    for (const FacetSegment& segment : facets.segments) {
         area += segment.area;
         for (const Index f : segment.faces) {
-            EXPECT_EQ(found.of_face[f], segment.facet);
-            ++seen[f];
+            EXPECT_EQ(facets.of_face[f], segment.facet);
+            ++count[f];
         }
     }
     EXPECT_NEAR(area, surface_area(sherd.mesh), 1e-9 * area);
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(seen.size()));
+    EXPECT_EQ(std::count(count.begin(), count.end(), 1), static_cast<std::ptrdiff_t>(count.size()));
 }
 
-TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
+TEST(Facets, UnitPoseResolutionAndThreadsDoNotMatter) {
     const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
-    const Facets found = find_facets(sherd.mesh);
+    const Facets facets = find_facets(sherd.mesh);
     Motion motion;
     motion.rotation = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     for (const double scale : {1e-6, 1.0, 1e6}) {
         motion.scale = scale;
         motion.translation = 1000 * scale * Eigen::Vector3d(1, -1, 2);
-        EXPECT_GT(agreement({moved(sherd.mesh, motion), found.of_face}, find_facets(moved(sherd.mesh, motion)).of_face), 0.995)
+        EXPECT_GT(agreement({moved(sherd.mesh, motion), facets.of_face}, find_facets(moved(sherd.mesh, motion)).of_face), 0.995)
             << scale;
     }
     const SyntheticSherd fine = synthetic_sherd(1, 2, 0, 1, 2);
@@ -58,89 +58,90 @@ TEST(Facets, UnitPlaceResolutionAndThreadsDoNotMatter) {
     for (const int count : {1, 3}) {
         set_threads(count);
         const Facets again = find_facets(sherd.mesh);
-        EXPECT_EQ(again.of_face, found.of_face);
-        EXPECT_EQ(again.confidence, found.confidence);
+        EXPECT_EQ(again.of_face, facets.of_face);
+        EXPECT_EQ(again.confidence, facets.confidence);
     }
     set_threads(before);
 }
 
-TEST(Facets, ASolidHasARoughEnd) {
+TEST(Facets, ASolidHasARoughFracture) {
     for (const int fineness : {1, 2}) {
         const SyntheticSherd bar = synthetic_bar(fineness);
-        const Facets found = find_facets(bar.mesh);
-        EXPECT_FALSE(found.shell);
-        EXPECT_EQ(found.answer, Facets::Answer::broken);
-        EXPECT_EQ(found.area(Facet::inner), 0);
-        // The flat end may be cut or formed: what is said of it is not sure.
+        const Facets facets = find_facets(bar.mesh);
+        EXPECT_FALSE(facets.shell);
+        EXPECT_EQ(facets.answer, Facets::Answer::broken);
+        EXPECT_EQ(facets.area(Facet::inner), 0);
+        // The flat end may be cut or shaped: its classification is uncertain.
         double missed = 0, flat = 0;
         for (const Face f : bar.mesh.faces()) {
-            if (centroid(bar.mesh, f).z() < 1e-9) flat = std::max(flat, found.probability[f]);
-            else if (found.of_face[f] != bar.facets[f]) missed += face_area(bar.mesh, f);
+            if (centroid(bar.mesh, f).z() < 1e-9) flat = std::max(flat, facets.probability[f]);
+            else if (facets.of_face[f] != bar.facets[f]) missed += face_area(bar.mesh, f);
         }
         EXPECT_LT(missed, 0.03 * surface_area(bar.mesh)) << fineness;
         EXPECT_LT(flat, 0.8);
     }
 }
 
-TEST(Facets, WhatIsWholeHasNoBreak) {
+TEST(Facets, AnIntactObjectHasNoFracture) {
     for (const auto& soup : {test::octahedron_sphere(4), test::torus(48, 24), test::patch(30, 30)}) {
         const Mesh mesh = build_mesh(soup);
-        const Facets found = find_facets(mesh);
-        EXPECT_EQ(found.area(Facet::fracture), 0);
-        EXPECT_NEAR(found.area(Facet::outer), surface_area(mesh), 1e-9 * surface_area(mesh));
+        const Facets facets = find_facets(mesh);
+        EXPECT_EQ(facets.area(Facet::fracture), 0);
+        EXPECT_NEAR(facets.area(Facet::outer), surface_area(mesh), 1e-9 * surface_area(mesh));
     }
     // A cube may be sawn from something: that is not known.
     EXPECT_NE(find_facets(build_mesh(test::box(12))).answer, Facets::Answer::broken);
 }
 
-TEST(Facets, AFormedFlatEndIsNoBreakForSure) {
+TEST(Facets, AShapedFlatEndIsNoCertainFracture) {
     for (const double top : {0.5, 2.0}) {
         TriangleSoup ball = test::octahedron_sphere(5);
         for (auto& p : ball.points) p = {p[0], 1.2 * p[1], std::clamp(p[2], -0.4, top)};
-        const Facets found = find_facets(build_mesh(ball));
-        for (const FacetSegment& segment : found.segments)
+        const Facets facets = find_facets(build_mesh(ball));
+        for (const FacetSegment& segment : facets.segments)
             EXPECT_TRUE(segment.facet != Facet::fracture || segment.confidence < 0.9) << top;
     }
 }
 
-TEST(Facets, ContextTellsOfSurroundings) {
+TEST(Facets, ContextFeaturesDescribeTheSurroundings) {
     const SyntheticSherd sherd = synthetic_sherd(1, 2, 0, 1);
     const FacetEvidence evidence = facet_evidence(sherd.mesh);
     const std::vector<std::string>& names = facet_context_names();
-    const std::size_t own = facet_feature_names().size();
-    ASSERT_EQ(evidence.features.columns, own);
+    const std::size_t feature_count = facet_feature_names().size();
+    ASSERT_EQ(evidence.features.columns, feature_count);
     const auto column = [&](const FeatureTable& table, const std::string& name) {
-        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
         std::vector<double> values;
-        for (std::size_t r = 0; r < table.rows(); ++r) values.push_back(static_cast<double>(table.row(r)[own + at]));
+        for (std::size_t r = 0; r < table.rows(); ++r) values.push_back(static_cast<double>(table.row(r)[feature_count + index]));
         return values;
     };
     std::vector<double> odds(evidence.graph.count(), 0);
     const FeatureTable even = with_context(evidence, odds);
-    ASSERT_EQ(even.columns, own + names.size());
+    ASSERT_EQ(even.columns, feature_count + names.size());
     for (const char* name : {"likely in the fragment", "part: likely", "likely about, at 3"})
         for (const double value : column(even, name)) EXPECT_NEAR(value, 0.5, 1e-6) << name;
-    // Faces are patches here. Where the breaks are known, sides lie over sides, and parts are of one kind.
+    // Faces are patches here. Where the fractures are known, sides lie over sides, and parts are of one kind.
     ASSERT_EQ(odds.size(), sherd.facets.size());
     for (std::size_t p = 0; p < odds.size(); ++p) odds[p] = sherd.facets[p] == Facet::fracture ? 8 : -8;
-    const FeatureTable known = with_context(evidence, odds);
-    const std::vector<double> part = column(known, "part: likely"), across = column(known, "part: likely across its boundary"),
-                              behind = column(known, "likely behind");
-    double right = 0, beside = 0, over = 0, sides = 0;
+    const FeatureTable certain = with_context(evidence, odds);
+    const std::vector<double> part = column(certain, "part: likely"),
+                              across = column(certain, "part: likely across its boundary"),
+                              behind = column(certain, "likely behind");
+    double right = 0, beside = 0, behind_sides = 0, sides = 0;
     for (std::size_t p = 0; p < odds.size(); ++p) {
         const double area = evidence.graph.areas[p] / evidence.graph.area;
         right += (part[p] > 0.5) == (odds[p] > 0) ? area : 0;
         if (odds[p] > 0) continue;
         sides += area;
         beside += across[p] > 0.5 ? area : 0;
-        over += behind[p] < 0.5 ? area : 0;
+        behind_sides += behind[p] < 0.5 ? area : 0;
     }
     EXPECT_GT(right, 0.95);
-    EXPECT_GT(beside, 0.9 * sides) << "breaks lie between the sides";
-    EXPECT_GT(over, 0.9 * sides);
+    EXPECT_GT(beside, 0.9 * sides) << "fractures lie between the sides";
+    EXPECT_GT(behind_sides, 0.9 * sides);
 }
 
-TEST(Facets, WhatCannotBeToldIsSaid) {
+TEST(Facets, RejectsMeshesWithoutAreaAndInvalidOptions) {
     EXPECT_THROW(find_facets(Mesh()), Error);
     TriangleSoup flat;
     flat.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
@@ -159,11 +160,11 @@ TEST(Facets, ScannedSherds) {
     std::vector<Mesh> meshes;
     for (int i = 1; i <= 5; ++i) meshes.push_back(read_mesh(folder / ("TU_96_2_5f_piece0" + std::to_string(i) + ".obj")).mesh);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const Facets found = find_facets(meshes[i]);
-        EXPECT_TRUE(found.shell);
-        EXPECT_GT(found.area(Facet::outer), found.area(Facet::inner)) << "the outside of a vessel is larger";
-        // Near another sherd and facing it: broken there, or close beside it.
-        double right = 0, called = 0, all = 0, same = 0;
+        const Facets facets = find_facets(meshes[i]);
+        EXPECT_TRUE(facets.shell);
+        EXPECT_GT(facets.area(Facet::outer), facets.area(Facet::inner)) << "the outside of a vessel is larger";
+        // Near another sherd and facing it: on the fracture, or close beside it.
+        double right = 0, predicted = 0, total = 0, same = 0;
         std::vector<double> area(meshes[i].number_of_faces());
         std::vector<bool> facing(area.size(), false);
         for (std::size_t j = 0; j < meshes.size(); ++j) {
@@ -177,14 +178,14 @@ TEST(Facets, ScannedSherds) {
             }
         }
         for (std::size_t f = 0; f < area.size(); ++f) {
-            const bool broken = found.of_face[f] == Facet::fracture;
-            all += area[f];
+            const bool broken = facets.of_face[f] == Facet::fracture;
+            total += area[f];
             same += broken == facing[f] ? area[f] : 0;
-            called += broken ? area[f] : 0;
+            predicted += broken ? area[f] : 0;
             right += broken && facing[f] ? area[f] : 0;
         }
-        EXPECT_GT(same / all, 0.9) << "sherd " << i + 1;
-        EXPECT_GT(right / called, 0.8) << "sherd " << i + 1;
+        EXPECT_GT(same / total, 0.9) << "sherd " << i + 1;
+        EXPECT_GT(right / predicted, 0.8) << "sherd " << i + 1;
     }
 }
 

@@ -47,13 +47,13 @@ struct Mixture {
         add(synthetic_bar(1, true), "above");
         add(synthetic_sherd(3, 4, 2, 3), "right");
     }
-    /// How far a vertex of fragment k is, where it was put, from where it belongs in the frame of fragment r, at most.
-    [[nodiscard]] double off(const Reassembly& result, std::size_t r, std::size_t k) const {
-        const Motion way = motions[r].inverse().after(result.poses[r].inverse()).after(result.poses[k]);
+    /// Largest distance of a vertex of fragment k, as placed, from its true position in the frame of fragment r.
+    [[nodiscard]] double error(const Reassembly& result, std::size_t r, std::size_t k) const {
+        const Motion motion = motions[r].inverse().after(result.poses[r].inverse()).after(result.poses[k]);
         double farthest = 0;
         for (const Vertex v : fragments[k].mesh.vertices()) {
             const Eigen::Vector3d p = eigen(fragments[k].mesh.point(v));
-            farthest = std::max(farthest, (way(p) - motions[k].inverse()(p)).norm());
+            farthest = std::max(farthest, (motion(p) - motions[k].inverse()(p)).norm());
         }
         return farthest;
     }
@@ -82,18 +82,18 @@ TEST(Reassembly, TwoObjectsInOneBox) {
     EXPECT_EQ(result.group[0], result.group[2]);
     EXPECT_EQ(result.group[0], result.group[4]);
     EXPECT_EQ(result.group[1], result.group[3]);
-    EXPECT_NE(result.group[0], result.group[1]) << "strangers stay apart";
-    EXPECT_LT(box.off(result, 2, 0), 0.1) << "of a diagonal of 9";
-    EXPECT_LT(box.off(result, 2, 4), 0.1);
+    EXPECT_NE(result.group[0], result.group[1]) << "unrelated fragments stay apart";
+    EXPECT_LT(box.error(result, 2, 0), 0.1) << "of a diagonal of 9";
+    EXPECT_LT(box.error(result, 2, 4), 0.1);
     for (const std::string& text : result.alone) EXPECT_TRUE(text.empty());
-    std::set<std::pair<std::size_t, std::size_t>> carried;
+    std::set<std::pair<std::size_t, std::size_t>> tree;
     for (const FragmentJoin& join : result.joins) {
         EXPECT_EQ(result.group[join.first], result.group[join.second]);
         EXPECT_GE(join.confidence, 0.5);
         EXPECT_LE(join.confidence, 1);
-        if (join.carries) carried.insert({join.first, join.second});
+        if (join.carries) tree.insert({join.first, join.second});
     }
-    EXPECT_EQ(carried, (std::set<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 3}, {2, 4}}));
+    EXPECT_EQ(tree, (std::set<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 3}, {2, 4}}));
 }
 
 void same(const Reassembly& x, const Reassembly& y) {
@@ -107,7 +107,7 @@ void same(const Reassembly& x, const Reassembly& y) {
     for (std::size_t k = 0; k < x.joins.size(); ++k) EXPECT_EQ(x.joins[k].confidence, y.joins[k].confidence);
 }
 
-TEST(Reassembly, OfManyFragmentsOnlyPromisingPairsAreTried) {
+TEST(Reassembly, WithManyFragmentsOnlyPromisingPairsAreTried) {
     const Mixture box;
     ReassemblyOptions options = quick();
     options.partners = 1;
@@ -119,22 +119,22 @@ TEST(Reassembly, OfManyFragmentsOnlyPromisingPairsAreTried) {
     set_threads(before);
     same(result, parallel);
     EXPECT_EQ(result.pairs_tried, 2u);
-    EXPECT_EQ(result.pairs_left, 1u) << "the bars' breaks are too smooth to be told among many";
+    EXPECT_EQ(result.pairs_left, 1u) << "the bars' fractures are too smooth to be distinguished among many";
     ASSERT_EQ(result.groups(), 1);
     EXPECT_EQ(result.group[0], result.group[2]);
     EXPECT_EQ(result.group[0], result.group[4]);
     for (const std::size_t bar : {1, 3}) EXPECT_NE(result.alone[bar].find("smooth"), std::string::npos) << result.alone[bar];
-    EXPECT_LT(box.off(result, 2, 0), 0.1) << "of a diagonal of 9";
-    EXPECT_LT(box.off(result, 2, 4), 0.1);
+    EXPECT_LT(box.error(result, 2, 0), 0.1) << "of a diagonal of 9";
+    EXPECT_LT(box.error(result, 2, 4), 0.1);
 }
 
-TEST(Reassembly, ThreadsAndWhatWasTriedBeforeDoNotMatter) {
+TEST(Reassembly, ThreadsAndCachedPairsDoNotMatter) {
     std::vector<Fragment> three = Mixture().fragments;
     three = {three[1], three[2], three[3]};
-    std::vector<PairOfMany> known;
+    std::vector<PairOfMany> pairs;
     std::size_t tried = 0;
     PairMemory memory;
-    memory.keep = [&](const PairOfMany& pair, const PairOptions&) { known.push_back(pair), ++tried; };
+    memory.keep = [&](const PairOfMany& pair, const PairOptions&) { pairs.push_back(pair), ++tried; };
     const int before = threads();
     set_threads(1);
     const Reassembly one = reassemble(three, quick(), memory);
@@ -144,7 +144,7 @@ TEST(Reassembly, ThreadsAndWhatWasTriedBeforeDoNotMatter) {
     same(one, parallel);
     EXPECT_EQ(tried, 3u);
     memory.recall = [&](std::size_t i, std::size_t j, const PairOptions&) -> std::optional<PairOfMany> {
-        for (const PairOfMany& pair : known)
+        for (const PairOfMany& pair : pairs)
             if (pair.first == i && pair.second == j) return pair;
         return {};
     };
@@ -152,19 +152,19 @@ TEST(Reassembly, ThreadsAndWhatWasTriedBeforeDoNotMatter) {
     EXPECT_EQ(tried, 3u) << "none was tried again";
 }
 
-TEST(Reassembly, WhatCannotBeJoinedStaysAloneWithItsReason) {
+TEST(Reassembly, UnjoinableFragmentsStayAloneWithAReason) {
     EXPECT_THROW(reassemble({}), Error);
-    std::vector<Fragment> list(4);
-    list[0] = fragment_of(synthetic_bar(), "bar", {});
-    list[1] = fragment_of(synthetic_bar(1, true), "whole", {});
-    list[1].facets.assign(list[1].facets.size(), Facet::outer);
-    list[2].name = "nothing";
+    std::vector<Fragment> fragments(4);
+    fragments[0] = fragment_of(synthetic_bar(), "bar", {});
+    fragments[1] = fragment_of(synthetic_bar(1, true), "whole", {});
+    fragments[1].facets.assign(fragments[1].facets.size(), Facet::outer);
+    fragments[2].name = "nothing";
     TriangleSoup chip;
     chip.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     chip.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-    list[3].name = "chip";
-    list[3].mesh = build_mesh(chip);
-    const Reassembly result = reassemble(list, quick());
+    fragments[3].name = "chip";
+    fragments[3].mesh = build_mesh(chip);
+    const Reassembly result = reassemble(fragments, quick());
     EXPECT_EQ(result.groups(), 0);
     EXPECT_EQ(result.pairs_tried, 0u);
     EXPECT_TRUE(result.joins.empty());
@@ -174,63 +174,63 @@ TEST(Reassembly, WhatCannotBeJoinedStaysAloneWithItsReason) {
     EXPECT_NE(result.alone[3].find("4 faces"), std::string::npos) << result.alone[3];
     ReassemblyOptions options;
     options.min_join = 2;
-    EXPECT_THROW(reassemble(list, options), Error);
+    EXPECT_THROW(reassemble(fragments, options), Error);
 }
 
-TEST(OddFragments, CopiesMirrorImagesUnitsAndInsideOut) {
+TEST(SuspiciousFragments, CopiesMirrorImagesUnitsAndInsideOut) {
     const SyntheticSherd bar = synthetic_bar();
-    std::vector<Fragment> list;
-    for (int k = 0; k < 3; ++k) list.push_back(fragment_of(synthetic_sherd(k, k + 1, k, k + 1), std::to_string(k), {}));
-    EXPECT_TRUE(odd_fragments(list).empty());
-    list.push_back(fragment_of(synthetic_sherd(1, 2, 1, 2), "copy", random_motion(5)));
-    Mesh mirrored = list[0].mesh;
+    std::vector<Fragment> fragments;
+    for (int k = 0; k < 3; ++k) fragments.push_back(fragment_of(synthetic_sherd(k, k + 1, k, k + 1), std::to_string(k), {}));
+    EXPECT_TRUE(odd_fragments(fragments).empty());
+    fragments.push_back(fragment_of(synthetic_sherd(1, 2, 1, 2), "copy", random_motion(5)));
+    Mesh mirrored = fragments[0].mesh;
     for (const Vertex v : mirrored.vertices()) {
         const Point p = mirrored.point(v);
         mirrored.point(v) = Point(-p.x(), p.y(), p.z());
     }
-    TriangleSoup turned = to_soup(mirrored);
-    for (auto& t : turned.triangles) std::swap(t[1], t[2]);
-    list.push_back(fragment_of({build_mesh(turned), list[0].facets}, "mirror", {}));
+    TriangleSoup reversed = to_soup(mirrored);
+    for (auto& t : reversed.triangles) std::swap(t[1], t[2]);
+    fragments.push_back(fragment_of({build_mesh(reversed), fragments[0].facets}, "mirror", {}));
     Motion inch;
     inch.scale = 1 / 25.4;
-    list.push_back(fragment_of(synthetic_sherd(6, 7, 1, 2), "inches", inch));
-    turned = to_soup(bar.mesh);
-    for (auto& t : turned.triangles) std::swap(t[1], t[2]);
-    list.push_back(fragment_of({build_mesh(turned), bar.facets}, "turned", {}));
-    std::map<std::size_t, OddFragment> odd;
-    for (const OddFragment& one : odd_fragments(list)) odd[one.fragment] = one;
-    ASSERT_EQ(odd.size(), 4u);
-    EXPECT_EQ(odd[3].text, "is a copy of 1");
-    EXPECT_TRUE(odd[3].left_out);
-    EXPECT_EQ(odd[4].text, "is a mirror image of 0");
-    EXPECT_TRUE(odd[4].left_out);
-    EXPECT_NE(odd[5].text.find("times smaller than most"), std::string::npos) << odd[5].text;
-    EXPECT_FALSE(odd[5].left_out);
-    EXPECT_NE(odd[6].text.find("inside out"), std::string::npos) << odd[6].text;
+    fragments.push_back(fragment_of(synthetic_sherd(6, 7, 1, 2), "inches", inch));
+    reversed = to_soup(bar.mesh);
+    for (auto& t : reversed.triangles) std::swap(t[1], t[2]);
+    fragments.push_back(fragment_of({build_mesh(reversed), bar.facets}, "turned", {}));
+    std::map<std::size_t, OddFragment> suspicious;
+    for (const OddFragment& fragment : odd_fragments(fragments)) suspicious[fragment.fragment] = fragment;
+    ASSERT_EQ(suspicious.size(), 4u);
+    EXPECT_EQ(suspicious[3].text, "is a copy of 1");
+    EXPECT_TRUE(suspicious[3].left_out);
+    EXPECT_EQ(suspicious[4].text, "is a mirror image of 0");
+    EXPECT_TRUE(suspicious[4].left_out);
+    EXPECT_NE(suspicious[5].text.find("times smaller than most"), std::string::npos) << suspicious[5].text;
+    EXPECT_FALSE(suspicious[5].left_out);
+    EXPECT_NE(suspicious[6].text.find("inside out"), std::string::npos) << suspicious[6].text;
 }
 
-TEST(OddFragments, AnotherUnitIsSeenByTheWallWhereSizesAreLessFarApart) {
+TEST(SuspiciousFragments, WallThicknessRevealsAnotherUnitWhereSizesAreSimilar) {
     std::vector<Fragment> two{fragment_of(synthetic_sherd(1, 2, 0, 1), "centimetres", {}),
                               fragment_of(synthetic_sherd(2, 3, 1, 2), "other", {})};
     const auto scaled = [&](double scale) {
-        Fragment one = two[1];
-        one.mesh = scaled_by(one.mesh, scale);
-        return odd_fragments({two[0], one});
+        Fragment other = two[1];
+        other.mesh = scaled_by(other.mesh, scale);
+        return odd_fragments({two[0], other});
     };
     EXPECT_TRUE(odd_fragments(two).empty());
     EXPECT_TRUE(scaled(3).empty()) << "sherds differ";
     const double equal = std::sqrt(surface_area(two[0].mesh) / surface_area(two[1].mesh));
-    const auto odd = scaled(6.5 * equal);
-    ASSERT_EQ(odd.size(), 1u);
-    EXPECT_NE(odd[0].text.find("in another unit"), std::string::npos) << odd[0].text;
+    const auto suspicious = scaled(6.5 * equal);
+    ASSERT_EQ(suspicious.size(), 1u);
+    EXPECT_NE(suspicious[0].text.find("in another unit"), std::string::npos) << suspicious[0].text;
     // As much larger with a wall as thick: no other unit.
     for (Facet& facet : two[0].facets) facet = Facet::outer;
-    EXPECT_TRUE(scaled(6.5 * equal).empty()) << "no wall to tell by";
+    EXPECT_TRUE(scaled(6.5 * equal).empty()) << "no wall thickness to compare";
 }
 
 std::string quoted(const Path& path) { return "'" + path.string() + "'"; }
 
-TEST(AssembleCommand, ABoxAgainAndWithWhatCannotBeRead) {
+TEST(AssembleCommand, RepeatsARunAndReportsAnUnreadableFile) {
     const test::Scratch scratch;
     std::filesystem::create_directory(scratch / "box");
     const Mixture box;
@@ -244,10 +244,10 @@ TEST(AssembleCommand, ABoxAgainAndWithWhatCannotBeRead) {
     validate(report, "reassembly", "assembly.json");
     ASSERT_EQ(report["groups"].Size(), 1u);
     ASSERT_EQ(report["fragments"].Size(), 4u);
-    for (const auto& one : report["fragments"].GetArray()) {
-        const std::string name = one["name"].GetString();
-        EXPECT_EQ(one["group"].GetInt(), name == "above" || name == "below" ? 1 : 0) << name;
-        EXPECT_EQ(one.HasMember("alone"), name == "middle" || name == "broken") << name;
+    for (const auto& fragment : report["fragments"].GetArray()) {
+        const std::string name = fragment["name"].GetString();
+        EXPECT_EQ(fragment["group"].GetInt(), name == "above" || name == "below" ? 1 : 0) << name;
+        EXPECT_EQ(fragment.HasMember("alone"), name == "middle" || name == "broken") << name;
     }
     for (const char* name : {"group-1.ply", "group-1.png", "group-1.exploded.png", "above.placed.ply", "below.placed.ply"})
         EXPECT_TRUE(std::filesystem::exists(scratch / "out" / name)) << name;
@@ -286,7 +286,7 @@ TEST(AssembleCommand, TheOrderOfTheNamesAndThreadsDoNotMatter) {
     EXPECT_EQ(joins(files[2] + " " + files[0] + " " + files[1], "two", " --threads 2"), one);
 }
 
-TEST(AssembleCommand, WhatMakesNoSense) {
+TEST(AssembleCommand, RejectsInvalidInput) {
     const test::Scratch scratch;
     std::filesystem::create_directory(scratch / "empty");
     write_mesh(scratch / "bar.ply", synthetic_bar().mesh);

@@ -15,9 +15,9 @@ std::string entry(const std::string& name, const std::string& matches) {
     return R"({"name": ")" + name + R"(", "annotations": [)" + matches + "]}";
 }
 
-/// What is wrong with an assembly, as it is said.
+/// The error message for an assembly.
 template <class Work>
-std::string said(Work&& work) {
+std::string error_message(Work&& work) {
     try {
         work();
     } catch (const Error& error) {
@@ -30,7 +30,7 @@ std::string said(Work&& work) {
 }
 std::string refusal(const std::string& fragments) {
     const Json assembly = assembly_of(fragments);
-    return said([&] { stated_matches(assembly, "top", "my.assembly.json"); });
+    return error_message([&] { stated_matches(assembly, "top", "my.assembly.json"); });
 }
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -40,12 +40,12 @@ TEST(Assembly, StatedMatchesAreThoseOfTheFragment) {
                                     {"ofFragment": 2147483647, "ofTemplate": null, "stated": true},
                                     {"ofFragment": 3, "ofTemplate": 4, "stated": false}, {"ofFragment": 5})") +
                     "," + entry("base", R"({"ofFragment": 9, "ofTemplate": 9, "stated": true})") + R"(, {"name": "bare"})");
-    const std::vector<StatedMatch> list = stated_matches(assembly, "top");
-    ASSERT_EQ(list.size(), 2U);
-    EXPECT_EQ(list[0].of_fragment, 1);
-    EXPECT_EQ(list[0].of_template, 2);
-    EXPECT_EQ(list[1].of_fragment, 2147483647);
-    EXPECT_FALSE(list[1].of_template.has_value());
+    const std::vector<StatedMatch> matches = stated_matches(assembly, "top");
+    ASSERT_EQ(matches.size(), 2U);
+    EXPECT_EQ(matches[0].of_fragment, 1);
+    EXPECT_EQ(matches[0].of_template, 2);
+    EXPECT_EQ(matches[1].of_fragment, 2147483647);
+    EXPECT_FALSE(matches[1].of_template.has_value());
     EXPECT_TRUE(stated_matches(assembly, "bare").empty());
     EXPECT_TRUE(stated_matches(assembly, "absent").empty());
     EXPECT_EQ(unused_statements(assembly, {"top"}), std::vector<std::string>{"base"});
@@ -54,7 +54,7 @@ TEST(Assembly, StatedMatchesAreThoseOfTheFragment) {
     EXPECT_TRUE(unused_statements(assembly_of(""), {}).empty());
 }
 
-TEST(Assembly, WhatCannotBeMeantIsRefusedWithFileAndPlace) {
+TEST(Assembly, InvalidStatementsAreRefusedWithFileAndPointer) {
     for (const char* number : {"2147483648", "-2147483649", "4294967297", "99999999999999999999", "1.5"}) {
         const std::string text(number);
         EXPECT_TRUE(has(refusal(entry("top", R"({"ofFragment": 1, "stated": true, "ofTemplate": )" + text + "}")),
@@ -64,19 +64,19 @@ TEST(Assembly, WhatCannotBeMeantIsRefusedWithFileAndPlace) {
                         "/fragments/0/annotations/0/ofFragment"))
             << number;
     }
-    const std::string one = R"({"ofFragment": 1, "ofTemplate": 2, "stated": true})";
-    EXPECT_EQ(refusal(entry("top", one)), "nothing");
-    const std::string without = refusal(entry("top", one + R"(, {"ofFragment": 3, "stated": true})"));
+    const std::string match = R"({"ofFragment": 1, "ofTemplate": 2, "stated": true})";
+    EXPECT_EQ(refusal(entry("top", match)), "nothing");
+    const std::string without = refusal(entry("top", match + R"(, {"ofFragment": 3, "stated": true})"));
     EXPECT_TRUE(has(without, "/fragments/0/annotations/1") && has(without, "'top'") && has(without, "ofTemplate")) << without;
     const std::string misspelt = refusal(entry("top", R"({"ofFragment": 1, "oftemplate": 2, "stated": true})"));
     EXPECT_TRUE(has(misspelt, "/fragments/0/annotations/0") && has(misspelt, "'oftemplate'")) << misspelt;
-    const std::string twice = refusal(entry("top", one) + "," + entry("base", one) + "," + entry("top", one));
+    const std::string twice = refusal(entry("top", match) + "," + entry("base", match) + "," + entry("top", match));
     EXPECT_TRUE(has(twice, "/fragments/2") && has(twice, "'top'") && has(twice, "/fragments/0")) << twice;
-    const std::string settled = refusal(entry("top", one + "," + one));
+    const std::string settled = refusal(entry("top", match + "," + match));
     EXPECT_TRUE(has(settled, "/fragments/0/annotations/1") && has(settled, "already")) << settled;
 }
 
-TEST(Assembly, AnnotationsThatAreNotThereAreNamed) {
+TEST(Assembly, MissingAnnotationsAreNamed) {
     Fragment top;
     top.name = "top";
     AnnotationSet ours;
@@ -89,7 +89,7 @@ TEST(Assembly, AnnotationsThatAreNotThereAreNamed) {
         }
     const auto refused = [&](const std::string& match) {
         const Json assembly = assembly_of(entry("base", "") + "," + entry("top", match));
-        return said([&] { stated_matches(assembly, top, ours, "my.assembly.json"); });
+        return error_message([&] { stated_matches(assembly, top, ours, "my.assembly.json"); });
     };
     EXPECT_EQ(
         refused(R"({"ofFragment": 1, "ofTemplate": 1, "stated": true}, {"ofFragment": 0, "ofTemplate": null, "stated": true})"),
@@ -97,8 +97,9 @@ TEST(Assembly, AnnotationsThatAreNotThereAreNamed) {
     EXPECT_EQ(refused(R"({"ofFragment": 999, "ofTemplate": 999})"), "nothing") << "not stated";
     const std::string theirs = refused(R"({"ofFragment": 999, "ofTemplate": null, "stated": true})");
     EXPECT_TRUE(has(theirs, "/fragments/1/annotations/0") && has(theirs, "'top'") && has(theirs, "999")) << theirs;
-    const std::string whose = refused(R"({"ofFragment": 0, "ofTemplate": 998, "stated": true})");
-    EXPECT_TRUE(has(whose, "/fragments/1/annotations/0") && has(whose, "template") && has(whose, "998")) << whose;
+    const std::string ours_missing = refused(R"({"ofFragment": 0, "ofTemplate": 998, "stated": true})");
+    EXPECT_TRUE(has(ours_missing, "/fragments/1/annotations/0") && has(ours_missing, "template") && has(ours_missing, "998"))
+        << ours_missing;
     const std::string types = refused(R"({"ofFragment": 0, "ofTemplate": 1, "stated": true})");
     EXPECT_TRUE(has(types, "'top'") && has(types, "region") && has(types, "line")) << types;
 }

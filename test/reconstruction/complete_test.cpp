@@ -50,13 +50,13 @@ Mesh other_sphere(Index columns, double radius) {
 }
 
 void expect_sound(const CompletedObject& object, bool closed, int euler) {
-    const MeshDiagnosis what = diagnose(to_soup(object.mesh));
-    EXPECT_TRUE(what.manifold());
-    EXPECT_TRUE(what.oriented());
-    EXPECT_EQ(what.closed(), closed);
-    EXPECT_EQ(what.euler(), euler);
-    EXPECT_EQ(what.self_intersections, 0U);
-    EXPECT_EQ(what.isolated_vertices, 0U);
+    const MeshDiagnosis diagnosis = diagnose(to_soup(object.mesh));
+    EXPECT_TRUE(diagnosis.manifold());
+    EXPECT_TRUE(diagnosis.oriented());
+    EXPECT_EQ(diagnosis.closed(), closed);
+    EXPECT_EQ(diagnosis.euler(), euler);
+    EXPECT_EQ(diagnosis.self_intersections, 0U);
+    EXPECT_EQ(diagnosis.isolated_vertices, 0U);
     const std::size_t n = object.mesh.number_of_faces();
     ASSERT_EQ(object.origin.size(), n);
     ASSERT_EQ(object.fragment.size(), n);
@@ -128,7 +128,7 @@ TEST(Complete, OpenTemplatesStayOpen) {
     EXPECT_EQ(diagnose(to_soup(object.mesh)).border_edges, before.border_edges);
 }
 
-TEST(Complete, RoughBordersAreEvenedUntilTheyAreSimple) {
+TEST(Complete, RoughBordersAreErodedUntilTheyAreSimple) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     PlacedFragment cap =
         part(other_sphere(80, 1), [](const Point& p) { return p.z() + 0.1 * std::sin(40 * p.x() * p.y()) > 0.1; });
@@ -142,14 +142,14 @@ TEST(Complete, RoughBordersAreEvenedUntilTheyAreSimple) {
         cap.mesh.point(v) = point_of(eigen(cap.mesh.point(v)) + 0.02 * Vector3d(draw(), draw(), draw()));
     const CompletedObject object = complete(ball, {cap});
     EXPECT_TRUE(object.notes.empty()) << object.notes.front().text;
-    const MeshDiagnosis what = diagnose(to_soup(object.mesh));
-    EXPECT_TRUE(what.manifold());
-    EXPECT_TRUE(what.closed());
-    EXPECT_EQ(what.euler(), 2);
+    const MeshDiagnosis diagnosis = diagnose(to_soup(object.mesh));
+    EXPECT_TRUE(diagnosis.manifold());
+    EXPECT_TRUE(diagnosis.closed());
+    EXPECT_EQ(diagnosis.euler(), 2);
     EXPECT_GT(own_area(object, 0), 0.5 * surface_area(cap.mesh));
 }
 
-TEST(Complete, NoiseMakesNothingCrossAtTheSeam) {
+TEST(Complete, NoiseCausesNoIntersectionsAtTheSeam) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     std::uint64_t state = 1;
     const auto draw = [&] {
@@ -167,7 +167,7 @@ TEST(Complete, NoiseMakesNothingCrossAtTheSeam) {
     }
 }
 
-TEST(Complete, ManyPiecesThatLieOnTheFragmentItselfAreLeftOut) {
+TEST(Complete, PiecesThatLieOnTheFragmentItselfAreLeftOut) {
     // A scan with flakes: 30 small pieces just above the rest.
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     TriangleSoup soup = to_soup(part(other_sphere(80, 1), [](const Point& p) { return p.z() > -0.1; }).mesh);
@@ -190,7 +190,7 @@ TEST(Complete, ManyPiecesThatLieOnTheFragmentItselfAreLeftOut) {
     EXPECT_NEAR(own_area(object, 0), 2.2 * M_PI, 0.1);
 }
 
-TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
+TEST(Complete, DistantOppositeAndFractureFacesAreNotUsed) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     const PlacedFragment far_away = part(grown(ball, 1.2), [](const Point& p) { return p.z() > 0; });
     TriangleSoup inside_out = to_soup(part(ball, [](const Point& p) { return p.z() > 0; }).mesh);
@@ -198,11 +198,11 @@ TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
     PlacedFragment turned, broken = part(ball, [](const Point&p) { return p.z() > 0; });
     turned.mesh = build_mesh(inside_out);
     broken.facets.assign(broken.mesh.number_of_faces(), Facet::fracture);
-    for (const PlacedFragment* one : std::vector<const PlacedFragment*>{&far_away, &turned, &broken}) {
-        const CompletedObject object = complete(ball, {*one});
+    for (const PlacedFragment* fragment : std::vector<const PlacedFragment*>{&far_away, &turned, &broken}) {
+        const CompletedObject object = complete(ball, {*fragment});
         EXPECT_EQ(object.mesh.number_of_faces(), ball.number_of_faces());
         ASSERT_EQ(object.notes.size(), 1U);
-        EXPECT_NE(object.notes[0].text.find("nothing of it lies on the fitted template"), std::string::npos);
+        EXPECT_NE(object.notes[0].text.find("no part of it lies on the fitted template"), std::string::npos);
         for (const Origin origin : object.origin) EXPECT_EQ(origin, Origin::hypothesis);
         for (const double d : object.distance) EXPECT_EQ(d, -1);
     }
@@ -211,9 +211,9 @@ TEST(Complete, WhatIsFarOrTurnedAwayOrAFractureIsNotTaken) {
 
 TEST(Complete, WholeSurfacesAndTheTemplatesOwnTriangles) {
     const Mesh ball = build_mesh(test::octahedron_sphere(3));
-    PlacedFragment all;
-    all.mesh = ball;
-    EXPECT_EQ(complete(ball, {all}).mesh.number_of_faces(), ball.number_of_faces());
+    PlacedFragment whole_ball;
+    whole_ball.mesh = ball;
+    EXPECT_EQ(complete(ball, {whole_ball}).mesh.number_of_faces(), ball.number_of_faces());
     CompleteOptions options;
     options.join = false;
     const CompletedObject object = complete(ball, {part(other_sphere(60, 1), [](const Point& p) { return p.z() > 0; })}, options);
@@ -238,14 +238,14 @@ TEST(Complete, TheSameForAnyNumberOfThreadsAtAnyScaleAndFarAway) {
             cap.mesh = place(cap.mesh, shift);
             const Mesh ball = place(build_mesh(test::octahedron_sphere(4)), shift);
             set_threads(1);
-            const CompletedObject one = complete(ball, {cap});
+            const CompletedObject single = complete(ball, {cap});
             set_threads(2);
             const CompletedObject two = complete(ball, {cap});
             set_threads(before);
-            EXPECT_TRUE(one.notes.empty());
-            EXPECT_TRUE(diagnose(to_soup(one.mesh)).closed());
-            EXPECT_EQ(mesh_checksum(one.mesh), mesh_checksum(two.mesh));
-            EXPECT_EQ(one.confidence, two.confidence);
+            EXPECT_TRUE(single.notes.empty());
+            EXPECT_TRUE(diagnose(to_soup(single.mesh)).closed());
+            EXPECT_EQ(mesh_checksum(single.mesh), mesh_checksum(two.mesh));
+            EXPECT_EQ(single.confidence, two.confidence);
         }
     }
 }

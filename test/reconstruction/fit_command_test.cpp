@@ -39,7 +39,7 @@ protected:
     Scratch scratch;
 };
 
-TEST_F(FitCommand, CompletesAStatuetteAndSaysWhatWasSeen) {
+TEST_F(FitCommand, CompletesAStatuetteAndReportsWhatWasObserved) {
     const auto run = fit(quoted(scratch / "top.ply") + " --placed --json");
     EXPECT_EQ(run.code, 3) << run.err << run.out;
     const Json report = parse_json(run.out, "report");
@@ -50,10 +50,10 @@ TEST_F(FitCommand, CompletesAStatuetteAndSaysWhatWasSeen) {
     ASSERT_EQ(result["fragments"].Size(), 1U);
     EXPECT_STREQ(result["fragments"][0]["name"].GetString(), "top");
     EXPECT_TRUE(result["fragments"][0].HasMember("pose"));
-    const MeshFile whole = read_mesh(scratch / "out" / "completed.ply");
-    const std::set<std::int32_t> origins(whole.extras.face_labels.begin(), whole.extras.face_labels.end());
+    const MeshFile completed = read_mesh(scratch / "out" / "completed.ply");
+    const std::set<std::int32_t> origins(completed.extras.face_labels.begin(), completed.extras.face_labels.end());
     EXPECT_EQ(origins, (std::set<std::int32_t>{0, 1, 2}));
-    const AnnotationSet set = read_annotations(scratch / "out" / "completed.ant.json", whole.mesh);
+    const AnnotationSet set = read_annotations(scratch / "out" / "completed.ant.json", completed.mesh);
     EXPECT_GT(set.annotations.size(), 10U);
     EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
     const Json assembly = read_json(scratch / "out" / "fit.assembly.json");
@@ -61,7 +61,7 @@ TEST_F(FitCommand, CompletesAStatuetteAndSaysWhatWasSeen) {
     EXPECT_TRUE(assembly.HasMember("provenance"));
 }
 
-TEST_F(FitCommand, WhatAPersonStatesHolds) {
+TEST_F(FitCommand, StatedMatchesAreUsed) {
     ASSERT_EQ(fit(quoted(scratch / "top.ply")).code, 3);
     Json assembly = read_json(scratch / "out" / "fit.assembly.json");
     JsonValue& matches = assembly["fragments"][0]["annotations"];
@@ -82,7 +82,7 @@ TEST_F(FitCommand, WhatAPersonStatesHolds) {
     EXPECT_NE(wrong.err.find("4711"), std::string::npos) << wrong.err;
 }
 
-TEST_F(FitCommand, WrongWordsAndFilesAreSaid) {
+TEST_F(FitCommand, InvalidOptionsAndFilesAreReported) {
     EXPECT_EQ(run_command("fit " + quoted(scratch / "made" / "t.template.json") + " --output " + quoted(scratch / "out")).code,
               2);
     EXPECT_EQ(run_command("fit " + quoted(scratch / "made" / "t.template.json") + " " + quoted(scratch / "top.ply")).code, 2);
@@ -102,14 +102,14 @@ TEST_F(FitCommand, WrongWordsAndFilesAreSaid) {
     EXPECT_NE(two.out.find("landmark"), std::string::npos) << two.out;
 }
 
-TEST_F(FitCommand, WhatNothingSupportsIsNotCompatible) {
+TEST_F(FitCommand, AFragmentWithoutSupportIsNotCompatible) {
     // The same fragment twice.
     std::filesystem::copy(scratch / "top.ply", scratch / "again.ply");
     std::filesystem::copy(scratch / "top.ant.json", scratch / "again.ant.json");
     const auto twice = fit(quoted(scratch / "top.ply") + " " + quoted(scratch / "again.ply"));
     EXPECT_EQ(twice.code, 3);
     EXPECT_NE(twice.out.find("against again: "), std::string::npos) << twice.out;
-    EXPECT_NE(twice.out.find("where fragments before it are seen"), std::string::npos) << twice.out;
+    EXPECT_NE(twice.out.find("where earlier fragments are observed"), std::string::npos) << twice.out;
     EXPECT_NE(twice.out.find("incompatible"), std::string::npos);
     // Another unit, stated.
     Json annotations = read_json(scratch / "again.ant.json");
@@ -120,7 +120,7 @@ TEST_F(FitCommand, WhatNothingSupportsIsNotCompatible) {
     EXPECT_NE(unit.err.find("is in cm, and the template in mm"), std::string::npos) << unit.err;
 }
 
-TEST_F(FitCommand, NeitherInputsNorOldAnswersAreMixedUp) {
+TEST_F(FitCommand, InputsAndEarlierResultsAreNotMixedUp) {
     ASSERT_EQ(fit(quoted(scratch / "top.ply") + " --placed").code, 3);
     EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
     EXPECT_EQ(
@@ -146,7 +146,7 @@ TEST_F(FitCommand, NeitherInputsNorOldAnswersAreMixedUp) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "out" / "top.placed.ply"));
 }
 
-TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
+TEST_F(FitCommand, SearchesOfAnEarlierFitAreReusedIfNothingChanged) {
     // A piece of the template itself, without annotations.
     const auto broken = run_command("mesh break " + quoted(scratch / "made" / "statuette-1.ply") + " " +
                                     quoted(scratch / "bare.ply") + " --at 0,0,180 --share 0.45");
@@ -163,10 +163,10 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
     const Json kept = read_json(scratch / "out" / "fit.searches.json");
     validate(kept, "searches", "searches");
     const auto before = contents();
-    const auto again = fit(quoted(scratch / "bare.ply"));
-    EXPECT_NE(again.err.find("1 of 1 searches of poses are those of an earlier fit"), std::string::npos) << again.err;
+    const auto repeated = fit(quoted(scratch / "bare.ply"));
+    EXPECT_NE(repeated.err.find("1 of 1 searches of poses are those of an earlier fit"), std::string::npos) << repeated.err;
     EXPECT_EQ(contents(), before);
-    EXPECT_EQ(again.out, first.out);
+    EXPECT_EQ(repeated.out, first.out);
     // Another one comes, and goes.
     (void)fit(quoted(scratch / "bare.ply") + " " + quoted(scratch / "top.ply"));
     (void)fit(quoted(scratch / "bare.ply"));
@@ -175,7 +175,7 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
     EXPECT_EQ(fit(quoted(scratch / "bare.ply") + " --fresh").err.find("earlier fit"), std::string::npos);
     // Numbers that are not those that were written.
     Json changed = read_json(scratch / "out" / "fit.searches.json");
-    for (auto& one : changed["searches"].GetArray()) one["result"]["margin"].SetDouble(99);
+    for (auto& entry : changed["searches"].GetArray()) entry["result"]["margin"].SetDouble(99);
     write_json(scratch / "out" / "fit.searches.json", changed);
     const auto noticed = fit(quoted(scratch / "bare.ply"));
     EXPECT_NE(noticed.err.find("were changed since"), std::string::npos) << noticed.err;
@@ -197,9 +197,9 @@ TEST_F(FitCommand, SearchesOfAnEarlierFitAreTakenWhereNothingChanged) {
 
 TEST_F(FitCommand, FitsThroughACage) {
     const std::string package = quoted(scratch / "made" / "t.template.json"), top = quoted(scratch / "top.ply");
-    const auto made = fit(top + " --space cage");
-    EXPECT_EQ(made.code, 3) << made.err;
-    EXPECT_NE(made.err.find("has no cage"), std::string::npos) << made.err;
+    const auto generated = fit(top + " --space cage");
+    EXPECT_EQ(generated.code, 3) << generated.err;
+    EXPECT_NE(generated.err.find("has no cage"), std::string::npos) << generated.err;
     EXPECT_TRUE(std::filesystem::exists(scratch / "out" / "completed.ply"));
     // A cage of its own, and one that does not contain it.
     const std::string statuette = quoted(scratch / "made" / "statuette-1.ply");
@@ -209,13 +209,13 @@ TEST_F(FitCommand, FitsThroughACage) {
     ASSERT_EQ(run_command(pack + quoted(scratch / "made" / "cage.ply")).code, 0);
     const std::string caged = "fit " + quoted(scratch / "made" / "caged.template.json") + " " + top + " --space both --output " +
                               quoted(scratch / "out");
-    const auto own = run_command(caged);
-    EXPECT_EQ(own.code, 3) << own.err;
-    EXPECT_EQ(own.err.find("has no cage"), std::string::npos) << own.err;
+    const auto own_cage = run_command(caged);
+    EXPECT_EQ(own_cage.code, 3) << own_cage.err;
+    EXPECT_EQ(own_cage.err.find("has no cage"), std::string::npos) << own_cage.err;
     EXPECT_EQ(run_command("fit " + package + " " + top + " --space air --output " + quoted(scratch / "out")).code, 2);
 }
 
-TEST_F(FitCommand, BreakRefusesWhatItCannotDo) {
+TEST_F(FitCommand, BreakRefusesInvalidInput) {
     const std::string mesh = "mesh break " + quoted(scratch / "made" / "statuette-2.ply") + " " + quoted(scratch / "x.ply");
     EXPECT_EQ(run_command(mesh).code, 2);
     EXPECT_EQ(run_command(mesh + " --at 1,2").code, 2);

@@ -27,17 +27,17 @@ double worst_distance(const Mesh& mesh, const std::vector<Point>& points, const 
 }
 
 TEST(Fit, AFragmentOfTheTemplateItselfChangesNothing) {
-    const Mesh whole = body();
-    const AnnotationSet set = landmarks_of(whole);
+    const Mesh original = body();
+    const AnnotationSet set = landmarks_of(original);
     BreakOptions options;
     options.share = 0.4;
-    const Cut one = cut(whole, set, Point(0, 0, 1.8), options);
-    const Reconstruction result = reconstruct(whole, set, {}, {&one.fragment});
+    const Cut cut_piece = cut(original, set, Point(0, 0, 1.8), options);
+    const Reconstruction result = reconstruct(original, set, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     EXPECT_NEAR(result.placement.scale, 1, 1e-9);
-    EXPECT_LT((result.placement.fragments[0].pose.rotation - one.piece.pose.rotation).norm(), 1e-9);
-    for (const Vertex v : whole.vertices())
-        EXPECT_LT(std::sqrt(CGAL::squared_distance(result.points[v], whole.point(v))), 1e-6 * box_diagonal(whole));
+    EXPECT_LT((result.placement.fragments[0].pose.rotation - cut_piece.piece.pose.rotation).norm(), 1e-9);
+    for (const Vertex v : original.vertices())
+        EXPECT_LT(std::sqrt(CGAL::squared_distance(result.points[v], original.point(v))), 1e-6 * box_diagonal(original));
     EXPECT_EQ(result.verdict, Compatibility::undecided) << "one fragment, no constraint";
 }
 
@@ -45,24 +45,24 @@ TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);
     const double diagonal = box_diagonal(mesh);
-    const Mesh whole = deformed_by(
+    const Mesh original = deformed_by(
         mesh, [](const Vector3d& p) { return Vector3d(p.x() * (1 + 0.1 * p.z()), p.y() + 0.08 * p.z() * p.z(), 1.08 * p.z()); });
     BreakOptions options;
     options.share = 0.5;
-    const Cut one = cut(whole, set, Point(0, 0, 1.9), options);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     EXPECT_NEAR(result.observed_share, 0.5, 0.08);
-    std::vector<bool> seen(mesh.number_of_vertices(), false);
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = result.distance[i] >= 0;
-    const Mesh placed = moved(one.fragment.mesh, result.placement.fragments[0].pose);
-    EXPECT_LT(worst_distance(mesh, result.points, seen, placed), 0.005 * diagonal);
-    // Where nothing was seen, no farther from the truth than the template laid there, but for what its edge says of it.
-    const Motion frame = result.placement.fragments[0].pose.after(one.piece.pose.inverse());
+    std::vector<bool> observed(mesh.number_of_vertices(), false);
+    for (std::size_t i = 0; i < observed.size(); ++i) observed[i] = result.distance[i] >= 0;
+    const Mesh placed = moved(cut_piece.fragment.mesh, result.placement.fragments[0].pose);
+    EXPECT_LT(worst_distance(mesh, result.points, observed, placed), 0.005 * diagonal);
+    // Where nothing was observed, no farther from the truth than the registered template, apart from the effect of the edge.
+    const Motion frame = result.placement.fragments[0].pose.after(cut_piece.piece.pose.inverse());
     double fitted = 0, rigid = 0;
     for (const Vertex v : mesh.vertices()) {
-        if (seen[v]) continue;
-        const Vector3d truth = frame(eigen(whole.point(v)));
+        if (observed[v]) continue;
+        const Vector3d truth = frame(eigen(original.point(v)));
         fitted += (eigen(result.points[v]) - truth).squaredNorm();
         rigid += (result.placement.scale * eigen(mesh.point(v)) - truth).squaredNorm();
     }
@@ -70,17 +70,17 @@ TEST(Fit, TheObservedPartLiesOnTheFragmentAndTheRestFollows) {
     EXPECT_EQ(result.crossings, 0U);
 }
 
-TEST(Fit, WhatWasNotSeenKeepsItsSizeWhereTheFragmentIsNarrowAtTheBreak) {
+TEST(Fit, TheUnobservedPartKeepsItsSizeWhereTheFragmentIsNarrowAtTheFracture) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);
-    const Mesh whole = deformed_by(mesh, [](const Vector3d& p) {
+    const Mesh original = deformed_by(mesh, [](const Vector3d& p) {
         const double waist = 1 - 0.25 * std::exp(-std::pow(p.z() / 0.6, 2));
         return Vector3d(waist * p.x(), waist * p.y(), p.z());
     });
     BreakOptions options;
     options.share = 0.5;
-    const Cut one = cut(whole, set, Point(0, 0, 1.9), options);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
     ASSERT_TRUE(result.placement.any()) << result.placement.fragments[0].problem;
     // Of the end that is missing: how far its places are from their mean.
     std::vector<Vector3d> at_rest, fitted;
@@ -99,23 +99,23 @@ TEST(Fit, WhatWasNotSeenKeepsItsSizeWhereTheFragmentIsNarrowAtTheBreak) {
     EXPECT_NEAR(spread(fitted) / spread(at_rest), 1, 0.1);
 }
 
-TEST(Fit, NoiseIsNotCarriedIntoWhatWasNotSeen) {
+TEST(Fit, NoiseDoesNotSpreadIntoTheUnobservedPart) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);
     BreakOptions options;
     options.share = 0.3;
     options.noise = 0.005;
     options.erosion = 0.01;
-    const Cut one = cut(mesh, set, Point(0, 0, 1.9), options);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
-    const Motion frame = result.placement.fragments[0].pose.after(one.piece.pose.inverse());
+    const Cut cut_piece = cut(mesh, set, Point(0, 0, 1.9), options);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+    const Motion frame = result.placement.fragments[0].pose.after(cut_piece.piece.pose.inverse());
     for (const Vertex v : mesh.vertices())
         if (result.distance[v] < 0) {
             EXPECT_LT((eigen(result.points[v]) - frame(eigen(mesh.point(v)))).norm(), 0.03 * box_diagonal(mesh));
         }
 }
 
-TEST(Fit, PartsGoToTheirCounterpartsByPlaceOrByEquation51) {
+TEST(Fit, PartsMatchTheirCounterpartsByPositionOrByEquation51) {
     const Mesh mesh = body();
     AnnotationSet set = landmarks_of(mesh);
     Annotation head;
@@ -125,27 +125,27 @@ TEST(Fit, PartsGoToTheirCounterpartsByPlaceOrByEquation51) {
         if (centroid(mesh, face).z() > 1.2) head.faces.push_back(face);
     set.annotations.push_back(head);
     const double diagonal = box_diagonal(mesh);
-    const Mesh whole = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(1.1 * p.x(), p.y(), p.z() + 0.05 * p.x()); });
+    const Mesh original = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(1.1 * p.x(), p.y(), p.z() + 0.05 * p.x()); });
     AnnotationSet points = landmarks_of(mesh);
     BreakOptions options;
     options.share = 0.4;
-    Cut one = cut(whole, points, Point(0, 0, 1.9), options);
+    Cut cut_piece = cut(original, points, Point(0, 0, 1.9), options);
     Annotation part = head;
     part.faces.clear();
-    for (Index f = 0; f < one.piece.faces.size(); ++f)
-        if (std::binary_search(head.faces.begin(), head.faces.end(), one.piece.faces[f])) part.faces.push_back(f);
-    one.fragment.annotations.annotations.push_back(part);
+    for (Index f = 0; f < cut_piece.piece.faces.size(); ++f)
+        if (std::binary_search(head.faces.begin(), head.faces.end(), cut_piece.piece.faces[f])) part.faces.push_back(f);
+    cut_piece.fragment.annotations.annotations.push_back(part);
     for (const std::string counterparts : {"surface", "best", "one-to-one"}) {
-        ReconstructOptions how;
-        set_option(how.fit, "counterparts", counterparts);
-        const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, how);
+        ReconstructOptions fit_options;
+        set_option(fit_options.fit, "counterparts", counterparts);
+        const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment}, fit_options);
         ASSERT_TRUE(result.placement.any());
-        std::vector<bool> seen(mesh.number_of_vertices(), false);
+        std::vector<bool> observed(mesh.number_of_vertices(), false);
         for (const Index f : head.faces)
-            for (const Vertex v : corners(mesh, Face(f))) seen[v] = result.distance[v] >= 0;
-        EXPECT_GT(std::count(seen.begin(), seen.end(), true), 50) << counterparts;
-        const Mesh placed = moved(one.fragment.mesh, result.placement.fragments[0].pose);
-        EXPECT_LT(worst_distance(mesh, result.points, seen, placed), 0.01 * diagonal) << counterparts;
+            for (const Vertex v : corners(mesh, Face(f))) observed[v] = result.distance[v] >= 0;
+        EXPECT_GT(std::count(observed.begin(), observed.end(), true), 50) << counterparts;
+        const Mesh placed = moved(cut_piece.fragment.mesh, result.placement.fragments[0].pose);
+        EXPECT_LT(worst_distance(mesh, result.points, observed, placed), 0.01 * diagonal) << counterparts;
         // The rest of the surface lies no worse for it.
         EXPECT_NEAR(result.observed_share, 0.4, 0.1) << counterparts;
     }
@@ -154,9 +154,9 @@ TEST(Fit, PartsGoToTheirCounterpartsByPlaceOrByEquation51) {
 TEST(Fit, NothingIsFittedToAFracture) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    Cut one = cut(mesh, set, Point(0, 0, 1.8), {});
-    one.fragment.facets.assign(one.fragment.mesh.number_of_faces(), Facet::fracture);
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment});
+    Cut cut_piece = cut(mesh, set, Point(0, 0, 1.8), {});
+    cut_piece.fragment.facets.assign(cut_piece.fragment.mesh.number_of_faces(), Facet::fracture);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment});
     EXPECT_EQ(result.observed_share, 0);
     for (const auto& match : result.fit.matches) EXPECT_EQ(match.fragment, -1);
 }
@@ -164,33 +164,33 @@ TEST(Fit, NothingIsFittedToAFracture) {
 TEST(Fit, TheSameForAnyNumberOfThreadsAndFarAway) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    const Mesh whole = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(p.x(), p.y(), 1.1 * p.z()); });
-    const Cut one = cut(whole, set, Point(0, 0, 1.9), {});
+    const Mesh original = deformed_by(mesh, [](const Vector3d& p) { return Vector3d(p.x(), p.y(), 1.1 * p.z()); });
+    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), {});
     const int before = threads();
     set_threads(1);
-    const Reconstruction alone = reconstruct(mesh, set, {}, {&one.fragment});
+    const Reconstruction alone = reconstruct(mesh, set, {}, {&cut_piece.fragment});
     set_threads(4);
-    const Reconstruction many = reconstruct(mesh, set, {}, {&one.fragment});
+    const Reconstruction many = reconstruct(mesh, set, {}, {&cut_piece.fragment});
     set_threads(before);
     EXPECT_EQ(alone.points, many.points);
-    Fragment far = one.fragment.facets.empty() ? Fragment{"far", {}, {}, {}} : Fragment{};
+    Fragment far = cut_piece.fragment.facets.empty() ? Fragment{"far", {}, {}, {}} : Fragment{};
     Motion away;
     away.translation = Vector3d(1e5, -1e5, 1e5);
-    far.mesh = moved(one.fragment.mesh, away);
-    for (const auto& annotation : one.fragment.annotations.annotations) far.annotations.annotations.push_back(annotation);
-    const Reconstruction there = reconstruct(mesh, set, {}, {&far});
+    far.mesh = moved(cut_piece.fragment.mesh, away);
+    for (const auto& annotation : cut_piece.fragment.annotations.annotations) far.annotations.annotations.push_back(annotation);
+    const Reconstruction far_result = reconstruct(mesh, set, {}, {&far});
     for (std::size_t i = 0; i < alone.points.size(); ++i)
-        EXPECT_LT(std::sqrt(CGAL::squared_distance(alone.points[i], there.points[i])), 1e-4);
+        EXPECT_LT(std::sqrt(CGAL::squared_distance(alone.points[i], far_result.points[i])), 1e-4);
 }
 
 TEST(Fit, WithoutLandmarksItCannotDecide) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    Cut one = cut(mesh, set, Point(0, 0, 1.8), {});
-    one.fragment.annotations.annotations.clear();
+    Cut cut_piece = cut(mesh, set, Point(0, 0, 1.8), {});
+    cut_piece.fragment.annotations.annotations.clear();
     ReconstructOptions never;
     never.search.search = SearchOptions::Search::never;
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, never);
+    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment}, never);
     EXPECT_EQ(result.verdict, Compatibility::undecided);
     EXPECT_NE(result.undecided, "");
     ASSERT_EQ(result.objections.size(), 1U);
@@ -199,24 +199,24 @@ TEST(Fit, WithoutLandmarksItCannotDecide) {
     EXPECT_THROW(reconstruct(mesh, set, {}, {}), Error);
 }
 
-TEST(Fragments, HaveTheirShareAndTheirPose) {
-    const Mesh whole = body();
+TEST(Fragments, HaveTheRequestedShareAndPose) {
+    const Mesh original = body();
     BreakOptions options;
     for (const double share : {0.1, 0.25, 0.5}) {
         options.share = share;
-        const BrokenPiece piece = break_off(whole, Point(0, 0, 1.8), options);
-        EXPECT_NEAR(surface_area(piece.mesh), share * surface_area(whole), 0.02 * surface_area(whole));
+        const BrokenPiece piece = break_off(original, Point(0, 0, 1.8), options);
+        EXPECT_NEAR(surface_area(piece.mesh), share * surface_area(original), 0.02 * surface_area(original));
         for (const Vertex v : piece.mesh.vertices())
-            EXPECT_LT((piece.pose(eigen(piece.mesh.point(v))) - eigen(whole.point(Vertex(piece.vertices[v])))).norm(), 1e-12);
+            EXPECT_LT((piece.pose(eigen(piece.mesh.point(v))) - eigen(original.point(Vertex(piece.vertices[v])))).norm(), 1e-12);
         options.erosion = 0.03;
-        EXPECT_LT(surface_area(break_off(whole, Point(0, 0, 1.8), options).mesh), surface_area(piece.mesh));
+        EXPECT_LT(surface_area(break_off(original, Point(0, 0, 1.8), options).mesh), surface_area(piece.mesh));
         options.erosion = 0;
     }
     options.share = 0.01;
     options.erosion = 0.5;
-    EXPECT_THROW(break_off(whole, Point(0, 0, 1.8), options), Error);
+    EXPECT_THROW(break_off(original, Point(0, 0, 1.8), options), Error);
     options.share = 2;
-    EXPECT_THROW(break_off(whole, Point(0, 0, 1.8), options), Error);
+    EXPECT_THROW(break_off(original, Point(0, 0, 1.8), options), Error);
 }
 
 }  // namespace

@@ -32,15 +32,15 @@ protected:
     }
     /// The faces between two polar angles.
     [[nodiscard]] Annotation band(int id, const std::string& tag, double from, double to) const {
-        Annotation one;
-        one.id = id;
-        one.tag = tag;
+        Annotation annotation;
+        annotation.id = id;
+        annotation.tag = tag;
         for (const Face face : mesh.faces()) {
             const Vector3d c = eigen(centroid(mesh, face)).normalized();
             const double polar = std::acos(std::clamp(c.z(), -1.0, 1.0));
-            if (polar >= from && polar < to) one.faces.push_back(face);
+            if (polar >= from && polar < to) annotation.faces.push_back(face);
         }
-        return one;
+        return annotation;
     }
     /// The vertex of the annotation's outlines nearest to a place.
     [[nodiscard]] Index on_outline(const Annotation& region, const Vector3d& place) const {
@@ -55,32 +55,32 @@ protected:
     /// `kept`: of each face of the fragment; empty: all.
     struct Result {
         std::vector<Point> points;
-        std::vector<bool> there;  ///< vertices that the fragment has
+        std::vector<bool> is_observed;  ///< vertices that the fragment has
     };
-    [[nodiscard]] Result fit(const AnnotationSet& set, const Mesh& whole, const std::vector<bool>& kept, bool outlines,
-                             const std::vector<int>& without = {}, const std::string& counterparts = "surface") const {
-        SubMesh sub = keep_faces(whole, kept.empty() ? std::vector<bool>(whole.number_of_faces(), true) : kept);
-        std::vector<Index> face(whole.number_of_faces(), no_index), vertex(whole.number_of_vertices(), no_index);
+    [[nodiscard]] Result fit(const AnnotationSet& set, const Mesh& original, const std::vector<bool>& kept, bool outlines,
+                             const std::vector<int>& left_out = {}, const std::string& counterparts = "surface") const {
+        SubMesh sub = keep_faces(original, kept.empty() ? std::vector<bool>(original.number_of_faces(), true) : kept);
+        std::vector<Index> face(original.number_of_faces(), no_index), vertex(original.number_of_vertices(), no_index);
         for (Index f = 0; f < sub.faces.size(); ++f) face[sub.faces[f]] = f;
         Result result;
-        result.there.assign(whole.number_of_vertices(), false);
+        result.is_observed.assign(original.number_of_vertices(), false);
         for (Index v = 0; v < sub.vertices.size(); ++v) {
             vertex[sub.vertices[v]] = v;
-            result.there[sub.vertices[v]] = true;
+            result.is_observed[sub.vertices[v]] = true;
         }
         AnnotationSet theirs;
         PlacedFragment fragment;
-        for (const Annotation& one : set.annotations) {
-            Annotation other = one;
+        for (const Annotation& annotation : set.annotations) {
+            Annotation other = annotation;
             other.faces.clear();
             other.points.clear();
             other.polylines.clear();
-            for (const Index f : one.faces)
+            for (const Index f : annotation.faces)
                 if (face[f] != no_index) other.faces.push_back(face[f]);
             std::sort(other.faces.begin(), other.faces.end());
-            for (const Index v : one.points)
+            for (const Index v : annotation.points)
                 if (vertex[v] != no_index) other.points.push_back(vertex[v]);
-            for (const auto& line : one.polylines) {
+            for (const auto& line : annotation.polylines) {
                 std::vector<Index> part;
                 for (const Index v : line)
                     if (vertex[v] != no_index) part.push_back(vertex[v]);
@@ -88,26 +88,26 @@ protected:
                 if (part.size() > 1) other.polylines.push_back(part);
             }
             if (other.faces.empty() && other.points.empty() && other.polylines.empty()) continue;
-            if (std::find(without.begin(), without.end(), one.id) != without.end()) continue;
+            if (std::find(left_out.begin(), left_out.end(), annotation.id) != left_out.end()) continue;
             theirs.annotations.push_back(other);
-            fragment.matches.push_back({one.id, one.id, 1});
+            fragment.matches.push_back({annotation.id, annotation.id, 1});
         }
         fragment.mesh = std::move(sub.mesh);
         fragment.annotations = &theirs;
-        std::vector<PlacedFragment> list;
-        list.push_back(std::move(fragment));
+        std::vector<PlacedFragment> fragments;
+        fragments.push_back(std::move(fragment));
         NonRigidOptions options;
         options.outlines = outlines;
         set_option(options, "counterparts", counterparts);
-        result.points = fit_template(mesh, set, list, options).points;
+        result.points = fit_template(mesh, set, fragments, options).points;
         return result;
     }
     /// Root mean square distance of the vertices of a region from where they have gone, as far as the fragment has them.
-    [[nodiscard]] double error(const Result& result, const Mesh& whole, const Annotation& region) const {
+    [[nodiscard]] double error(const Result& result, const Mesh& original, const Annotation& region) const {
         double sum = 0, count = 0;
         for (const Index v : touched_vertices(mesh, region)) {
-            if (!result.there[v]) continue;
-            sum += CGAL::squared_distance(result.points[v], whole.point(Vertex(v)));
+            if (!result.is_observed[v]) continue;
+            sum += CGAL::squared_distance(result.points[v], original.point(Vertex(v)));
             ++count;
         }
         return std::sqrt(sum / count);
@@ -115,15 +115,15 @@ protected:
     Mesh mesh;
 };
 
-TEST_F(SlidParts, AnOutlineSaysHowFarARegionHasSlid) {
+TEST_F(SlidParts, AnOutlineDeterminesHowFarARegionHasSlid) {
     const Annotation disc = band(100, "disc", 0, 0.6);
     AnnotationSet set;
     set.annotations = {disc, landmark(1, "left", on_outline(disc, {-0.6, 0, 0.8})),
                        landmark(2, "right", on_outline(disc, {0.6, 0, 0.8}))};
-    const Mesh whole = slid(20, 0.7);
-    const Result with = fit(set, whole, {}, true), without = fit(set, whole, {}, false);
-    EXPECT_LT(error(with, whole, disc), 0.5 * error(without, whole, disc));
-    EXPECT_LT(error(with, whole, disc), 0.02);
+    const Mesh original = slid(20, 0.7);
+    const Result with_outlines = fit(set, original, {}, true), without_outlines = fit(set, original, {}, false);
+    EXPECT_LT(error(with_outlines, original, disc), 0.5 * error(without_outlines, original, disc));
+    EXPECT_LT(error(with_outlines, original, disc), 0.02);
 }
 
 TEST_F(SlidParts, EachOfSeveralOutlinesCounts) {
@@ -131,9 +131,9 @@ TEST_F(SlidParts, EachOfSeveralOutlinesCounts) {
     AnnotationSet set;
     set.annotations = {ring, landmark(1, "inner", on_outline(ring, {0.34, 0, 0.94})),
                        landmark(2, "outer", on_outline(ring, {-0.64, 0, 0.77}))};
-    const Mesh whole = slid(15, 0.75);
-    const Result with = fit(set, whole, {}, true), without = fit(set, whole, {}, false);
-    EXPECT_LT(error(with, whole, ring), 0.5 * error(without, whole, ring));
+    const Mesh original = slid(15, 0.75);
+    const Result with_outlines = fit(set, original, {}, true), without_outlines = fit(set, original, {}, false);
+    EXPECT_LT(error(with_outlines, original, ring), 0.5 * error(without_outlines, original, ring));
 }
 
 TEST_F(SlidParts, APartOfAnOutlineWithOneLandmarkHelps) {
@@ -141,14 +141,14 @@ TEST_F(SlidParts, APartOfAnOutlineWithOneLandmarkHelps) {
     AnnotationSet set;
     set.annotations = {disc, landmark(1, "left", on_outline(disc, {-0.6, 0, 0.8})),
                        landmark(2, "right", on_outline(disc, {0.6, 0, 0.8}))};
-    const Mesh whole = slid(20, 0.7);
+    const Mesh original = slid(20, 0.7);
     std::vector<bool> half(mesh.number_of_faces());
     for (const Face face : mesh.faces()) half[face] = centroid(mesh, face).x() < 0.1;
-    const Result with = fit(set, whole, half, true), without = fit(set, whole, half, false);
-    EXPECT_LT(error(with, whole, disc), 0.8 * error(without, whole, disc));
+    const Result with_outlines = fit(set, original, half, true), without_outlines = fit(set, original, half, false);
+    EXPECT_LT(error(with_outlines, original, disc), 0.8 * error(without_outlines, original, disc));
 }
 
-TEST_F(SlidParts, LinesCorrespondWhicheverWayTheyAreGiven) {
+TEST_F(SlidParts, LinesCorrespondInEitherDirection) {
     // A meridian's part, and its end as a landmark; the fragment's line is told from its other end.
     Annotation line;
     line.id = 100;
@@ -164,12 +164,12 @@ TEST_F(SlidParts, LinesCorrespondWhicheverWayTheyAreGiven) {
     line.polylines = {vertices};
     AnnotationSet set;
     set.annotations = {line, landmark(1, "top", vertices.front()), landmark(2, "end", vertices.back())};
-    const Mesh whole = slid(15, 1.1);
-    const Result with = fit(set, whole, {}, true), without = fit(set, whole, {}, false);
-    EXPECT_LT(error(with, whole, line), 0.6 * error(without, whole, line));
+    const Mesh original = slid(15, 1.1);
+    const Result with_outlines = fit(set, original, {}, true), without_outlines = fit(set, original, {}, false);
+    EXPECT_LT(error(with_outlines, original, line), 0.6 * error(without_outlines, original, line));
 }
 
-TEST_F(SlidParts, WhatAnOuterPartAsksDoesNotUndoAnInnerOne) {
+TEST_F(SlidParts, AnOuterPartDoesNotOverrideAnInnerOne) {
     // The inner part has slid, the outer one's outline has not.
     const Annotation inner = band(100, "inner", 0, 0.35), outer = band(101, "outer", 0, 1.35);
     AnnotationSet set;
@@ -179,11 +179,11 @@ TEST_F(SlidParts, WhatAnOuterPartAsksDoesNotUndoAnInnerOne) {
                        landmark(2, "b", on_outline(inner, {-0.34, 0, 0.94})),
                        landmark(3, "c", on_outline(outer, {1, 0, 0.2})),
                        landmark(4, "d", on_outline(outer, {-1, 0, 0.2}))};
-    const Mesh whole = slid(20, 0.4);
+    const Mesh original = slid(20, 0.4);
     for (const std::string counterparts : {"surface", "best"}) {
-        const double alone = error(fit(set, whole, {}, true, {101, 3, 4}, counterparts), whole, inner);
-        const double both = error(fit(set, whole, {}, true, {}, counterparts), whole, inner);
-        const double without = error(fit(set, whole, {}, true, {100, 1, 2}, counterparts), whole, inner);
+        const double alone = error(fit(set, original, {}, true, {101, 3, 4}, counterparts), original, inner);
+        const double both = error(fit(set, original, {}, true, {}, counterparts), original, inner);
+        const double without = error(fit(set, original, {}, true, {100, 1, 2}, counterparts), original, inner);
         EXPECT_LT(both, alone + 0.05 * without) << counterparts;
         EXPECT_LT(both, 0.2 * without) << counterparts;
     }

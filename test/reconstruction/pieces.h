@@ -32,12 +32,12 @@ inline Mesh deformed_by(const Mesh& mesh, const std::function<Eigen::Vector3d(co
 }
 
 inline Annotation landmark(int id, const std::string& tag, Index vertex) {
-    Annotation one;
-    one.id = id;
-    one.tag = tag;
-    one.type = AnnotationType::point;
-    one.points = {vertex};
-    return one;
+    Annotation annotation;
+    annotation.id = id;
+    annotation.tag = tag;
+    annotation.type = AnnotationType::point;
+    annotation.points = {vertex};
+    return annotation;
 }
 
 /// Forty vertices spread over the index range as landmarks.
@@ -54,15 +54,15 @@ struct Cut {
     Fragment fragment;
     BrokenPiece piece;
 };
-inline Cut cut(const Mesh& whole, const AnnotationSet& set, const Point& centre, const BreakOptions& options) {
-    Cut result{{"piece", {}, {}, {}}, break_off(whole, centre, options)};
+inline Cut cut(const Mesh& original, const AnnotationSet& set, const Point& centre, const BreakOptions& options) {
+    Cut result{{"piece", {}, {}, {}}, break_off(original, centre, options)};
     result.fragment.mesh = result.piece.mesh;
-    for (const Annotation& one : set.annotations) {
+    for (const Annotation& annotation : set.annotations) {
         const auto& kept = result.piece.vertices;
-        const auto found = std::find(kept.begin(), kept.end(), one.points.front());
-        if (found != kept.end())
+        const auto entry = std::find(kept.begin(), kept.end(), annotation.points.front());
+        if (entry != kept.end())
             result.fragment.annotations.annotations.push_back(
-                landmark(one.id, one.tag, static_cast<Index>(found - kept.begin())));
+                landmark(annotation.id, annotation.tag, static_cast<Index>(entry - kept.begin())));
     }
     return result;
 }

@@ -28,10 +28,10 @@ Motion random_motion(Random& random, double scale = 1) {
 /// Landmarks of a template that is `scale` times as large in truth, on a fragment that `pose` would carry back.
 std::vector<LandmarkPair> landmarks(Random& random, int count, double scale, const Motion& pose, double noise = 0) {
     std::vector<LandmarkPair> pairs;
-    const Motion there = pose.inverse();
+    const Motion inverse_pose = pose.inverse();
     for (int i = 0; i < count; ++i) {
         const Vector3d place = random_place(random);
-        pairs.push_back({"landmark " + std::to_string(i), place, there(scale * place + noise * random_place(random))});
+        pairs.push_back({"landmark " + std::to_string(i), place, inverse_pose(scale * place + noise * random_place(random))});
     }
     return pairs;
 }
@@ -40,26 +40,27 @@ TEST(Placement, FindsOneScaleAndThePoseOfEachFragment) {
     for (const double scale : {1.0, 0.01, 250.0}) {
         Random random(3);
         const Motion first = random_motion(random), second = random_motion(random);
-        const CommonPlacement found =
+        const CommonPlacement placement =
             place_by_landmarks({landmarks(random, 4, scale, first), landmarks(random, 7, scale, second)});
-        EXPECT_NEAR(found.scale, scale, 1e-12 * scale);
-        for (const auto& [one, pose] : {std::pair(found.fragments[0], first), std::pair(found.fragments[1], second)}) {
-            EXPECT_EQ(one.problem, "");
-            EXPECT_LT((one.pose.rotation - pose.rotation).norm(), 1e-12);
-            EXPECT_LT((one.pose.translation - pose.translation).norm(), 1e-11 * (1 + scale));
-            EXPECT_EQ(one.pose.scale, 1);
-            EXPECT_NEAR(one.own_scale, scale, 1e-11 * scale);
-            EXPECT_LT(one.residual, 1e-11 * (1 + scale));
+        EXPECT_NEAR(placement.scale, scale, 1e-12 * scale);
+        for (const auto& [fragment, pose] :
+             {std::pair(placement.fragments[0], first), std::pair(placement.fragments[1], second)}) {
+            EXPECT_EQ(fragment.problem, "");
+            EXPECT_LT((fragment.pose.rotation - pose.rotation).norm(), 1e-12);
+            EXPECT_LT((fragment.pose.translation - pose.translation).norm(), 1e-11 * (1 + scale));
+            EXPECT_EQ(fragment.pose.scale, 1);
+            EXPECT_NEAR(fragment.own_scale, scale, 1e-11 * scale);
+            EXPECT_LT(fragment.residual, 1e-11 * (1 + scale));
         }
     }
 }
 
 // The sum of squares over scale and poses can only grow by going elsewhere.
-TEST(Placement, IsTheLeastSumOfSquares) {
+TEST(Placement, MinimisesTheSumOfSquares) {
     Random random(5);
     const std::vector<std::vector<LandmarkPair>> pairs{landmarks(random, 4, 2, random_motion(random), 0.1),
                                                        landmarks(random, 4, 2, random_motion(random), 0.1)};
-    const CommonPlacement found = place_by_landmarks(pairs);
+    const CommonPlacement placement = place_by_landmarks(pairs);
     const auto cost = [&](double scale, const std::vector<Motion>& poses) {
         double sum = 0;
         for (std::size_t k = 0; k < 2; ++k)
@@ -67,8 +68,8 @@ TEST(Placement, IsTheLeastSumOfSquares) {
                 sum += (poses[k](pair.on_fragment) - scale * pair.on_template).squaredNorm();
         return sum;
     };
-    const std::vector<Motion> best{found.fragments[0].pose, found.fragments[1].pose};
-    const double minimum = cost(found.scale, best);
+    const std::vector<Motion> best{placement.fragments[0].pose, placement.fragments[1].pose};
+    const double minimum = cost(placement.scale, best);
     for (int trial = 0; trial < 200; ++trial) {
         std::vector<Motion> other = best;
         for (Motion& pose : other) {
@@ -78,20 +79,20 @@ TEST(Placement, IsTheLeastSumOfSquares) {
             step.translation = 0.01 * random_place(random);
             pose = step.after(pose);
         }
-        EXPECT_GE(cost(found.scale * (1 + 0.01 * random.normal()), other), minimum);
+        EXPECT_GE(cost(placement.scale * (1 + 0.01 * random.normal()), other), minimum);
     }
 }
 
-TEST(Placement, OneWrongPairInSixIsFound) {
+TEST(Placement, OneOutlierInSixIsDetected) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         Random random(seed);
         const Motion pose = random_motion(random);
         auto pairs = landmarks(random, 6, 1, pose, 0.01);
         const std::size_t wrong = random.below(6);
         pairs[wrong].on_fragment = pose.inverse()(pairs[wrong].on_template + 1.5 * random_place(random).normalized());
-        const CommonPlacement found = place_by_landmarks({pairs});
-        for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(found.fragments[0].landmarks[i].used, i != wrong) << seed << ' ' << i;
-        EXPECT_LT((found.fragments[0].pose.rotation - pose.rotation).norm(), 0.1);
+        const CommonPlacement placement = place_by_landmarks({pairs});
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(placement.fragments[0].landmarks[i].used, i != wrong) << seed << ' ' << i;
+        EXPECT_LT((placement.fragments[0].pose.rotation - pose.rotation).norm(), 0.1);
     }
 }
 
@@ -102,9 +103,9 @@ TEST(Placement, ExchangedTagsAreNamed) {
         const std::size_t first = random.below(11);
         std::swap(pairs[first].on_fragment, pairs[first + 1].on_fragment);
         if ((pairs[first].on_template - pairs[first + 1].on_template).norm() < 0.8) continue;
-        const FragmentPlacement found = place_by_landmarks({pairs}).fragments[0];
-        ASSERT_EQ(found.swapped.size(), 1U) << seed;
-        EXPECT_EQ(found.swapped[0], std::pair(pairs[first].name, pairs[first + 1].name));
+        const FragmentPlacement placement = place_by_landmarks({pairs}).fragments[0];
+        ASSERT_EQ(placement.swapped.size(), 1U) << seed;
+        EXPECT_EQ(placement.swapped[0], std::pair(pairs[first].name, pairs[first + 1].name));
     }
 }
 
@@ -113,26 +114,26 @@ TEST(Placement, ProportionsOfAnotherMemberAreNotLeftOut) {
     Random random(9);
     const Motion pose = random_motion(random);
     auto pairs = landmarks(random, 9, 1, pose);
-    const Motion there = pose.inverse();
+    const Motion inverse_pose = pose.inverse();
     for (LandmarkPair& pair : pairs) {
         Vector3d place = pair.on_template;
         place.z() *= place.z() > 0 ? 1.25 : 1;
-        pair.on_fragment = there(place);
+        pair.on_fragment = inverse_pose(place);
     }
-    const CommonPlacement found = place_by_landmarks({pairs});
-    for (const LandmarkResidual& landmark : found.fragments[0].landmarks) EXPECT_TRUE(landmark.used);
-    EXPECT_TRUE(found.fragments[0].swapped.empty());
+    const CommonPlacement placement = place_by_landmarks({pairs});
+    for (const LandmarkResidual& landmark : placement.fragments[0].landmarks) EXPECT_TRUE(landmark.used);
+    EXPECT_TRUE(placement.fragments[0].swapped.empty());
 }
 
-TEST(Placement, SaysWhyAFragmentIsNotPlaced) {
+TEST(Placement, ReportsWhyAFragmentIsNotPlaced) {
     Random random(4);
     const Motion pose = random_motion(random);
     const auto good = landmarks(random, 5, 1, pose);
     const auto problem = [&](std::vector<LandmarkPair> pairs) {
-        const CommonPlacement found = place_by_landmarks({good, std::move(pairs), good});
-        EXPECT_NEAR(found.scale, 1, 1e-12) << "who is not placed does not count";
-        EXPECT_TRUE(found.any());
-        return found.fragments[1].problem;
+        const CommonPlacement placement = place_by_landmarks({good, std::move(pairs), good});
+        EXPECT_NEAR(placement.scale, 1, 1e-12) << "fragments that are not placed do not count";
+        EXPECT_TRUE(placement.any());
+        return placement.fragments[1].problem;
     };
     EXPECT_EQ(problem(good), "");
     EXPECT_NE(problem({}).find("0 landmarks"), std::string::npos);
@@ -158,17 +159,17 @@ TEST(Placement, SaysWhyAFragmentIsNotPlaced) {
     EXPECT_THROW(place_by_landmarks({broken}), Error);
 }
 
-TEST(Placement, CommonLandmarksAreThoseOfOneTagOnEitherSide) {
+TEST(Placement, CommonLandmarksHaveAUniqueTagOnEitherSide) {
     const Mesh mesh = build_mesh(test::octahedron_sphere(1));
     const auto set_of = [](const std::vector<std::pair<std::string, Index>>& points) {
         AnnotationSet set;
         for (const auto& [tag, vertex] : points) {
-            Annotation one;
-            one.id = static_cast<int>(set.annotations.size());
-            one.tag = tag;
-            one.type = AnnotationType::point;
-            one.points = {vertex};
-            set.annotations.push_back(one);
+            Annotation annotation;
+            annotation.id = static_cast<int>(set.annotations.size());
+            annotation.tag = tag;
+            annotation.type = AnnotationType::point;
+            annotation.points = {vertex};
+            set.annotations.push_back(annotation);
         }
         return set;
     };
@@ -182,7 +183,7 @@ TEST(Placement, CommonLandmarksAreThoseOfOneTagOnEitherSide) {
     EXPECT_EQ(pairs[1].on_fragment, Vector3d(0, -1, 0));
     ASSERT_EQ(notes.size(), 3U);
     EXPECT_NE(notes[0].find("'ear' is not on the template, which has 'Ear'"), std::string::npos);
-    EXPECT_NE(notes[1].find("'eye' is there more than once"), std::string::npos);
+    EXPECT_NE(notes[1].find("'eye' occurs more than once"), std::string::npos);
     EXPECT_NE(notes[2].find("'horn' is not on the template"), std::string::npos);
     AnnotationSet path = set_of({{"chin", 5}, {"nose", 3}});
     path.annotations[0].points.push_back(4);

@@ -16,30 +16,30 @@ using namespace test;
 using Eigen::Vector3d;
 
 /// All that a reconstruction says, to the bit.
-void expect_same(const Reconstruction& a, const Reconstruction& b, const std::string& what) {
-    EXPECT_EQ(a.placement.scale, b.placement.scale) << what;
-    ASSERT_EQ(a.placement.fragments.size(), b.placement.fragments.size()) << what;
+void expect_same(const Reconstruction& a, const Reconstruction& b, const std::string& context) {
+    EXPECT_EQ(a.placement.scale, b.placement.scale) << context;
+    ASSERT_EQ(a.placement.fragments.size(), b.placement.fragments.size()) << context;
     for (std::size_t k = 0; k < a.placement.fragments.size(); ++k) {
-        const FragmentPlacement &one = a.placement.fragments[k], &other = b.placement.fragments[k];
-        EXPECT_EQ(one.pose.rotation, other.pose.rotation) << what;
-        EXPECT_EQ(one.pose.translation, other.pose.translation) << what;
-        EXPECT_EQ(one.residual, other.residual) << what;
-        EXPECT_EQ(one.problem, other.problem) << what;
+        const FragmentPlacement &first = a.placement.fragments[k], &second = b.placement.fragments[k];
+        EXPECT_EQ(first.pose.rotation, second.pose.rotation) << context;
+        EXPECT_EQ(first.pose.translation, second.pose.translation) << context;
+        EXPECT_EQ(first.residual, second.residual) << context;
+        EXPECT_EQ(first.problem, second.problem) << context;
     }
-    EXPECT_EQ(a.points, b.points) << what;
-    EXPECT_EQ(a.distance, b.distance) << what;
-    EXPECT_EQ(mesh_checksum(a.object.mesh), mesh_checksum(b.object.mesh)) << what;
-    EXPECT_EQ(a.object.fragment, b.object.fragment) << what;
-    EXPECT_EQ(a.object.confidence, b.object.confidence) << what;
-    EXPECT_EQ(a.crossings, b.crossings) << what;
-    EXPECT_EQ(a.strain, b.strain) << what;
-    EXPECT_EQ(a.verdict, b.verdict) << what;
-    ASSERT_EQ(a.annotations.size(), b.annotations.size()) << what;
+    EXPECT_EQ(a.points, b.points) << context;
+    EXPECT_EQ(a.distance, b.distance) << context;
+    EXPECT_EQ(mesh_checksum(a.object.mesh), mesh_checksum(b.object.mesh)) << context;
+    EXPECT_EQ(a.object.fragment, b.object.fragment) << context;
+    EXPECT_EQ(a.object.confidence, b.object.confidence) << context;
+    EXPECT_EQ(a.crossings, b.crossings) << context;
+    EXPECT_EQ(a.strain, b.strain) << context;
+    EXPECT_EQ(a.verdict, b.verdict) << context;
+    ASSERT_EQ(a.annotations.size(), b.annotations.size()) << context;
     for (std::size_t k = 0; k < a.annotations.size(); ++k) {
-        ASSERT_EQ(a.annotations[k].size(), b.annotations[k].size()) << what;
+        ASSERT_EQ(a.annotations[k].size(), b.annotations[k].size()) << context;
         for (std::size_t i = 0; i < a.annotations[k].size(); ++i) {
-            EXPECT_EQ(a.annotations[k][i].of_template, b.annotations[k][i].of_template) << what;
-            EXPECT_EQ(a.annotations[k][i].score, b.annotations[k][i].score) << what;
+            EXPECT_EQ(a.annotations[k][i].of_template, b.annotations[k][i].of_template) << context;
+            EXPECT_EQ(a.annotations[k][i].score, b.annotations[k][i].score) << context;
         }
     }
 }
@@ -47,7 +47,7 @@ void expect_same(const Reconstruction& a, const Reconstruction& b, const std::st
 /// A template with landmarks and a region, and three fragments of a deformed object; one has no landmarks.
 struct Pieces {
     explicit Pieces(int levels) : mesh(body(levels)), set(landmarks_of(mesh)) {
-        const Mesh whole = deformed_by(
+        const Mesh original = deformed_by(
             mesh, [](const Vector3d& p) { return Vector3d(1.05 * p.x(), p.y() + 0.04 * p.z() * p.z(), 1.08 * p.z()); });
         Annotation head;
         head.id = 100;
@@ -61,17 +61,18 @@ struct Pieces {
         options.noise = 0.001;
         const std::vector<Point> places{Point(0, 0, 1.9), Point(0, 0, -1.9), Point(1.2, 0, 0)};
         for (std::size_t k = 0; k < places.size(); ++k) {
-            Cut one = cut(whole, points, places[k], options);
-            one.fragment.name = "piece " + std::to_string(k);
+            Cut cut_piece = cut(original, points, places[k], options);
+            cut_piece.fragment.name = "piece " + std::to_string(k);
             if (k == 0) {
                 Annotation part = head;
                 part.faces.clear();
-                for (Index f = 0; f < one.piece.faces.size(); ++f)
-                    if (std::binary_search(head.faces.begin(), head.faces.end(), one.piece.faces[f])) part.faces.push_back(f);
-                one.fragment.annotations.annotations.push_back(part);
+                for (Index f = 0; f < cut_piece.piece.faces.size(); ++f)
+                    if (std::binary_search(head.faces.begin(), head.faces.end(), cut_piece.piece.faces[f]))
+                        part.faces.push_back(f);
+                cut_piece.fragment.annotations.annotations.push_back(part);
             }
-            if (k == 2) one.fragment.annotations.annotations.clear();
-            fragments.push_back(std::move(one.fragment));
+            if (k == 2) cut_piece.fragment.annotations.annotations.clear();
+            fragments.push_back(std::move(cut_piece.fragment));
         }
     }
     Mesh mesh;
@@ -84,20 +85,20 @@ TEST(Reconstructor, AddingAndRemovingIsTheSameAsFromScratch) {
     // With and without a simplified template.
     for (const int levels : {4, 6}) {
         const Pieces pieces(levels);
-        Reconstructor all(pieces.mesh, pieces.set, pieces.graph);
-        std::vector<std::size_t> there;
-        const auto check = [&](const std::string& what) {
-            std::vector<const Fragment*> list;
-            for (const std::size_t k : there) list.push_back(&pieces.fragments[k]);
-            expect_same(all.run(), reconstruct(pieces.mesh, pieces.set, pieces.graph, list), what);
+        Reconstructor reconstructor(pieces.mesh, pieces.set, pieces.graph);
+        std::vector<std::size_t> present;
+        const auto check = [&](const std::string& context) {
+            std::vector<const Fragment*> fragments;
+            for (const std::size_t k : present) fragments.push_back(&pieces.fragments[k]);
+            expect_same(reconstructor.run(), reconstruct(pieces.mesh, pieces.set, pieces.graph, fragments), context);
         };
         const auto add = [&](std::size_t k) {
-            all.add(pieces.fragments[k]);
-            there.push_back(k);
+            reconstructor.add(pieces.fragments[k]);
+            present.push_back(k);
         };
         const auto remove = [&](std::size_t position) {
-            all.remove(position);
-            there.erase(there.begin() + static_cast<std::ptrdiff_t>(position));
+            reconstructor.remove(position);
+            present.erase(present.begin() + static_cast<std::ptrdiff_t>(position));
         };
         add(0);
         check("one");
@@ -115,42 +116,42 @@ TEST(Reconstructor, AddingAndRemovingIsTheSameAsFromScratch) {
         check("without the third");
         remove(0);
         check("the first again");
-        EXPECT_EQ(all.size(), 1U);
+        EXPECT_EQ(reconstructor.size(), 1U);
     }
 }
 
-TEST(Reconstructor, SearchesOfAFragmentAreMadeOnce) {
+TEST(Reconstructor, AFragmentIsSearchedOnce) {
     const Pieces pieces(4);
-    Reconstructor all(pieces.mesh, pieces.set, pieces.graph);
-    all.add(pieces.fragments[2]);
-    (void)all.run();
-    EXPECT_EQ(all.searches().made(), 1U);
-    all.remove(0);
-    all.add(pieces.fragments[2]);
-    (void)all.run();
-    EXPECT_EQ(all.searches().made(), 1U);
-    EXPECT_EQ(all.searches().reused(), 1U);
+    Reconstructor reconstructor(pieces.mesh, pieces.set, pieces.graph);
+    reconstructor.add(pieces.fragments[2]);
+    (void)reconstructor.run();
+    EXPECT_EQ(reconstructor.searches().made(), 1U);
+    reconstructor.remove(0);
+    reconstructor.add(pieces.fragments[2]);
+    (void)reconstructor.run();
+    EXPECT_EQ(reconstructor.searches().made(), 1U);
+    EXPECT_EQ(reconstructor.searches().reused(), 1U);
 }
 
-TEST(Reconstructor, RefusesWhatIsNotThere) {
+TEST(Reconstructor, RefusesMissingFragmentsAndPositions) {
     const Pieces pieces(3);
-    Reconstructor all(pieces.mesh, pieces.set, pieces.graph);
-    EXPECT_THROW((void)all.run(), Error);
-    EXPECT_THROW(all.remove(0), Error);
-    all.add(pieces.fragments[0]);
-    EXPECT_THROW(all.remove(1), Error);
+    Reconstructor reconstructor(pieces.mesh, pieces.set, pieces.graph);
+    EXPECT_THROW((void)reconstructor.run(), Error);
+    EXPECT_THROW(reconstructor.remove(0), Error);
+    reconstructor.add(pieces.fragments[0]);
+    EXPECT_THROW(reconstructor.remove(1), Error);
     Mesh turned = pieces.mesh;
     for (const Vertex v : turned.vertices()) turned.point(v) = point_of(-eigen(turned.point(v)));
     const Fragment inside_out{"turned", turned, {}, {}};
-    EXPECT_THROW(all.add(inside_out), Error);
-    EXPECT_EQ(all.size(), 1U);
+    EXPECT_THROW(reconstructor.add(inside_out), Error);
+    EXPECT_EQ(reconstructor.size(), 1U);
 }
 
 class PoseSearchFile : public ::testing::Test {
 protected:
     PoseSearchFile() : pieces(4), searches(pieces.mesh, {}) {
-        const auto found = searches.find(pieces.fragments[2], 1, 1);
-        EXPECT_TRUE(found.has_value());
+        const auto result = searches.find(pieces.fragments[2], 1, 1);
+        EXPECT_TRUE(result.has_value());
         document.CopyFrom(parse_json(to_text(searches.to_json(document.GetAllocator())), "searches"), document.GetAllocator());
     }
     Pieces pieces;
@@ -158,25 +159,25 @@ protected:
     Json document;
 };
 
-TEST_F(PoseSearchFile, ComesBackToTheBit) {
+TEST_F(PoseSearchFile, IsRestoredToTheBit) {
     validate(document, "searches", "searches");
     PoseSearches again(pieces.mesh, {});
     EXPECT_EQ(again.add(document, "searches"), 0U);
-    const auto one = again.find(pieces.fragments[2], 1, 1), other = searches.find(pieces.fragments[2], 1, 1);
+    const auto restored = again.find(pieces.fragments[2], 1, 1), other = searches.find(pieces.fragments[2], 1, 1);
     EXPECT_EQ(again.made(), 0U);
     EXPECT_EQ(again.reused(), 1U);
-    ASSERT_EQ(one->candidates.size(), other->candidates.size());
-    for (std::size_t i = 0; i < one->candidates.size(); ++i) {
-        EXPECT_EQ(one->candidates[i].pose.rotation, other->candidates[i].pose.rotation);
-        EXPECT_EQ(one->candidates[i].pose.translation, other->candidates[i].pose.translation);
-        EXPECT_EQ(one->candidates[i].score, other->candidates[i].score);
+    ASSERT_EQ(restored->candidates.size(), other->candidates.size());
+    for (std::size_t i = 0; i < restored->candidates.size(); ++i) {
+        EXPECT_EQ(restored->candidates[i].pose.rotation, other->candidates[i].pose.rotation);
+        EXPECT_EQ(restored->candidates[i].pose.translation, other->candidates[i].pose.translation);
+        EXPECT_EQ(restored->candidates[i].score, other->candidates[i].score);
     }
-    EXPECT_EQ(one->confidence, other->confidence);
-    EXPECT_EQ(one->slippable.kind, other->slippable.kind);
+    EXPECT_EQ(restored->confidence, other->confidence);
+    EXPECT_EQ(restored->slippable.kind, other->slippable.kind);
     EXPECT_EQ(to_text(again.to_json(document.GetAllocator())), to_text(searches.to_json(document.GetAllocator())));
 }
 
-TEST_F(PoseSearchFile, IsNotUsedForAnythingElse) {
+TEST_F(PoseSearchFile, IsNotUsedForOtherInputs) {
     // Another fragment, other facets, another range, other options, another template.
     PoseSearches again(pieces.mesh, {});
     EXPECT_EQ(again.add(document, "searches"), 0U);
@@ -202,7 +203,7 @@ TEST_F(PoseSearchFile, IsNotUsedForAnythingElse) {
     EXPECT_TRUE(elsewhere.empty());
 }
 
-TEST_F(PoseSearchFile, NoticesWhatWasChanged) {
+TEST_F(PoseSearchFile, DetectsChanges) {
     document["searches"][0]["result"]["candidates"][0]["pose"]["shift"][0].SetDouble(0.5);
     PoseSearches again(pieces.mesh, {});
     EXPECT_EQ(again.add(document, "searches"), 1U);

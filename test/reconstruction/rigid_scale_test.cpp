@@ -25,10 +25,10 @@ std::vector<Vector3d> arm() {
 }
 
 std::vector<Vector3d> turned(std::vector<Vector3d> marks, double scale, double bend) {
-    const Eigen::AngleAxisd joint(bend, Vector3d::UnitZ()), whole(0.7, Vector3d(1, 2, -1).normalized());
+    const Eigen::AngleAxisd joint(bend, Vector3d::UnitZ()), rigid_rotation(0.7, Vector3d(1, 2, -1).normalized());
     for (std::size_t i = 0; i < marks.size(); ++i) {
         if (i >= marks.size() / 2) marks[i] = joint * marks[i];
-        marks[i] = scale * (whole * marks[i]) + Vector3d(100, -20, 3);
+        marks[i] = scale * (rigid_rotation * marks[i]) + Vector3d(100, -20, 3);
     }
     return marks;
 }
@@ -62,7 +62,7 @@ TEST(RigidStrain, IsZeroInAnyPosture) {
     EXPECT_FALSE(rigid_strain({marks.begin(), marks.begin() + 5}, {marks.begin(), marks.begin() + 5}));
 }
 
-TEST(RigidStrain, SeesAnotherShape) {
+TEST(RigidStrain, DetectsAnotherShape) {
     auto other = arm();
     for (Vector3d& p : other) p = Vector3d(0.5, 2, 1).cwiseProduct(p);
     EXPECT_NEAR(rigid_strain(arm(), other).value(), 0.2379, 1e-3);

@@ -31,40 +31,41 @@ PotOptions small_pot(std::uint64_t shape) {
 
 /// Sherds of a synthetic pot, each rotated about the axis at random and a little off its place, as a search leaves them.
 struct BrokenPot {
-    Mesh whole;
+    Mesh vessel;
     std::vector<Fragment> fragments;
     std::vector<SherdOnAxis> sherds;
     Motion frame;  ///< of everything
 
-    BrokenPot(const PotOptions& pot, const ShatterOptions& breaking, double off = 0.003, Motion where = {}) : frame(where) {
+    BrokenPot(const PotOptions& pot, const ShatterOptions& breaking, double noise = 0.003, Motion placement = {})
+        : frame(placement) {
         const Mesh upright = make_pot(pot);
-        whole = moved(upright, frame);
+        vessel = moved(upright, frame);
         std::vector<Sherd> pieces = shatter(upright, breaking);
         fragments.resize(pieces.size());
         Random random(breaking.seed, 21);
-        for (std::size_t k = 0; k < pieces.size(); ++k) add(k, pieces[k], pot, off, random);
+        for (std::size_t k = 0; k < pieces.size(); ++k) add(k, pieces[k], pot, noise, random);
     }
-    void add(std::size_t k, const Sherd& piece, const PotOptions& pot, double off, Random& random) {
-        Fragment& one = fragments[k];
-        one.name = std::to_string(k + 1);
+    void add(std::size_t k, const Sherd& piece, const PotOptions& pot, double noise, Random& random) {
+        Fragment& fragment = fragments[k];
+        fragment.name = std::to_string(k + 1);
         for (const Face f : piece.mesh.faces()) {
             const Vector3d n = eigen(area_vector(piece.mesh, f)), p = eigen(centroid(piece.mesh, f));
             const bool floor = p.z() < 1.2 * pot.wall, out = floor ? n.z() < 0 : n.head<2>().dot(p.head<2>()) > 0;
-            one.facets.push_back(piece.broken[f] ? Facet::fracture : out ? Facet::outer : Facet::inner);
+            fragment.facets.push_back(piece.broken[f] ? Facet::fracture : out ? Facet::outer : Facet::inner);
         }
-        one.mesh = moved(piece.mesh, frame);
+        fragment.mesh = moved(piece.mesh, frame);
         Motion rotated, lean, back = frame.inverse();
         rotated.rotation = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d::UnitZ()).toRotationMatrix();
-        lean.rotation = Eigen::AngleAxisd(off * random.normal(), Vector3d(random.normal(), random.normal(), 0).normalized())
+        lean.rotation = Eigen::AngleAxisd(noise * random.normal(), Vector3d(random.normal(), random.normal(), 0).normalized())
                             .toRotationMatrix();
-        lean.translation = off * pot.height * Vector3d(random.normal(), random.normal(), random.normal()) / 3;
+        lean.translation = noise * pot.height * Vector3d(random.normal(), random.normal(), random.normal()) / 3;
         sherds.push_back({&fragments[k], frame.after(rotated.after(lean)).after(back), false});
     }
     [[nodiscard]] RotationMatch match(const RotationMatchOptions& options = {}) const {
-        return match_rotations(whole, frame(Vector3d::Zero()), frame.rotation * Vector3d::UnitZ(), sherds, options);
+        return match_rotations(vessel, frame(Vector3d::Zero()), frame.rotation * Vector3d::UnitZ(), sherds, options);
     }
     /// Root mean square way of the second sherd's vertices from where it belongs against the first.
-    [[nodiscard]] double off(const RotationMatch& result, int a, int b) const {
+    [[nodiscard]] double displacement(const RotationMatch& result, int a, int b) const {
         const Motion between =
             result.poses[static_cast<std::size_t>(a)].inverse().after(result.poses[static_cast<std::size_t>(b)]);
         const Mesh& mesh = fragments[static_cast<std::size_t>(b)].mesh;
@@ -91,12 +92,12 @@ void expect_together(const BrokenPot& pot, const RotationMatch& result) {
         carry += joint.carries ? 1 : 0;
         // To a wall's thickness: the poses given are off by a third of it.
         if (!joint.decided) continue;
-        EXPECT_LT(pot.off(result, joint.first, joint.second), result.wall);
+        EXPECT_LT(pot.displacement(result, joint.first, joint.second), result.wall);
     }
     EXPECT_EQ(carry + 1, pot.sherds.size()) << "a tree";
 }
 
-TEST(RotationMatch, SherdsOfAPotComeTogether) {
+TEST(RotationMatch, SherdsOfAPotAreAssembled) {
     for (const std::uint64_t seed : {1, 2}) {
         const BrokenPot pot(small_pot(seed), breaking(seed));
         const RotationMatch result = pot.match();
@@ -105,7 +106,7 @@ TEST(RotationMatch, SherdsOfAPotComeTogether) {
     }
 }
 
-TEST(RotationMatch, AlsoWornAndNoisy) {
+TEST(RotationMatch, AssemblesWornAndNoisySherds) {
     ShatterOptions worn = breaking(3);
     worn.erosion = 0.002;
     worn.noise = 0.0005;
@@ -113,34 +114,34 @@ TEST(RotationMatch, AlsoWornAndNoisy) {
     expect_together(pot, pot.match());
 }
 
-TEST(RotationMatch, DoNotDependOnThePlaceOrTheUnit) {
+TEST(RotationMatch, DoesNotDependOnPoseOrUnit) {
     Motion far;
     far.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
     far.translation = Vector3d(300, -200, 500);
-    const BrokenPot pot(small_pot(1), breaking(1)), there(small_pot(1), breaking(1), 0.003, far);
-    expect_together(there, there.match());
+    const BrokenPot pot(small_pot(1), breaking(1)), far_pot(small_pot(1), breaking(1), 0.003, far);
+    expect_together(far_pot, far_pot.match());
     PotOptions tiny = small_pot(1);
     tiny.height *= 1e-3, tiny.radius *= 1e-3, tiny.wall *= 1e-3, tiny.edge *= 1e-3;
     const BrokenPot small(tiny, breaking(1));
     expect_together(small, small.match());
 }
 
-TEST(RotationMatch, AreTheSameForAnyNumberOfThreads) {
+TEST(RotationMatch, IsTheSameForAnyNumberOfThreads) {
     const BrokenPot pot(small_pot(2), breaking(2, 4));
     const int before = threads();
     set_threads(1);
-    const RotationMatch one = pot.match();
+    const RotationMatch single_threaded = pot.match();
     set_threads(3);
     const RotationMatch three = pot.match();
     set_threads(before);
-    ASSERT_EQ(one.poses.size(), three.poses.size());
-    for (std::size_t k = 0; k < one.poses.size(); ++k) {
-        EXPECT_EQ(one.poses[k].rotation, three.poses[k].rotation);
-        EXPECT_EQ(one.poses[k].translation, three.poses[k].translation);
+    ASSERT_EQ(single_threaded.poses.size(), three.poses.size());
+    for (std::size_t k = 0; k < single_threaded.poses.size(); ++k) {
+        EXPECT_EQ(single_threaded.poses[k].rotation, three.poses[k].rotation);
+        EXPECT_EQ(single_threaded.poses[k].translation, three.poses[k].translation);
     }
 }
 
-TEST(RotationMatch, WhatIsFixedStays) {
+TEST(RotationMatch, FixedSherdsStay) {
     BrokenPot pot(small_pot(1), breaking(1));
     pot.sherds[1].fixed = true;
     const RotationMatch result = pot.match();
@@ -148,7 +149,7 @@ TEST(RotationMatch, WhatIsFixedStays) {
     expect_together(pot, result);
 }
 
-TEST(RotationMatch, ASherdOfAnotherBreakIsNamedAndOverlapsNothing) {
+TEST(RotationMatch, AnUnrelatedSherdIsReportedAndOverlapsNothing) {
     const PotOptions shape = small_pot(4);
     BrokenPot pot(shape, breaking(4, 6));
     const std::vector<Sherd> others = shatter(make_pot(shape), breaking(77, 12));
@@ -170,7 +171,7 @@ TEST(RotationMatch, ASherdOfAnotherBreakIsNamedAndOverlapsNothing) {
         EXPECT_FALSE(joint.decided && joint.second + 1 == static_cast<int>(pot.sherds.size()));
 }
 
-TEST(RotationMatch, OneSherdAndNoBreaks) {
+TEST(RotationMatch, OneSherdAndNoFractures) {
     BrokenPot pot(small_pot(1), breaking(1, 2));
     pot.sherds.resize(1);
     const RotationMatch alone = pot.match();
@@ -178,14 +179,14 @@ TEST(RotationMatch, OneSherdAndNoBreaks) {
     EXPECT_TRUE(alone.joints.empty());
     EXPECT_LT((alone.poses[0].rotation - pot.sherds[0].pose.rotation).norm(), 1e-9);
 
-    BrokenPot whole(small_pot(1), breaking(1, 3));
-    for (Fragment& one : whole.fragments) one.facets.assign(one.mesh.number_of_faces(), Facet::outer);
-    const RotationMatch none = whole.match();
+    BrokenPot unbroken(small_pot(1), breaking(1, 3));
+    for (Fragment& fragment : unbroken.fragments) fragment.facets.assign(fragment.mesh.number_of_faces(), Facet::outer);
+    const RotationMatch none = unbroken.match();
     EXPECT_TRUE(none.joints.empty());
-    for (const std::string& note : none.notes) EXPECT_NE(note.find("no break"), std::string::npos);
+    for (const std::string& note : none.notes) EXPECT_NE(note.find("no fracture surface"), std::string::npos);
 
-    EXPECT_THROW((void)match_rotations(whole.whole, Vector3d::Zero(), Vector3d::UnitZ(), {}), Error);
-    EXPECT_THROW((void)match_rotations(whole.whole, Vector3d::Zero(), Vector3d::Zero(), whole.sherds), Error);
+    EXPECT_THROW((void)match_rotations(unbroken.vessel, Vector3d::Zero(), Vector3d::UnitZ(), {}), Error);
+    EXPECT_THROW((void)match_rotations(unbroken.vessel, Vector3d::Zero(), Vector3d::Zero(), unbroken.sherds), Error);
 }
 
 TEST(OpenRotations, OnlyWhereASearchLeftThemOpen) {
@@ -193,24 +194,24 @@ TEST(OpenRotations, OnlyWhereASearchLeftThemOpen) {
     std::vector<const Fragment*> fragments;
     std::vector<FragmentPlacement> placed;
     std::vector<std::optional<PoseSearchResult>> searched;
-    for (const SherdOnAxis& one : pot.sherds) {
-        fragments.push_back(one.fragment);
+    for (const SherdOnAxis& sherd : pot.sherds) {
+        fragments.push_back(sherd.fragment);
         placed.emplace_back();
-        placed.back().pose = one.pose;
+        placed.back().pose = sherd.pose;
         searched.emplace_back();
     }
-    EXPECT_FALSE(decide_open_rotations(pot.whole, fragments, searched, placed)) << "none was searched";
-    for (auto& one : searched) {
-        one.emplace();
-        one->decided = true;
+    EXPECT_FALSE(decide_open_rotations(pot.vessel, fragments, searched, placed)) << "none was searched";
+    for (auto& search : searched) {
+        search.emplace();
+        search->decided = true;
     }
-    EXPECT_FALSE(decide_open_rotations(pot.whole, fragments, searched, placed)) << "nothing is open";
-    for (auto& one : searched) one->slippable.kind = SlippableKind::rotation;
+    EXPECT_FALSE(decide_open_rotations(pot.vessel, fragments, searched, placed)) << "nothing is open";
+    for (auto& search : searched) search->slippable.kind = SlippableKind::rotation;
     RotationMatchOptions never;
     never.rotations = RotationMatchOptions::Turns::never;
-    EXPECT_FALSE(decide_open_rotations(pot.whole, fragments, searched, placed, never));
+    EXPECT_FALSE(decide_open_rotations(pot.vessel, fragments, searched, placed, never));
     placed[1].problem = "lost";
-    const auto rotations = decide_open_rotations(pot.whole, fragments, searched, placed);
+    const auto rotations = decide_open_rotations(pot.vessel, fragments, searched, placed);
     ASSERT_TRUE(rotations);
     EXPECT_EQ(rotations->group[1], -1);
     for (const BreakJoint& joint : rotations->joints) EXPECT_TRUE(joint.first != 1 && joint.second != 1);

@@ -39,40 +39,40 @@ Mesh member(const Mesh& mesh, const ShapePrior& prior, const Vector3d& deviation
     return result;
 }
 
-double missing_error(const Mesh& whole, const Cut& one, const Reconstruction& result) {
-    const Motion frame = result.placement.fragments[0].pose.after(one.piece.pose.inverse());
-    std::vector<bool> seen(whole.number_of_vertices(), false);
-    for (const Index v : one.piece.vertices) seen[v] = true;
+double missing_error(const Mesh& original, const Cut& cut_piece, const Reconstruction& result) {
+    const Motion frame = result.placement.fragments[0].pose.after(cut_piece.piece.pose.inverse());
+    std::vector<bool> observed(original.number_of_vertices(), false);
+    for (const Index v : cut_piece.piece.vertices) observed[v] = true;
     double sum = 0, count = 0;
-    for (const Vertex v : whole.vertices()) {
-        if (seen[v]) continue;
-        sum += (eigen(result.points[v]) - frame(eigen(whole.point(v)))).squaredNorm();
+    for (const Vertex v : original.vertices()) {
+        if (observed[v]) continue;
+        sum += (eigen(result.points[v]) - frame(eigen(original.point(v)))).squaredNorm();
         ++count;
     }
     return std::sqrt(sum / count);
 }
 
-TEST(ShapePrior, TheMissingPartIsThatOfTheMemberSeen) {
+TEST(ShapePrior, TheMissingPartIsThatOfTheObservedMember) {
     const Mesh mesh = body();
     const AnnotationSet set = landmarks_of(mesh);
     const ShapePrior prior = prior_of_bodies(mesh);
     for (const Vector3d& b : {Vector3d(1.5, -1, 0.5), Vector3d(-1, 1, 1), Vector3d(0, 0, 0)}) {
-        const Mesh whole = member(mesh, prior, b);
+        const Mesh original = member(mesh, prior, b);
         BreakOptions options;
         options.share = 0.35;
         options.noise = 0.001;
-        const Cut one = cut(whole, set, Point(0, 0, 1.9), options);
-        const Reconstruction with = reconstruct(mesh, set, {}, {&one.fragment}, {}, {}, &prior);
-        const Reconstruction without = reconstruct(mesh, set, {}, {&one.fragment});
-        ASSERT_TRUE(with.prior.has_value());
-        EXPECT_FALSE(without.prior.has_value());
-        const double diagonal = box_diagonal(whole);
-        EXPECT_LT(missing_error(whole, one, with), 0.01 * diagonal);
+        const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), options);
+        const Reconstruction with_prior = reconstruct(mesh, set, {}, {&cut_piece.fragment}, {}, {}, &prior);
+        const Reconstruction without_prior = reconstruct(mesh, set, {}, {&cut_piece.fragment});
+        ASSERT_TRUE(with_prior.prior.has_value());
+        EXPECT_FALSE(without_prior.prior.has_value());
+        const double diagonal = box_diagonal(original);
+        EXPECT_LT(missing_error(original, cut_piece, with_prior), 0.01 * diagonal);
         if (b.norm() > 0) {
-            EXPECT_LT(missing_error(whole, one, with), 0.3 * missing_error(whole, one, without));
+            EXPECT_LT(missing_error(original, cut_piece, with_prior), 0.3 * missing_error(original, cut_piece, without_prior));
         }
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(with.prior->coefficients[static_cast<std::size_t>(k)], b[k], 0.35) << k;
-        EXPECT_EQ(with.crossings, 0U);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(with_prior.prior->coefficients[static_cast<std::size_t>(k)], b[k], 0.35) << k;
+        EXPECT_EQ(with_prior.crossings, 0U);
     }
 }
 
@@ -80,17 +80,17 @@ TEST(ShapePrior, HoldsCoefficientsWithinItsLimitAndIsTheSameForAnyNumberOfThread
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
     const ShapePrior prior = prior_of_bodies(mesh);
-    const Mesh whole = member(mesh, prior, Vector3d(6, 0, 0));
+    const Mesh original = member(mesh, prior, Vector3d(6, 0, 0));
     BreakOptions half;
     half.share = 0.5;
-    const Cut one = cut(whole, set, Point(0, 0, 1.9), half);
+    const Cut cut_piece = cut(original, set, Point(0, 0, 1.9), half);
     ReconstructOptions options;
     options.prior.maximum = 1;
     const int before = threads();
     set_threads(1);
-    const Reconstruction alone = reconstruct(mesh, set, {}, {&one.fragment}, options, {}, &prior);
+    const Reconstruction alone = reconstruct(mesh, set, {}, {&cut_piece.fragment}, options, {}, &prior);
     set_threads(3);
-    const Reconstruction many = reconstruct(mesh, set, {}, {&one.fragment}, options, {}, &prior);
+    const Reconstruction many = reconstruct(mesh, set, {}, {&cut_piece.fragment}, options, {}, &prior);
     set_threads(before);
     for (const double b : alone.prior->coefficients) EXPECT_LE(std::abs(b), 1 + 1e-12);
     EXPECT_GT(alone.prior->coefficients[0], 0.99);
@@ -104,20 +104,20 @@ TEST(ShapePrior, WithoutModesItIsTheMean) {
     ShapePrior prior = prior_of_bodies(mesh);
     prior.modes.resize(prior.modes.rows(), 0);
     prior.deviations.clear();
-    const Cut one = cut(mesh, set, Point(0, 0, 1.9), {});
-    const Reconstruction result = reconstruct(mesh, set, {}, {&one.fragment}, {}, {}, &prior);
+    const Cut cut_piece = cut(mesh, set, Point(0, 0, 1.9), {});
+    const Reconstruction result = reconstruct(mesh, set, {}, {&cut_piece.fragment}, {}, {}, &prior);
     ASSERT_TRUE(result.prior.has_value());
     EXPECT_TRUE(result.prior->coefficients.empty());
-    EXPECT_LT(missing_error(mesh, one, result), 1e-3 * box_diagonal(mesh));
+    EXPECT_LT(missing_error(mesh, cut_piece, result), 1e-3 * box_diagonal(mesh));
 }
 
 TEST(ShapePrior, RefusesWhatDoesNotFitTheTemplate) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
-    const Cut one = cut(mesh, set, Point(0, 0, 1.9), {});
+    const Cut cut_piece = cut(mesh, set, Point(0, 0, 1.9), {});
     const auto refused = [&](const ShapePrior& prior, const std::string& word) {
         try {
-            reconstruct(mesh, set, {}, {&one.fragment}, {}, {}, &prior);
+            reconstruct(mesh, set, {}, {&cut_piece.fragment}, {}, {}, &prior);
             ADD_FAILURE() << word;
         } catch (const Error& error) {
             EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();

@@ -28,9 +28,9 @@ Mesh meshed_body(std::size_t vertices, double angle) {
         const Vector3d q = Eigen::AngleAxisd(angle, Vector3d(1, 2, 3).normalized()) * p;
         return body_place(q);
     });
-    SimplifyOptions how;
-    how.vertices = vertices;
-    simplify(mesh, how);
+    SimplifyOptions simplify_options;
+    simplify_options.vertices = vertices;
+    simplify(mesh, simplify_options);
     mesh.collect_garbage();
     return mesh;
 }
@@ -72,16 +72,16 @@ AnnotationSet annotated(const Mesh& mesh, const std::vector<int>& labels, const 
 }
 
 struct Fitted {
-    double off = 0;  ///< mean distance of vertices from where they belong
+    double error = 0;  ///< mean distance of vertices from where they belong
     Reconstruction result;
 };
 
 /// The template fitted to a share of the member, as `other` meshes it.
 Fitted fit_member(const Mesh& mesh, const Mesh& other, double share, const std::string& counterparts) {
-    const Mesh whole = deformed_by(other, member);
+    const Mesh original = deformed_by(other, member);
     BreakOptions breaking;
     breaking.share = share;
-    const BrokenPiece piece = break_off(whole, Point(0, 0, 2), breaking);
+    const BrokenPiece piece = break_off(original, Point(0, 0, 2), breaking);
     const Motion to_piece = piece.pose.inverse();
     std::vector<Point> marks, marks_there;
     for (Index i = 0; i < 9; ++i) {
@@ -94,22 +94,22 @@ Fitted fit_member(const Mesh& mesh, const Mesh& other, double share, const std::
     Fragment fragment;
     fragment.mesh = piece.mesh;
     fragment.annotations = annotated(piece.mesh, labels, marks_there);
-    std::erase_if(fragment.annotations.annotations, [&](const Annotation& one) {
-        constexpr double there = 0.1;  // an edge
-        return one.type == AnnotationType::point &&
-               CGAL::squared_distance(piece.mesh.point(Vertex(one.points.front())),
-                                      marks_there[static_cast<std::size_t>(one.id - 100)]) > there * there;
+    std::erase_if(fragment.annotations.annotations, [&](const Annotation& annotation) {
+        constexpr double min_distance = 0.1;  // an edge
+        return annotation.type == AnnotationType::point &&
+               CGAL::squared_distance(piece.mesh.point(Vertex(annotation.points.front())),
+                                      marks_there[static_cast<std::size_t>(annotation.id - 100)]) > min_distance * min_distance;
     });
-    ReconstructOptions how;
-    how.completion.join = false;
-    set_option(how.fit, "counterparts", counterparts);
+    ReconstructOptions reconstruct_options;
+    reconstruct_options.completion.join = false;
+    set_option(reconstruct_options.fit, "counterparts", counterparts);
     Fitted fitted;
-    fitted.result = reconstruct(mesh, annotated(mesh, parts_of(mesh), marks), {}, {&fragment}, how);
+    fitted.result = reconstruct(mesh, annotated(mesh, parts_of(mesh), marks), {}, {&fragment}, reconstruct_options);
     if (!fitted.result.placement.any()) throw Error(ErrorKind::failure, "member", "was not placed", "");
     const Motion frame = fitted.result.placement.fragments[0].pose.after(to_piece);
     for (const Vertex v : mesh.vertices())
-        fitted.off += (eigen(fitted.result.points[v]) - frame(member(eigen(mesh.point(v))))).norm() /
-                      static_cast<double>(mesh.number_of_vertices());
+        fitted.error += (eigen(fitted.result.points[v]) - frame(member(eigen(mesh.point(v))))).norm() /
+                        static_cast<double>(mesh.number_of_vertices());
     return fitted;
 }
 
@@ -117,20 +117,20 @@ TEST(Sliding, IsNoFartherFromTheTruthThanOtherCounterparts) {
     const Mesh mesh = meshed_body(900, 0), again = meshed_body(1100, 1);
     for (const bool same : {true, false})
         for (const double share : {1.0, 0.6}) {
-            const double off = fit_member(mesh, same ? mesh : again, share, "sliding").off;
+            const double error = fit_member(mesh, same ? mesh : again, share, "sliding").error;
             for (const std::string other : {"surface", "one-to-one"})
-                EXPECT_LE(off, fit_member(mesh, same ? mesh : again, share, other).off)
+                EXPECT_LE(error, fit_member(mesh, same ? mesh : again, share, other).error)
                     << other << ", " << share << (same ? ", the template's mesh" : ", its own mesh");
         }
 }
 
-TEST(Sliding, IsTheDefaultAndAChoice) {
+TEST(Sliding, IsTheDefaultAndAnOption) {
     NonRigidOptions options;
     EXPECT_EQ(option_text(options, "counterparts"), "sliding");
     EXPECT_THROW(set_option(options, "counterparts", "gliding"), Error);
 }
 
-TEST(Sliding, FragmentsTooSmallForAnythingAreFitted) {
+TEST(Sliding, TinyFragmentsAreFitted) {
     const Mesh mesh = body(3);
     const AnnotationSet set = landmarks_of(mesh);
     // One triangle, all of whose corners are landmarks; its region and the template's touch in no edge.
@@ -166,33 +166,34 @@ TEST(Sliding, FragmentsTooSmallForAnythingAreFitted) {
 }
 
 /// A disc on a sphere, larger on the other one: closest places alone leave its rim where it was.
-TEST(JointCurves, TheRimOfAPartGoesToTheRimOfItsCounterpart) {
+TEST(JointCurves, TheRimOfAPartMovesToTheRimOfItsCounterpart) {
     const Mesh mesh = build_mesh(octahedron_sphere(4)), other = build_mesh(octahedron_sphere(5));
-    const auto disc = [](const Mesh& of, double height) {
-        Annotation one;
-        one.id = 100;
-        one.tag = "disc";
-        for (const Face face : of.faces())
-            if (centroid(of, face).z() > height) one.faces.push_back(face);
-        return one;
+    const auto disc = [](const Mesh& sphere, double height) {
+        Annotation annotation;
+        annotation.id = 100;
+        annotation.tag = "disc";
+        for (const Face face : sphere.faces())
+            if (centroid(sphere, face).z() > height) annotation.faces.push_back(face);
+        return annotation;
     };
     AnnotationSet ours = landmarks_of(mesh), theirs;
-    std::erase_if(ours.annotations, [](const Annotation& one) { return one.id % 10 != 0; });
+    std::erase_if(ours.annotations, [](const Annotation& annotation) { return annotation.id % 10 != 0; });
     const PointTree tree(std::vector<Point>(other.points().begin(), other.points().end()));
-    for (const Annotation& one : ours.annotations)
-        if (mesh.point(Vertex(one.points.front())).z() < 0)
-            theirs.annotations.push_back(landmark(one.id, one.tag, tree.nearest(mesh.point(Vertex(one.points.front()))).index));
+    for (const Annotation& annotation : ours.annotations)
+        if (mesh.point(Vertex(annotation.points.front())).z() < 0)
+            theirs.annotations.push_back(
+                landmark(annotation.id, annotation.tag, tree.nearest(mesh.point(Vertex(annotation.points.front()))).index));
     ours.annotations.push_back(disc(mesh, 0.85));
     theirs.annotations.push_back(disc(other, 0.75));
     std::map<std::string, double> rim;
     for (const std::string counterparts : {"sliding", "surface"}) {
-        std::vector<PlacedFragment> list(1);
-        list[0].mesh = other;
-        list[0].annotations = &theirs;
-        for (const Annotation& one : theirs.annotations) list[0].matches.push_back({one.id, one.id, 1});
+        std::vector<PlacedFragment> fragments(1);
+        fragments[0].mesh = other;
+        fragments[0].annotations = &theirs;
+        for (const Annotation& annotation : theirs.annotations) fragments[0].matches.push_back({annotation.id, annotation.id, 1});
         NonRigidOptions options;
         set_option(options, "counterparts", counterparts);
-        const NonRigidFit fit = fit_template(mesh, ours, list, options);
+        const NonRigidFit fit = fit_template(mesh, ours, fragments, options);
         double sum = 0, count = 0;
         const std::vector<bool> inside = face_flags(mesh, ours.find(100)->faces);
         for (const Edge e : mesh.edges()) {
@@ -233,24 +234,24 @@ TEST(JointCurves, EndWhereTheFragmentEnds) {
 }
 
 TEST(SharedFaces, APieceOfTheMeshInAnotherShapeIsRecognised) {
-    const Mesh mesh = meshed_body(900, 0), whole = deformed_by(mesh, member);
+    const Mesh mesh = meshed_body(900, 0), original = deformed_by(mesh, member);
     BreakOptions options;
     options.share = 0.8;
     options.noise = 0.002;
     options.moved = false;
-    const BrokenPiece piece = break_off(whole, whole.point(Vertex(7)), options);
+    const BrokenPiece piece = break_off(original, original.point(Vertex(7)), options);
     EXPECT_EQ(shared_vertices(mesh, piece.mesh), piece.vertices);
     // Without a part that is broken; its faces need not be the template's.
     std::vector<bool> broken(piece.mesh.number_of_faces(), false);
     for (const Face face : piece.mesh.faces()) broken[face] = centroid(piece.mesh, face).z() > 0.5;
     const std::vector<Index> rest = shared_vertices(mesh, piece.mesh, 1, broken);
-    std::size_t found = 0;
+    std::size_t shared_count = 0;
     for (std::size_t v = 0; v < rest.size(); ++v)
         if (rest[v] != no_index) {
-            ++found;
+            ++shared_count;
             EXPECT_EQ(rest[v], piece.vertices[v]);
         }
-    EXPECT_GT(found, rest.size() / 4);
+    EXPECT_GT(shared_count, rest.size() / 4);
 }
 
 TEST(SharedFaces, OtherMeshesShareNone) {
@@ -258,7 +259,7 @@ TEST(SharedFaces, OtherMeshesShareNone) {
     const auto none = [](const std::vector<Index>& vertices) {
         return std::all_of(vertices.begin(), vertices.end(), [](Index v) { return v == no_index; });
     };
-    EXPECT_TRUE(none(shared_vertices(mesh, meshed_body(900, 1)))) << "the same surface, meshed anew";
+    EXPECT_TRUE(none(shared_vertices(mesh, meshed_body(900, 1)))) << "the same surface with another mesh";
     Mesh changed = mesh;
     const Edge first = *changed.edges().begin();
     CGAL::Euler::flip_edge(changed.halfedge(first), changed);
@@ -270,7 +271,7 @@ TEST(SharedFaces, OtherMeshesShareNone) {
     EXPECT_TRUE(shared_vertices(mesh, Mesh()).empty());
 }
 
-TEST(SharedFaces, OfASymmetricMeshTheNearestPlaceCounts) {
+TEST(SharedFaces, OnASymmetricMeshTheNearestPositionCounts) {
     const Mesh mesh = build_mesh(octahedron_sphere(4)),
                turned = deformed_by(mesh, [](const Vector3d&p) {
                    return Vector3d(Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Vector3d(1.1 * p.x(), p.y(), 0.9 * p.z()));

@@ -52,10 +52,10 @@ TEST(VerdictOfSizes, AFragmentFoundByItsShapeHasTheSizeThatTheOthersGaveIt) {
     const std::vector<std::vector<LandmarkPair>> pairs{bent(0, 1), two};
     Reconstruction result;
     result.placement = place_by_landmarks(pairs);
-    FragmentPlacement& found = result.placement.fragments[1];
-    ASSERT_FALSE(found.problem.empty()) << "two landmarks place nothing";
-    found.problem.clear();
-    found.own_scale = result.placement.scale;
+    FragmentPlacement& placement = result.placement.fragments[1];
+    ASSERT_FALSE(placement.problem.empty()) << "two landmarks place nothing";
+    placement.problem.clear();
+    placement.own_scale = result.placement.scale;
     ReconstructOptions options;
     options.residual = 10;
     judge_reconstruction(result, pairs, {}, options);
@@ -85,7 +85,7 @@ TEST(VerdictOfLandmarks, AnotherShapeStaysOne) {
     const Reconstruction other = judged({bent(0, 1), stretched}, 0.1);
     EXPECT_EQ(other.verdict, Compatibility::incompatible);
     EXPECT_TRUE(std::any_of(other.objections.begin(), other.objections.end(),
-                            [](const Objection& one) { return one.kind == ObjectionKind::landmarks; }));
+                            [](const Objection& objection) { return objection.kind == ObjectionKind::landmarks; }));
     // Of three landmarks nothing says that they belong to parts that move against each other.
     std::vector<LandmarkPair> few = bent(1.2, 1);
     few.erase(few.begin() + 1, few.begin() + 5);

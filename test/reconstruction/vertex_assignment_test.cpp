@@ -29,13 +29,13 @@ Mesh plate(Index columns, Index rows, double shift) {
 }
 
 Annotation region(const Mesh& mesh, double x0, double x1, double y0, double y1) {
-    Annotation one;
-    one.type = AnnotationType::region;
+    Annotation annotation;
+    annotation.type = AnnotationType::region;
     for (const Face face : mesh.faces()) {
         const Point c = centroid(mesh, face);
-        if (c.x() > x0 && c.x() < x1 && c.y() > y0 && c.y() < y1) one.faces.push_back(face);
+        if (c.x() > x0 && c.x() < x1 && c.y() > y0 && c.y() < y1) annotation.faces.push_back(face);
     }
-    return one;
+    return annotation;
 }
 
 /// The costs written down in full: of every pair of vertices of two regions whose outlines are one closed loop each.
@@ -44,7 +44,7 @@ struct Full {
     std::vector<std::vector<double>> cost;
 };
 
-double way(const Mesh& mesh, const Outline& loop, Index from, Index to) {
+double arc_length(const Mesh& mesh, const Outline& loop, Index from, Index to) {
     std::size_t i = static_cast<std::size_t>(std::find(loop.begin(), loop.end(), from) - loop.begin());
     double sum = 0;
     for (; loop[i] != to; i = (i + 1) % loop.size())
@@ -67,7 +67,7 @@ Full full_costs(const Mesh& a, const Annotation& part, const Mesh& b, const Anno
             const bool x = on(ours, v), y = on(theirs, w);
             double outline = 0;
             if (x && y)
-                for (const auto& [l, m] : landmarks) outline += std::abs(way(a, ours, v, l) - way(b, theirs, w, m));
+                for (const auto& [l, m] : landmarks) outline += std::abs(arc_length(a, ours, v, l) - arc_length(b, theirs, w, m));
             raw[i].push_back(
                 {x == y ? 0.0 : 1.0, std::sqrt(CGAL::squared_distance(a.point(Vertex(v)), b.point(Vertex(w)))), outline});
             for (std::size_t k = 0; k < 3; ++k) {
@@ -91,28 +91,28 @@ Full full_costs(const Mesh& a, const Annotation& part, const Mesh& b, const Anno
 TEST(VertexAssignment, IsTheMinimumOfTheFullMatrix) {
     const Mesh a = plate(14, 12, 0), b = plate(17, 11, 0.3);
     const Annotation ours = region(a, 2, 9, 2, 8), theirs = region(b, 4, 12, 3, 9);
-    const Outline left = extract_outlines(a, ours.faces).at(0), right = extract_outlines(b, theirs.faces).at(0);
-    const std::vector<std::pair<Index, Index>> landmarks{{left[0], right[2]}, {left[9], right[13]}};
+    const Outline outline_a = extract_outlines(a, ours.faces).at(0), outline_b = extract_outlines(b, theirs.faces).at(0);
+    const std::vector<std::pair<Index, Index>> landmarks{{outline_a[0], outline_b[2]}, {outline_a[9], outline_b[13]}};
     for (const auto& weights : {std::array<double, 3>{1, 1, 1}, {0.2, 1, 3}, {0, 1, 0}, {0.05, 0.5, 0}}) {
         VertexAssignmentOptions options;
         options.boundary = weights[0];
         options.distance = weights[1];
         options.outline = weights[2];
         const Full full = full_costs(a, ours, b, theirs, landmarks, options);
-        const VertexAssignment found = assign_vertices(a, ours, b, theirs, landmarks, options);
-        ASSERT_EQ(found.vertices, full.ours);
+        const VertexAssignment assignment = assign_vertices(a, ours, b, theirs, landmarks, options);
+        ASSERT_EQ(assignment.vertices, full.ours);
         double total = 0;
         for (std::size_t i = 0; i < full.ours.size(); ++i) {
             const auto minimum = std::min_element(full.cost[i].begin(), full.cost[i].end());
-            EXPECT_NEAR(found.cost[i], *minimum, 1e-12);
-            EXPECT_EQ(found.counterpart[i], full.theirs[static_cast<std::size_t>(minimum - full.cost[i].begin())]);
+            EXPECT_NEAR(assignment.cost[i], *minimum, 1e-12);
+            EXPECT_EQ(assignment.counterpart[i], full.theirs[static_cast<std::size_t>(minimum - full.cost[i].begin())]);
             total += *minimum;
         }
-        EXPECT_NEAR(found.total, total, 1e-9);
+        EXPECT_NEAR(assignment.total, total, 1e-9);
     }
 }
 
-TEST(VertexAssignment, OneToOneIsTheLeastSumOfAllPermutations) {
+TEST(VertexAssignment, OneToOneIsTheMinimumOverAllPermutations) {
     const Mesh a = plate(6, 6, 0), b = plate(7, 6, 0.2);
     const Annotation ours = region(a, 1.9, 4.1, 1.9, 3.1), theirs = region(b, 1.9, 4.2, 1.9, 4.1);
     VertexAssignmentOptions options;
@@ -133,26 +133,27 @@ TEST(VertexAssignment, OneToOneIsTheLeastSumOfAllPermutations) {
         best = std::min(best, sum);
         std::reverse(order.begin() + static_cast<std::ptrdiff_t>(n), order.end());
     } while (std::next_permutation(order.begin(), order.end()));
-    const VertexAssignment found = assign_vertices(a, ours, b, theirs, {}, options);
-    EXPECT_NEAR(found.total, best, 1e-6);
-    const std::set<Index> used(found.counterpart.begin(), found.counterpart.end());
+    const VertexAssignment assignment = assign_vertices(a, ours, b, theirs, {}, options);
+    EXPECT_NEAR(assignment.total, best, 1e-6);
+    const std::set<Index> used(assignment.counterpart.begin(), assignment.counterpart.end());
     EXPECT_EQ(used.size(), n);
     EXPECT_FALSE(used.contains(no_index));
 }
 
-TEST(VertexAssignment, NobodyIsTakenTwiceAndTheRestStaysFree) {
+TEST(VertexAssignment, NoVertexIsUsedTwiceAndTheRestStaysUnassigned) {
     const Mesh a = plate(20, 20, 0), b = plate(9, 9, 0.1);
     const Annotation ours = region(a, 1, 8, 1, 8), theirs = region(b, 2, 6, 2, 6);
     VertexAssignmentOptions options;
     options.counterpart = VertexAssignmentOptions::Counterpart::one_to_one;
-    const VertexAssignment found = assign_vertices(a, ours, b, theirs, {}, options);
-    std::multiset<Index> used(found.counterpart.begin(), found.counterpart.end());
+    const VertexAssignment assignment = assign_vertices(a, ours, b, theirs, {}, options);
+    std::multiset<Index> used(assignment.counterpart.begin(), assignment.counterpart.end());
     EXPECT_GT(used.count(no_index), 0U);
     for (const Index v : used)
         if (v != no_index) {
             EXPECT_EQ(used.count(v), 1U);
         }
-    for (std::size_t i = 0; i < found.cost.size(); ++i) EXPECT_EQ(std::isinf(found.cost[i]), found.counterpart[i] == no_index);
+    for (std::size_t i = 0; i < assignment.cost.size(); ++i)
+        EXPECT_EQ(std::isinf(assignment.cost[i]), assignment.counterpart[i] == no_index);
 }
 
 /// Figure 5.15: two eyes of other shape, one above the other; by distance alone the upper arch of the lower goes to the lower
@@ -167,24 +168,24 @@ TEST(VertexAssignment, LandmarksOnTheOutlineKeepArchesApart) {
     // Embedded in frames, so that outlines are no borders of the mesh: rows 1 to 4 of 6.
     const Mesh lower = eye(0, 0.6), upper = eye(0.5, 0.3);
     const auto middle = [](const Mesh& mesh) {
-        Annotation one;
-        one.type = AnnotationType::region;
+        Annotation annotation;
+        annotation.type = AnnotationType::region;
         for (const Face face : mesh.faces())
             if (const Index row = static_cast<Index>(face) / 48, column = static_cast<Index>(face) % 48 / 2;
                 row >= 1 && row <= 4 && column >= 1 && column <= 22)
-                one.faces.push_back(face);
-        return one;
+                annotation.faces.push_back(face);
+        return annotation;
     };
     const Annotation ours = middle(lower), theirs = middle(upper);
     const auto vertex = [](Index column, Index row) { return row * 25 + column; };
     const std::vector<std::pair<Index, Index>> apices{{vertex(1, 3), vertex(1, 3)}, {vertex(23, 3), vertex(23, 3)}};
     VertexAssignmentOptions options;
-    const auto wrong = [&](const VertexAssignment& found) {
+    const auto wrong = [&](const VertexAssignment& assignment) {
         int count = 0;
-        for (std::size_t i = 0; i < found.vertices.size(); ++i) {
-            const Index row = found.vertices[i] / 25, column = found.vertices[i] % 25;
+        for (std::size_t i = 0; i < assignment.vertices.size(); ++i) {
+            const Index row = assignment.vertices[i] / 25, column = assignment.vertices[i] % 25;
             if (row != 5 || column < 4 || column > 20) continue;  // the upper arch
-            count += found.counterpart[i] / 25 != 5 ? 1 : 0;
+            count += assignment.counterpart[i] / 25 != 5 ? 1 : 0;
         }
         return count;
     };
@@ -194,7 +195,7 @@ TEST(VertexAssignment, LandmarksOnTheOutlineKeepArchesApart) {
     EXPECT_EQ(wrong(assign_vertices(lower, ours, upper, theirs, apices, options)), 0);
 }
 
-TEST(VertexAssignment, RejectsWhatIsFarOrTurnedAwayAndKnowsPointsAndLines) {
+TEST(VertexAssignment, RejectsDistantAndOppositeVerticesAndHandlesPointsAndLines) {
     const Mesh a = plate(12, 12, 0), b = plate(12, 12, 0);
     const Annotation ours = region(a, 2, 9, 2, 9), theirs = region(b, 2, 9, 2, 9);
     VertexAssignmentOptions options;
@@ -228,12 +229,12 @@ TEST(VertexAssignment, TheSameForAnyNumberOfThreads) {
         VertexAssignmentOptions options;
         set_option(options, "counterpart", mode);
         set_threads(1);
-        const VertexAssignment one = assign_vertices(a, ours, b, theirs, {}, options);
+        const VertexAssignment single_threaded = assign_vertices(a, ours, b, theirs, {}, options);
         set_threads(4);
         const VertexAssignment many = assign_vertices(a, ours, b, theirs, {}, options);
         set_threads(before);
-        EXPECT_EQ(one.counterpart, many.counterpart);
-        EXPECT_EQ(one.cost, many.cost);
+        EXPECT_EQ(single_threaded.counterpart, many.counterpart);
+        EXPECT_EQ(single_threaded.cost, many.cost);
     }
 }
 

@@ -22,29 +22,29 @@ TEST(Align, FindsTheMotionOfAMovedSurface) {
     const AlignSurface surface(a);
     const Motion truth = test::motion();
     const AlignSurface other(test::moved(a, truth));
-    const Alignment found = align(surface, other, {nearly(truth, 10, 2)});
-    EXPECT_LT(test::rotation_between(found.motion.rotation, truth.rotation), 0.1);
-    EXPECT_LT(found.distance, 2e-3);
-    EXPECT_GT(found.overlap, 0.9);
-    EXPECT_TRUE(found.settled);
+    const Alignment alignment = align(surface, other, {nearly(truth, 10, 2)});
+    EXPECT_LT(test::rotation_between(alignment.motion.rotation, truth.rotation), 0.1);
+    EXPECT_LT(alignment.distance, 2e-3);
+    EXPECT_GT(alignment.overlap, 0.9);
+    EXPECT_TRUE(alignment.settled);
 }
 
-TEST(Align, IndependentMeshesOfOneMouldAreNearerThanThoseOfTwo) {
+TEST(Align, MeshesOfOneMouldAreNearerThanThoseOfTwo) {
     const AlignSurface a(test::head(1, 1).mesh), b(test::head(1, 2).mesh), c(test::head(2, 3).mesh);
-    const double same = align(a, b, {Motion()}).distance, other = align(a, c, {Motion()}).distance;
-    EXPECT_LT(2 * same, other);
-    EXPECT_LT(align(a, a, {Motion()}).distance, same);
+    const double same_mould = align(a, b, {Motion()}).distance, other_mould = align(a, c, {Motion()}).distance;
+    EXPECT_LT(2 * same_mould, other_mould);
+    EXPECT_LT(align(a, a, {Motion()}).distance, same_mould);
 }
 
 TEST(Align, TheDistanceIsTheSameFromBothSidesAndAtAnyScale) {
     const Mesh a = test::head(1, 1).mesh, b = test::head(1, 2).mesh;
-    const double there = align(AlignSurface(a), AlignSurface(b), {Motion()}).distance;
-    const double back = align(AlignSurface(b), AlignSurface(a), {Motion()}).distance;
-    EXPECT_NEAR(there, back, 0.1 * there);
+    const double forward = align(AlignSurface(a), AlignSurface(b), {Motion()}).distance;
+    const double backward = align(AlignSurface(b), AlignSurface(a), {Motion()}).distance;
+    EXPECT_NEAR(forward, backward, 0.1 * forward);
     Motion small;
     small.scale = 1e-4;
     const double scaled = align(AlignSurface(test::moved(a, small)), AlignSurface(test::moved(b, small)), {Motion()}).distance;
-    EXPECT_NEAR(there, scaled, 1e-3 * there);
+    EXPECT_NEAR(forward, scaled, 1e-3 * forward);
 }
 
 TEST(Align, ShrinkageIsFoundWhereItIsAllowed) {
@@ -59,11 +59,11 @@ TEST(Align, ShrinkageIsFoundWhereItIsAllowed) {
     EXPECT_GE(align(a, b, {nearly(test::motion(1), 5, 1)}, options).motion.scale, 0.95 - 1e-12);
 }
 
-TEST(Align, PrincipalAxesServeWithoutAStart) {
+TEST(Align, UsesPrincipalAxesWithoutAStart) {
     const Motion truth = test::motion();
     const AlignSurface a(test::head(1, 1).mesh), b(test::moved(test::head(1, 1).mesh, truth));
-    const Alignment found = align(a, b, {});
-    EXPECT_LT(test::rotation_between(found.motion.rotation, truth.rotation), 1);
+    const Alignment alignment = align(a, b, {});
+    EXPECT_LT(test::rotation_between(alignment.motion.rotation, truth.rotation), 1);
     for (const Motion& start : principal_starts(a, b)) EXPECT_NEAR(start.rotation.determinant(), 1, 1e-9);
 }
 
@@ -82,17 +82,18 @@ TEST(Align, AMissingPieceChangesLittle) {
     EXPECT_LT(4 * changed, other);
 }
 
-TEST(Align, WhatSlidesIsLaidOnAllTheSame) {
+TEST(Align, RegistersSurfacesThatSlideOnThemselves) {
     // A ball can turn on itself: the motion is open, the distance is not.
     const AlignSurface ball(build_mesh(test::octahedron_sphere(4))),
         away(build_mesh(test::moved(test::octahedron_sphere(4), 1, {0.3, 0.1, 0})));
-    const Alignment found = align(ball, away, {Motion()});
-    EXPECT_LT(found.distance, 1e-3);
-    EXPECT_LT((found.motion.rotation * Eigen::Vector3d::Zero() + found.motion.translation - Eigen::Vector3d(0.3, 0.1, 0)).norm(),
+    const Alignment alignment = align(ball, away, {Motion()});
+    EXPECT_LT(alignment.distance, 1e-3);
+    EXPECT_LT((alignment.motion.rotation * Eigen::Vector3d::Zero() + alignment.motion.translation - Eigen::Vector3d(0.3, 0.1, 0))
+                  .norm(),
               1e-2);
 }
 
-TEST(Align, RefusesWhatHasNoArea) {
+TEST(Align, RefusesMeshesWithoutArea) {
     EXPECT_THROW(AlignSurface{Mesh()}, Error);
     EXPECT_THROW(AlignSurface(build_mesh(test::octahedron_sphere(1)), 0), Error);
     AlignOptions options;

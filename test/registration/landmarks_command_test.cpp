@@ -25,23 +25,23 @@ void write_landmarks(const Path& file, const Landmarks& x, const std::string& un
     write_file(file, landmarks_to_text(set, LandmarkFormat::mrk, "", {}, notes));
 }
 
-std::vector<Landmarks> some(int count) {
+std::vector<Landmarks> random_configurations(int count) {
     Random random(3);
     Landmarks base(8, 3);
     for (Eigen::Index i = 0; i < 24; ++i) base(i / 3, i % 3) = random.normal(0, 10);
-    std::vector<Landmarks> list;
+    std::vector<Landmarks> configurations;
     for (int k = 0; k < count; ++k) {
         Landmarks x = base;
         for (Eigen::Index i = 0; i < 24; ++i) x(i / 3, i % 3) += random.normal() + 100 * k;
-        list.push_back(x);
+        configurations.push_back(x);
     }
-    return list;
+    return configurations;
 }
 
 TEST(StudyLandmarksCommand, GivesWhatTheLibraryComputes) {
     const Scratch scratch;
     std::filesystem::create_directories(scratch / "in");
-    const std::vector<Landmarks> shapes = some(5);
+    const std::vector<Landmarks> shapes = random_configurations(5);
     for (std::size_t k = 0; k < shapes.size(); ++k)
         write_landmarks(scratch / "in" / ("s" + std::to_string(k) + ".mrk.json"), shapes[k]);
     (void)scratch.file("in/t.mrk.json", "{\"markups\": 3}");
@@ -52,7 +52,7 @@ TEST(StudyLandmarksCommand, GivesWhatTheLibraryComputes) {
     validate(report, "report", "report");
     const GeneralisedProcrustes expected = generalised_procrustes(shapes);
     EXPECT_EQ(report["result"]["objects"].GetInt(), 5);
-    EXPECT_EQ(report["result"]["failed"].Size(), 1u) << "the damaged file is told and does not stop the rest";
+    EXPECT_EQ(report["result"]["failed"].Size(), 1u) << "the damaged file is reported and does not stop the rest";
     EXPECT_DOUBLE_EQ(report["result"]["sumOfSquares"].GetDouble(), expected.sum_of_squares);
     const LandmarkSet mean = read_landmarks(scratch / "out" / "mean.mrk.json", LandmarkFormat::mrk);
     ASSERT_EQ(mean.landmarks.size(), 8u);
@@ -61,10 +61,10 @@ TEST(StudyLandmarksCommand, GivesWhatTheLibraryComputes) {
         EXPECT_TRUE(std::filesystem::exists(scratch / "out" / name)) << name;
 }
 
-TEST(StudyLandmarksCommand, TellsWhatIsNotCommonAndLeavesOddSpecimensOut) {
+TEST(StudyLandmarksCommand, ReportsUncommonLandmarksAndLeavesUnusualSpecimensOut) {
     const Scratch scratch;
     std::filesystem::create_directories(scratch / "in");
-    const std::vector<Landmarks> shapes = some(3);
+    const std::vector<Landmarks> shapes = random_configurations(3);
     write_landmarks(scratch / "in" / "a.mrk.json", shapes[0]);
     write_landmarks(scratch / "in" / "b.mrk.json", shapes[1].topRows(6));
     const std::string command = "study landmarks " + quoted(scratch / "in") + " --output " + quoted(scratch / "out");
@@ -73,13 +73,13 @@ TEST(StudyLandmarksCommand, TellsWhatIsNotCommonAndLeavesOddSpecimensOut) {
     EXPECT_EQ(parse_json(fewer.out, "report")["result"]["landmarks"].GetInt(), 6);
     EXPECT_NE(fewer.err.find("'L7', 'L8'"), std::string::npos) << fewer.err;
     write_landmarks(scratch / "in" / "c.mrk.json", shapes[2], "cm");
-    const auto left_out = [&](const std::string& more) {
-        const auto run = run_command(command + more + " --json");
+    const auto left_out = [&](const std::string& extra_options) {
+        const auto run = run_command(command + extra_options + " --json");
         EXPECT_EQ(run.code, 0) << run.err;
         const Json report = parse_json(run.out, "report");
         std::string text;
-        for (const auto& one : report["result"]["odd"].GetArray())
-            if (one["leftOut"].GetBool()) text += std::string(one["name"].GetString()) + ": " + one["why"].GetString();
+        for (const auto& entry : report["result"]["odd"].GetArray())
+            if (entry["leftOut"].GetBool()) text += std::string(entry["name"].GetString()) + ": " + entry["why"].GetString();
         return text;
     };
     const std::string other_unit = left_out("");

@@ -28,14 +28,14 @@ Mesh shaped(const Mesh& mesh, const std::function<Vector3d(const Vector3d&)>& ma
     return result;
 }
 
-Mesh made(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1) {
+Mesh synthetic_mesh(const std::string& name, std::uint64_t vertices, std::uint64_t seed = 1) {
     MakeOptions options;
     options.vertices = vertices;
     options.seed = seed;
     return make_mesh(synthetic_object(name), options).mesh;
 }
 
-Mesh turned_round(const Mesh& mesh, bool mirror) {
+Mesh flipped_mesh(const Mesh& mesh, bool mirror) {
     TriangleSoup soup = to_soup(mesh);
     if (mirror)
         for (auto& p : soup.points) p[0] = -p[0];
@@ -45,7 +45,7 @@ Mesh turned_round(const Mesh& mesh, bool mirror) {
 }
 
 /// Mirrored, its faces outward again.
-Mesh mirrored(const Mesh& mesh) { return turned_round(turned_round(mesh, true), false); }
+Mesh mirrored(const Mesh& mesh) { return flipped_mesh(flipped_mesh(mesh, true), false); }
 
 Motion any_similarity(const Mesh& mesh, std::uint64_t seed) {
     Random random(seed);
@@ -59,25 +59,25 @@ Motion any_similarity(const Mesh& mesh, std::uint64_t seed) {
 
 /// `source` and `target` are of one surface in one place: the source is moved, found again, and what is left compared.
 void expect_found(const Mesh& source, const Mesh& target, std::uint64_t seed, double degrees, double scale) {
-    const Motion there = any_similarity(source, seed);
-    const MeshRegistration found = register_mesh(shaped(source, there), target);
-    EXPECT_EQ(found.verdict, RegistrationVerdict::aligned) << in_words(found, box_diagonal(target));
-    const Motion left = found.motion.after(there);
-    EXPECT_LT(Eigen::AngleAxisd(left.rotation).angle() * 180 / std::numbers::pi, degrees);
-    EXPECT_NEAR(left.scale, 1, scale);
+    const Motion motion = any_similarity(source, seed);
+    const MeshRegistration registration = register_mesh(shaped(source, motion), target);
+    EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned) << in_words(registration, box_diagonal(target));
+    const Motion remaining = registration.motion.after(motion);
+    EXPECT_LT(Eigen::AngleAxisd(remaining.rotation).angle() * 180 / std::numbers::pi, degrees);
+    EXPECT_NEAR(remaining.scale, 1, scale);
     const Vector3d corner = eigen(target.point(Vertex(0)));
-    EXPECT_LT((left(corner) - corner).norm(), 2 * scale * box_diagonal(target));
+    EXPECT_LT((remaining(corner) - corner).norm(), 2 * scale * box_diagonal(target));
 }
 
 TEST(MeshRegistration, FindsAnySimilarityOfACopyExactly) {
-    const Mesh pot = made("teapot", 2000);
+    const Mesh pot = synthetic_mesh("teapot", 2000);
     for (const std::uint64_t seed : {1, 2, 3}) expect_found(pot, pot, seed, 1e-4, 1e-6);
 }
 
-TEST(MeshRegistration, FindsMeshesMadeAnewAtOtherResolutions) {
+TEST(MeshRegistration, FindsMeshesGeneratedAtOtherResolutions) {
     for (const char* name : {"hand", "teapot", "chair"}) {
         SCOPED_TRACE(name);
-        const Mesh coarse = made(name, 5000, 1), fine = made(name, 20000, 2);
+        const Mesh coarse = synthetic_mesh(name, 5000, 1), fine = synthetic_mesh(name, 20000, 2);
         expect_found(coarse, fine, 4, 0.1, 1e-3);
         expect_found(fine, coarse, 5, 0.1, 1e-3);
     }
@@ -97,14 +97,14 @@ TEST(MeshRegistration, FindsRemeshedAndDecimatedScans) {
 }
 
 TEST(MeshRegistration, OtherObjectsAreNeverAligned) {
-    const Mesh hand = made("hand", 2000), pot = made("teapot", 2000), chair = made("chair", 2000);
+    const Mesh hand = synthetic_mesh("hand", 2000), pot = synthetic_mesh("teapot", 2000), chair = synthetic_mesh("chair", 2000);
     EXPECT_EQ(register_mesh(hand, pot).verdict, RegistrationVerdict::different);
     EXPECT_EQ(register_mesh(pot, chair).verdict, RegistrationVerdict::different);
     EXPECT_EQ(register_mesh(chair, hand).verdict, RegistrationVerdict::different);
 }
 
 TEST(MeshRegistration, TheSameObjectWithOneOtherProportionIsNotAligned) {
-    const Mesh hand = made("hand", 8000);
+    const Mesh hand = synthetic_mesh("hand", 8000);
     const auto box = bounding_box(hand);
     for (const double growth : {1.03, 1.1}) {
         const Mesh other = shaped(hand, [&](const Vector3d& p) {
@@ -117,39 +117,39 @@ TEST(MeshRegistration, TheSameObjectWithOneOtherProportionIsNotAligned) {
     }
 }
 
-TEST(MeshRegistration, RefusesMirrorImagesAndNamesThem) {
-    const Mesh hand = made("hand", 3000), other = made("hand", 5000, 2);
-    const MeshRegistration found = register_mesh(mirrored(hand), other);
-    EXPECT_EQ(found.verdict, RegistrationVerdict::mirrored);
-    EXPECT_LT(found.mirrored.rms, 0.2 * found.agreement.rms);
+TEST(MeshRegistration, RefusesAndReportsMirrorImages) {
+    const Mesh hand = synthetic_mesh("hand", 3000), other = synthetic_mesh("hand", 5000, 2);
+    const MeshRegistration registration = register_mesh(mirrored(hand), other);
+    EXPECT_EQ(registration.verdict, RegistrationVerdict::mirrored);
+    EXPECT_LT(registration.mirrored.rms, 0.2 * registration.agreement.rms);
     // An axis turned over by an export, the faces as they were: mirrored and inside out.
-    EXPECT_EQ(register_mesh(turned_round(hand, true), other).verdict, RegistrationVerdict::mirrored);
+    EXPECT_EQ(register_mesh(flipped_mesh(hand, true), other).verdict, RegistrationVerdict::mirrored);
     // What is its own mirror image is aligned; but for the very triangles, by which it was mirrored.
-    const Mesh pot = made("teapot", 3000);
-    EXPECT_EQ(register_mesh(mirrored(made("teapot", 5000, 2)), pot).verdict, RegistrationVerdict::aligned);
+    const Mesh pot = synthetic_mesh("teapot", 3000);
+    EXPECT_EQ(register_mesh(mirrored(synthetic_mesh("teapot", 5000, 2)), pot).verdict, RegistrationVerdict::aligned);
     EXPECT_EQ(register_mesh(mirrored(pot), pot).verdict, RegistrationVerdict::mirrored);
 }
 
-TEST(MeshRegistration, NamesMeshesThatAreInsideOut) {
-    const Mesh hand = made("hand", 3000);
-    EXPECT_EQ(register_mesh(turned_round(hand, false), hand).verdict, RegistrationVerdict::inside_out);
+TEST(MeshRegistration, ReportsMeshesThatAreInsideOut) {
+    const Mesh hand = synthetic_mesh("hand", 3000);
+    EXPECT_EQ(register_mesh(flipped_mesh(hand, false), hand).verdict, RegistrationVerdict::inside_out);
 }
 
-TEST(MeshRegistration, CountsThePosesOfASymmetricObjectAndTakesTheNearest) {
+TEST(MeshRegistration, CountsThePosesOfASymmetricObjectAndChoosesTheNearest) {
     const Mesh box =
         shaped(build_mesh(test::box(12)), [](const Vector3d& p) { return Vector3d(p.x(), 1.5 * p.y(), 2.2 * p.z()); });
     Motion little;
     little.rotation = Eigen::AngleAxisd(0.2, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    const MeshRegistration found = register_mesh(shaped(box, little), box);
-    EXPECT_EQ(found.verdict, RegistrationVerdict::aligned);
-    EXPECT_EQ(found.others.size(), 3U);
-    EXPECT_LT(Eigen::AngleAxisd(found.motion.after(little).rotation).angle(), 1e-3);
-    ASSERT_FALSE(remarks_on(found).empty());
-    EXPECT_NE(remarks_on(found).front().find("4 poses fit equally"), std::string::npos);
-    EXPECT_TRUE(register_mesh(made("hand", 2000), made("hand", 2000)).others.empty());
+    const MeshRegistration registration = register_mesh(shaped(box, little), box);
+    EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(registration.others.size(), 3U);
+    EXPECT_LT(Eigen::AngleAxisd(registration.motion.after(little).rotation).angle(), 1e-3);
+    ASSERT_FALSE(remarks_on(registration).empty());
+    EXPECT_NE(remarks_on(registration).front().find("4 poses fit equally"), std::string::npos);
+    EXPECT_TRUE(register_mesh(synthetic_mesh("hand", 2000), synthetic_mesh("hand", 2000)).others.empty());
 }
 
-TEST(MeshRegistration, NamesMotionsThatTheShapeLeavesOpen) {
+TEST(MeshRegistration, ReportsSlippableMotions) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4)), ring = build_mesh(test::torus(60, 30));
     const MeshRegistration of_ball = register_mesh(shaped(ball, any_similarity(ball, 8)), ball);
     EXPECT_EQ(of_ball.verdict, RegistrationVerdict::aligned);
@@ -163,32 +163,32 @@ TEST(MeshRegistration, NamesMotionsThatTheShapeLeavesOpen) {
 }
 
 TEST(MeshRegistration, WithoutScaleSizesMustAgree) {
-    const Mesh pot = made("teapot", 2000);
+    const Mesh pot = synthetic_mesh("teapot", 2000);
     MeshRegistrationOptions options;
     options.scale = false;
-    const Motion there = any_similarity(pot, 10);
-    EXPECT_EQ(register_mesh(shaped(pot, there), pot, options).verdict, RegistrationVerdict::different);
-    Motion rigid = there;
+    const Motion motion = any_similarity(pot, 10);
+    EXPECT_EQ(register_mesh(shaped(pot, motion), pot, options).verdict, RegistrationVerdict::different);
+    Motion rigid = motion;
     rigid.scale = 1;
-    const MeshRegistration found = register_mesh(shaped(pot, rigid), pot, options);
-    EXPECT_EQ(found.verdict, RegistrationVerdict::aligned);
-    EXPECT_EQ(found.motion.scale, 1);
-    EXPECT_LT(Eigen::AngleAxisd(found.motion.after(rigid).rotation).angle(), 1e-4);
+    const MeshRegistration registration = register_mesh(shaped(pot, rigid), pot, options);
+    EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned);
+    EXPECT_EQ(registration.motion.scale, 1);
+    EXPECT_LT(Eigen::AngleAxisd(registration.motion.after(rigid).rotation).angle(), 1e-4);
 }
 
 TEST(MeshRegistration, AnySizeOfBothMeshes) {
-    const Mesh pot = made("teapot", 1500);
+    const Mesh pot = synthetic_mesh("teapot", 1500);
     for (const double size : {1e-12, 1e12}) {
         Motion tiny, huge;
         tiny.scale = size;
         huge.scale = 1 / size;
-        const MeshRegistration found = register_mesh(shaped(pot, tiny), shaped(pot, huge));
-        EXPECT_EQ(found.verdict, RegistrationVerdict::aligned);
-        EXPECT_NEAR(found.motion.scale * size * size, 1, 1e-6);
+        const MeshRegistration registration = register_mesh(shaped(pot, tiny), shaped(pot, huge));
+        EXPECT_EQ(registration.verdict, RegistrationVerdict::aligned);
+        EXPECT_NEAR(registration.motion.scale * size * size, 1, 1e-6);
     }
 }
 
-TEST(MeshRegistration, DegenerateMeshesAreRefusedOrHeld) {
+TEST(MeshRegistration, DegenerateMeshesAreRefusedOrHandled) {
     TriangleSoup triangle;
     triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     triangle.triangles = {{0, 1, 2}};
@@ -197,7 +197,7 @@ TEST(MeshRegistration, DegenerateMeshesAreRefusedOrHeld) {
     const Mesh flat = build_mesh(test::grid(5, 5, false, false, [](double u, double v) {
         return std::array<double, 3>{u, 2 * v, 0};
     }));
-    const Mesh pot = made("teapot", 1500);
+    const Mesh pot = synthetic_mesh("teapot", 1500);
     for (const Mesh& bad : {build_mesh(triangle), build_mesh(point), flat, Mesh()}) {
         EXPECT_THROW(register_mesh(bad, pot), Error);
         EXPECT_THROW(register_mesh(pot, bad), Error);
@@ -211,16 +211,16 @@ TEST(MeshRegistration, DegenerateMeshesAreRefusedOrHeld) {
 }
 
 TEST(MeshRegistration, SameForAnyNumberOfThreadsAndCancelled) {
-    const Mesh a = made("hand", 3000, 1), b = made("hand", 5000, 2);
+    const Mesh a = synthetic_mesh("hand", 3000, 1), b = synthetic_mesh("hand", 5000, 2);
     const int before = threads();
     set_threads(1);
-    const MeshRegistration one = register_mesh(a, b);
+    const MeshRegistration single_threaded = register_mesh(a, b);
     set_threads(3);
     const MeshRegistration three = register_mesh(a, b);
     set_threads(before);
-    EXPECT_EQ(one.motion, three.motion);
-    EXPECT_EQ(one.agreement.rms, three.agreement.rms);
-    EXPECT_EQ(one.mirrored.rms, three.mirrored.rms);
+    EXPECT_EQ(single_threaded.motion, three.motion);
+    EXPECT_EQ(single_threaded.agreement.rms, three.agreement.rms);
+    EXPECT_EQ(single_threaded.mirrored.rms, three.mirrored.rms);
     Watch watch;
     watch.cancel();
     const WatchScope scope(&watch);

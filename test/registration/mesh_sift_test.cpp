@@ -13,18 +13,19 @@ namespace {
 
 TEST(MeshSift, FeaturesMoveWithTheSurface) {
     const Mesh mesh = test::head(1, 1).mesh;
-    const FeatureSet here = mesh_sift(mesh);
-    ASSERT_GT(here.features.size(), 20U);
+    const FeatureSet features = mesh_sift(mesh);
+    ASSERT_GT(features.features.size(), 20U);
     for (const double scale : {1.0, 1e-3, 1e4}) {
         const Motion motion = test::motion(scale, 10 * scale);
-        const FeatureSet there = mesh_sift(test::moved(mesh, motion));
-        ASSERT_EQ(there.features.size(), here.features.size()) << scale;
-        for (std::size_t i = 0; i < here.features.size(); ++i) {
-            EXPECT_EQ(there.features[i].vertex, here.features[i].vertex);
-            EXPECT_NEAR(there.features[i].scale, scale * here.features[i].scale, 1e-9 * there.features[i].scale);
-            EXPECT_LT((there.features[i].direction - motion.rotation * here.features[i].direction).norm(), 0.01);
+        const FeatureSet moved_features = mesh_sift(test::moved(mesh, motion));
+        ASSERT_EQ(moved_features.features.size(), features.features.size()) << scale;
+        for (std::size_t i = 0; i < features.features.size(); ++i) {
+            EXPECT_EQ(moved_features.features[i].vertex, features.features[i].vertex);
+            EXPECT_NEAR(moved_features.features[i].scale, scale * features.features[i].scale,
+                        1e-9 * moved_features.features[i].scale);
+            EXPECT_LT((moved_features.features[i].direction - motion.rotation * features.features[i].direction).norm(), 0.01);
         }
-        EXPECT_LT((there.descriptors - here.descriptors).cwiseAbs().maxCoeff(), 0.02);
+        EXPECT_LT((moved_features.descriptors - features.descriptors).cwiseAbs().maxCoeff(), 0.02);
     }
 }
 
@@ -67,7 +68,7 @@ TEST(MeshSift, AnIndependentMeshOfTheSameSurfaceHasTheSameFeatures) {
     EXPECT_GT(found, 0.6 * front);
 }
 
-TEST(MeshSift, NothingIsFoundAtTheBorder) {
+TEST(MeshSift, HasNoFeaturesAtTheBorder) {
     const HeadCast head = test::head(1, 1);
     std::vector<bool> keep;
     for (const auto label : head.face_labels) keep.push_back(label != static_cast<int>(HeadPart::back));
@@ -90,11 +91,11 @@ TEST(MeshSift, NothingIsFoundAtTheBorder) {
 TEST(MeshSift, SameForAnyNumberOfThreads) {
     const Mesh mesh = test::head(1, 1).mesh;
     set_threads(1);
-    const FeatureSet one = mesh_sift(mesh);
+    const FeatureSet single_threaded = mesh_sift(mesh);
     set_threads(2);
     const FeatureSet two = mesh_sift(mesh);
     set_threads(0);
-    EXPECT_TRUE(one.descriptors == two.descriptors);
+    EXPECT_TRUE(single_threaded.descriptors == two.descriptors);
 }
 
 TEST(MeshSift, DegenerateMeshes) {
@@ -116,7 +117,7 @@ TEST(Matches, ASurfaceMatchesItself) {
     EXPECT_TRUE(match_features(set, FeatureSet()).empty());
 }
 
-TEST(Matches, ConsistentOnesTellTheMotion) {
+TEST(Matches, ConsistentMatchesDetermineTheMotion) {
     const Mesh a = test::head(1, 1).mesh;
     for (const double scale : {1.0, 0.93}) {
         const Motion truth = test::motion(scale);
@@ -126,16 +127,16 @@ TEST(Matches, ConsistentOnesTellTheMotion) {
         const FeatureSet fa = mesh_sift(a, options), fb = mesh_sift(b, options);
         ConsistentOptions consistent;
         consistent.shrinkage = scale < 1 ? 0.15 : 0;
-        const auto found = consistent_matches(fa, fb, match_features(fa, fb), consistent);
-        EXPECT_GT(found.matches.size(), 8U);
-        EXPECT_LT(test::rotation_between(found.motion.rotation, truth.rotation), 4);
-        EXPECT_NEAR(found.motion.scale, scale, 0.03);
-        for (const auto& match : found.matches)
-            EXPECT_LT((found.motion(fa.features[match.a].point) - fb.features[match.b].point).norm(), 0.0201 * 66);
+        const auto result = consistent_matches(fa, fb, match_features(fa, fb), consistent);
+        EXPECT_GT(result.matches.size(), 8U);
+        EXPECT_LT(test::rotation_between(result.motion.rotation, truth.rotation), 4);
+        EXPECT_NEAR(result.motion.scale, scale, 0.03);
+        for (const auto& match : result.matches)
+            EXPECT_LT((result.motion(fa.features[match.a].point) - fb.features[match.b].point).norm(), 0.0201 * 66);
     }
 }
 
-TEST(Matches, ThoseOfOneMouldAreMoreConsistentThanThoseOfTwo) {
+TEST(Matches, MatchesOfOneMouldAreMoreConsistentThanThoseOfTwo) {
     std::vector<FeatureSet> sets;
     SiftOptions options;
     options.size = 66;
@@ -149,7 +150,7 @@ TEST(Matches, ThoseOfOneMouldAreMoreConsistentThanThoseOfTwo) {
     EXPECT_GT(2 * count(2, 3), 3 * other);
 }
 
-TEST(Matches, NoneOfNone) {
+TEST(Matches, EmptySetsHaveNoMatches) {
     const ConsistentMatches none = consistent_matches(FeatureSet(), FeatureSet(), {});
     EXPECT_TRUE(none.matches.empty());
     EXPECT_TRUE(none.motion.rotation.isIdentity());

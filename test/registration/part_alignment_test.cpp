@@ -38,7 +38,7 @@ double degrees_between(const Motion& a, const Motion& b) {
     return Eigen::AngleAxisd(Eigen::Matrix3d(a.rotation.transpose() * b.rotation)).angle() * 180 / std::numbers::pi;
 }
 
-TEST(PartAlignment, FindsItsPlaceBackFromNearBy) {
+TEST(PartAlignment, ConvergesFromNearby) {
     const Mesh whole = potato();
     const SurfaceSearch search(whole);
     BreakOptions options;
@@ -54,16 +54,16 @@ TEST(PartAlignment, FindsItsPlaceBackFromNearBy) {
         }();
         const Motion truth = piece.pose.after(away.inverse());
         const Motion start = nudge(6, Vector3d(0.05, -0.05, 0.03)).after(truth);
-        const PartAlignment found = align_part(part, {}, search, start);
-        EXPECT_TRUE(found.settled);
-        EXPECT_LT(degrees_between(found.pose, truth), 1e-3 + 1e-6 * far);
-        EXPECT_LT(found.residual, 1e-4);
-        EXPECT_GT(found.overlap, 0.99);
-        EXPECT_EQ(found.pose.scale, 1);
+        const PartAlignment alignment = align_part(part, {}, search, start);
+        EXPECT_TRUE(alignment.settled);
+        EXPECT_LT(degrees_between(alignment.pose, truth), 1e-3 + 1e-6 * far);
+        EXPECT_LT(alignment.residual, 1e-4);
+        EXPECT_GT(alignment.overlap, 0.99);
+        EXPECT_EQ(alignment.pose.scale, 1);
     }
 }
 
-TEST(PartAlignment, NoiseAndWhatIsNotThereDoLittleHarm) {
+TEST(PartAlignment, ToleratesNoiseAndMissingSurface) {
     Mesh whole = potato();
     const SurfaceSearch search(whole);
     // The fragment has a growth that the whole does not have.
@@ -77,14 +77,14 @@ TEST(PartAlignment, NoiseAndWhatIsNotThereDoLittleHarm) {
     options.share = 0.4;
     options.noise = 0.002;
     const BrokenPiece piece = break_off(grown, Point(0.3, 0.3, 1.6), options);
-    const PartAlignment found = align_part(piece.mesh, {}, search, nudge(5, Vector3d(0.05, 0, 0.05)).after(piece.pose));
-    EXPECT_LT(degrees_between(found.pose, piece.pose), 0.5);
+    const PartAlignment alignment = align_part(piece.mesh, {}, search, nudge(5, Vector3d(0.05, 0, 0.05)).after(piece.pose));
+    EXPECT_LT(degrees_between(alignment.pose, piece.pose), 0.5);
     for (const Vertex v : piece.mesh.vertices())
-        EXPECT_LT((found.pose(eigen(piece.mesh.point(v))) - piece.pose(eigen(piece.mesh.point(v)))).norm(), 0.02);
+        EXPECT_LT((alignment.pose(eigen(piece.mesh.point(v))) - piece.pose(eigen(piece.mesh.point(v)))).norm(), 0.02);
 }
 
 // A ball fits in any turn: anchors decide.
-TEST(PartAlignment, AnchorsHoldWhatTheSurfaceLeavesOpen) {
+TEST(PartAlignment, AnchorsFixTheSlippableMotions) {
     const Mesh ball = build_mesh(test::octahedron_sphere(4));
     const SurfaceSearch search(ball);
     const BrokenPiece piece = break_off(ball, Point(0, 0, 1), {});
@@ -95,7 +95,7 @@ TEST(PartAlignment, AnchorsHoldWhatTheSurfaceLeavesOpen) {
     EXPECT_LT(degrees_between(align_part(piece.mesh, {}, search, start, anchors).pose, piece.pose), 0.01);
     const PartAlignment free = align_part(piece.mesh, {}, search, start);
     EXPECT_LT(free.residual, 0.01);
-    EXPECT_GT(degrees_between(free.pose, piece.pose), 5) << "nothing tells the turn, so none is made";
+    EXPECT_GT(degrees_between(free.pose, piece.pose), 5) << "nothing determines the rotation, so none is applied";
 }
 
 TEST(PartAlignment, TheSameForAnyNumberOfThreads) {
@@ -119,16 +119,16 @@ TEST(PartAlignment, DegenerateParts) {
     EXPECT_THROW(align_part(Mesh(), {}, search, {}), Error);
     EXPECT_THROW(align_part(whole, std::vector<bool>(3, true), search, {}), Error);
     EXPECT_THROW(align_part(whole, std::vector<bool>(whole.number_of_faces(), false), search, {}), Error);
-    // Out of reach of everything: it stays where it is, and says so.
+    // Beyond the search radius of everything: it stays where it is, and reports it.
     Motion away;
     away.translation = Vector3d(100, 0, 0);
     const PartAlignment lost = align_part(whole, {}, search, away);
     EXPECT_EQ(lost.overlap, 0);
     EXPECT_EQ(lost.pose.translation, away.translation);
     // One face.
-    std::vector<bool> one(whole.number_of_faces(), false);
-    one[0] = true;
-    EXPECT_LE(align_part(whole, one, search, {}).residual, 1e-9);
+    std::vector<bool> single_face(whole.number_of_faces(), false);
+    single_face[0] = true;
+    EXPECT_LE(align_part(whole, single_face, search, {}).residual, 1e-9);
 }
 
 }  // namespace

@@ -45,15 +45,15 @@ Vector3d middle_of(const Mesh& mesh) {
     return sum;
 }
 
-BrokenPiece broken(const Mesh& whole, const Point& at, double share, double noise = 0, std::uint64_t seed = 1) {
+BrokenPiece broken(const Mesh& whole, const Point& centre, double share, double noise = 0, std::uint64_t seed = 1) {
     BreakOptions options;
     options.share = share;
     options.noise = noise;
     options.seed = seed;
-    return break_off(whole, at, options);
+    return break_off(whole, centre, options);
 }
 
-TEST(PoseSearch, FindsWhereAPieceBelongs) {
+TEST(PoseSearch, FindsThePoseOfAPiece) {
     const Mesh whole = potato();
     const double diagonal = box_diagonal(whole);
     const SurfaceSearch surface(whole);
@@ -61,9 +61,9 @@ TEST(PoseSearch, FindsWhereAPieceBelongs) {
     for (const double noise : {0.0, 0.005})
         for (const std::uint64_t seed : {1, 2}) {
             const BrokenPiece piece = broken(whole, seed == 1 ? Point(0, 0.5, 1.6) : Point(1, 0, 0), 0.25, noise, seed);
-            const PoseSearchResult found = search.find(piece.mesh);
-            ASSERT_TRUE(found.decided) << found.reason;
-            const PoseCandidate& best = found.candidates.front();
+            const PoseSearchResult result = search.find(piece.mesh);
+            ASSERT_TRUE(result.decided) << result.reason;
+            const PoseCandidate& best = result.candidates.front();
             const Vector3d middle = middle_of(piece.mesh);
             EXPECT_LT(degrees_between(best.pose, piece.pose), noise > 0 ? 3 : 0.5);
             EXPECT_LT((best.pose(middle) - piece.pose(middle)).norm(), (noise > 0 ? 0.01 : 0.002) * diagonal);
@@ -71,22 +71,22 @@ TEST(PoseSearch, FindsWhereAPieceBelongs) {
             EXPECT_LT(best.inside, 0.1);
             EXPECT_EQ(best.scale, 1);
             EXPECT_EQ(best.pose.scale, 1);
-            EXPECT_EQ(found.slippable.kind, SlippableKind::none);
-            for (std::size_t k = 1; k < found.candidates.size(); ++k)
-                EXPECT_LE(found.candidates[k].score, found.candidates[k - 1].score);
+            EXPECT_EQ(result.slippable.kind, SlippableKind::none);
+            for (std::size_t k = 1; k < result.candidates.size(); ++k)
+                EXPECT_LE(result.candidates[k].score, result.candidates[k - 1].score);
         }
 }
 
-TEST(PoseSearch, AnySizeAnyPlace) {
+TEST(PoseSearch, DoesNotDependOnUnitOrPosition) {
     const Mesh start = potato();
     for (const double size : {1e-6, 1e6})
         for (const double far : {0.0, 1e4}) {
             const Mesh whole = shaped(start, [&](const Vector3d& p) { return Vector3d(size * (p + far * Vector3d(1, -1, 1))); });
             const SurfaceSearch surface(whole);
             const BrokenPiece piece = broken(whole, point_of(size * (Vector3d(0, 0.5, 1.6) + far * Vector3d(1, -1, 1))), 0.25);
-            const PoseSearchResult found = PoseSearch(surface).find(piece.mesh);
-            ASSERT_TRUE(found.decided) << found.reason;
-            EXPECT_LT(degrees_between(found.candidates.front().pose, piece.pose), 1);
+            const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
+            ASSERT_TRUE(result.decided) << result.reason;
+            EXPECT_LT(degrees_between(result.candidates.front().pose, piece.pose), 1);
         }
 }
 
@@ -98,9 +98,9 @@ TEST(PoseSearch, FindsTheScaleToo) {
     PoseSearchOptions options;
     options.min_scale = 1.1;
     options.max_scale = 1.8;
-    const PoseSearchResult found = PoseSearch(surface, options).find(larger);
-    ASSERT_TRUE(found.decided) << found.reason;
-    const PoseCandidate& best = found.candidates.front();
+    const PoseSearchResult result = PoseSearch(surface, options).find(larger);
+    ASSERT_TRUE(result.decided) << result.reason;
+    const PoseCandidate& best = result.candidates.front();
     EXPECT_NEAR(best.scale, 1.37, 0.02);
     EXPECT_LT(degrees_between(best.pose, piece.pose), 2);
     // Onto the scaled whole.
@@ -122,59 +122,59 @@ TEST(PoseSearch, OnlyMarkedFacesCount) {
             if (spoilt[v]) marks[f] = false;
     for (const Vertex v : piece.mesh.vertices())
         if (spoilt[v]) piece.mesh.point(v) = point_of(middle + 3 * (eigen(piece.mesh.point(v)) - middle));
-    const PoseSearchResult found = PoseSearch(surface).find(piece.mesh, marks);
-    ASSERT_TRUE(found.decided) << found.reason;
-    EXPECT_LT(degrees_between(found.candidates.front().pose, piece.pose), 1);
-    EXPECT_GT(found.candidates.front().share, 0.95);
+    const PoseSearchResult result = PoseSearch(surface).find(piece.mesh, marks);
+    ASSERT_TRUE(result.decided) << result.reason;
+    EXPECT_LT(degrees_between(result.candidates.front().pose, piece.pose), 1);
+    EXPECT_GT(result.candidates.front().share, 0.95);
 }
 
-TEST(PoseSearch, NamesWhatABallLeavesOpen) {
+TEST(PoseSearch, ReportsTheSlippableMotionsOfABall) {
     const Mesh whole = shaped(ball(), [](const Vector3d& p) { return Vector3d(2 * p + Vector3d(1, 2, 3)); });
     const SurfaceSearch surface(whole);
     const BrokenPiece piece = broken(whole, Point(1, 2, 5), 0.2);
-    const PoseSearchResult found = PoseSearch(surface).find(piece.mesh);
-    EXPECT_EQ(found.slippable.kind, SlippableKind::sphere);
-    EXPECT_LT((found.slippable.point - Vector3d(1, 2, 3)).norm(), 0.05);
-    EXPECT_EQ(found.ways.size(), 3u);
-    for (const SlippableRange& way : found.ways) {
-        EXPECT_TRUE(way.rotates);
-        EXPECT_GT(way.maximum - way.minimum, 6);  // all around
+    const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
+    EXPECT_EQ(result.slippable.kind, SlippableKind::sphere);
+    EXPECT_LT((result.slippable.point - Vector3d(1, 2, 3)).norm(), 0.05);
+    EXPECT_EQ(result.ways.size(), 3u);
+    for (const SlippableRange& range : result.ways) {
+        EXPECT_TRUE(range.rotates);
+        EXPECT_GT(range.maximum - range.minimum, 6);  // all around
     }
     // But for that, the piece lies where it should.
-    ASSERT_TRUE(found.decided) << found.reason;
+    ASSERT_TRUE(result.decided) << result.reason;
     EXPECT_TRUE(
-        found.slippable.contains(found.candidates.front().pose.after(piece.pose.inverse()), Vector3d(1, 2, 3), 0.05, 0.05));
+        result.slippable.contains(result.candidates.front().pose.after(piece.pose.inverse()), Vector3d(1, 2, 3), 0.05, 0.05));
 }
 
-TEST(PoseSearch, NamesTheTurnOfAVessel) {
+TEST(PoseSearch, ReportsTheOpenRotationOfAVessel) {
     const Mesh whole = shaped(ball(), [](const Vector3d& p) {
         const double z = 2 * p.z(), r = std::hypot(p.x(), p.y()), wide = 1 + 0.3 * std::sin(2.5 * z + 0.5) + 0.15 * z;
         return r > 0 ? Vector3d(wide * p.x(), wide * p.y(), z) : Vector3d(0, 0, z);
     });
     const SurfaceSearch surface(whole);
     const BrokenPiece piece = broken(whole, Point(1, 0, 0.3), 0.2);
-    const PoseSearchResult found = PoseSearch(surface).find(piece.mesh);
-    ASSERT_TRUE(found.decided) << found.reason;
-    EXPECT_EQ(found.slippable.kind, SlippableKind::rotation);
-    EXPECT_GT(std::abs(found.slippable.direction.z()), 0.999);
-    EXPECT_LT(found.slippable.point.head<2>().norm(), 0.02);
-    const Motion between = found.candidates.front().pose.after(piece.pose.inverse());
-    EXPECT_TRUE(found.slippable.contains(between, Vector3d::Zero(), 0.03, 0.03));
+    const PoseSearchResult result = PoseSearch(surface).find(piece.mesh);
+    ASSERT_TRUE(result.decided) << result.reason;
+    EXPECT_EQ(result.slippable.kind, SlippableKind::rotation);
+    EXPECT_GT(std::abs(result.slippable.direction.z()), 0.999);
+    EXPECT_LT(result.slippable.point.head<2>().norm(), 0.02);
+    const Motion between = result.candidates.front().pose.after(piece.pose.inverse());
+    EXPECT_TRUE(result.slippable.contains(between, Vector3d::Zero(), 0.03, 0.03));
     EXPECT_LT(std::abs(between(Vector3d(0, 0, 1)).z() - 1), 0.02);
 }
 
-TEST(PoseSearch, SaysWhenItCannotDecide) {
-    // A stranger: as large as a piece of the potato, and of no such shape.
+TEST(PoseSearch, ReportsWhenItCannotDecide) {
+    // An unrelated object: as large as a piece of the potato, but of another shape.
     const Mesh whole = potato();
     const SurfaceSearch surface(whole);
     const PoseSearch search(surface);
     const Mesh torus = shaped(build_mesh(test::torus(120, 60)), [](const Vector3d& p) {
         return Vector3d((0.5 + 0.1 * std::sin(5 * p.y())) * p.x(), 0.4 * p.y(), 0.5 * p.z());
     });
-    const PoseSearchResult stranger = search.find(torus);
-    EXPECT_FALSE(stranger.decided);
-    EXPECT_FALSE(stranger.reason.empty());
-    EXPECT_LT(stranger.confidence, 0.5);
+    const PoseSearchResult unrelated = search.find(torus);
+    EXPECT_FALSE(unrelated.decided);
+    EXPECT_FALSE(unrelated.reason.empty());
+    EXPECT_LT(unrelated.confidence, 0.5);
 
     // A lens: its two ends look alike.
     const Mesh lens = shaped(ball(), [](const Vector3d& p) {
@@ -209,7 +209,7 @@ TEST(PoseSearch, SameForAnyNumberOfThreads) {
     EXPECT_EQ(results[0].confidence, results[1].confidence);
 }
 
-TEST(PoseSearch, RefusesWhatMakesNoSense) {
+TEST(PoseSearch, RefusesInvalidInput) {
     const Mesh whole = potato();
     const SurfaceSearch surface(whole);
     const PoseSearch search(surface);
@@ -222,9 +222,10 @@ TEST(PoseSearch, RefusesWhatMakesNoSense) {
     wrong.min_scale = 2;
     EXPECT_THROW(PoseSearch(surface, wrong), Error);
     // One triangle has a place anywhere: nothing to decide by.
-    Mesh one;
-    one.add_face(one.add_vertex(Point(0, 0, 0)), one.add_vertex(Point(0.3, 0, 0)), one.add_vertex(Point(0, 0.3, 0)));
-    const PoseSearchResult flat = search.find(one);
+    Mesh triangle;
+    triangle.add_face(triangle.add_vertex(Point(0, 0, 0)), triangle.add_vertex(Point(0.3, 0, 0)),
+                      triangle.add_vertex(Point(0, 0.3, 0)));
+    const PoseSearchResult flat = search.find(triangle);
     EXPECT_FALSE(flat.decided);
     EXPECT_FALSE(flat.reason.empty());
 }
@@ -275,8 +276,8 @@ TEST(PairTable, VotesForTheMotion) {
     const auto voted = table.vote(part, 10, 100, 1, 1);
     ASSERT_EQ(voted.size(), 10u);
     std::size_t near = 0;
-    for (const VotedMotion& one : voted)
-        if (degrees_between(one.motion, away.inverse()) < 12) ++near;
+    for (const VotedMotion& candidate : voted)
+        if (degrees_between(candidate.motion, away.inverse()) < 12) ++near;
     EXPECT_GE(near, 8u);
     EXPECT_TRUE(table.vote({}, 10, 100, 1, 1).empty());
     EXPECT_TRUE(PairTable({}, 1, 0.1).vote(part, 10, 100, 1, 1).empty());

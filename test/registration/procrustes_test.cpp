@@ -42,24 +42,24 @@ TEST(Procrustes, UndoesAMotionAnywhereAndInAnyUnit) {
         for (const double far : {0.0, 1e5}) {
             const SimilarityMap true_map = motion(2.5, 2.9, far * unit * Eigen::Vector3d(1, -1, 2));
             const Landmarks from = unit * x, to = true_map.apply(from);
-            const SimilarityMap found = procrustes(from, to, {.scaling = true});
-            EXPECT_NEAR(found.scale, 2.5, 1e-9);
-            EXPECT_LT((found.rotation - true_map.rotation).norm(), 1e-9);
-            EXPECT_LT((found.apply(from) - to).norm() / unit, 1e-9 * (1 + far));
-            EXPECT_NEAR(found.rotation.determinant(), 1, 1e-12);
+            const SimilarityMap map = procrustes(from, to, {.scaling = true});
+            EXPECT_NEAR(map.scale, 2.5, 1e-9);
+            EXPECT_LT((map.rotation - true_map.rotation).norm(), 1e-9);
+            EXPECT_LT((map.apply(from) - to).norm() / unit, 1e-9 * (1 + far));
+            EXPECT_NEAR(map.rotation.determinant(), 1, 1e-12);
         }
     const SimilarityMap rigid = procrustes(x, motion(1, -1, {1, 2, 3}).apply(x));
     EXPECT_EQ(rigid.scale, 1);
     EXPECT_LT(rigid.sum_of_squares, 1e-24);
 }
 
-TEST(Procrustes, MirrorImagesStayApartUnlessAsked) {
+TEST(Procrustes, MirrorImagesDifferUnlessReflectionIsAllowed) {
     const Landmarks x = random_landmarks(8, 2);
     Landmarks mirrored = x;
     mirrored.col(0) *= -1;
-    const SimilarityMap turned = procrustes(x, mirrored);
-    EXPECT_NEAR(turned.rotation.determinant(), 1, 1e-12);
-    EXPECT_GT(turned.sum_of_squares, 0.1);
+    const SimilarityMap rotated = procrustes(x, mirrored);
+    EXPECT_NEAR(rotated.rotation.determinant(), 1, 1e-12);
+    EXPECT_GT(rotated.sum_of_squares, 0.1);
     EXPECT_LT(procrustes(x, mirrored, {.reflection = true}).sum_of_squares, 1e-24);
 }
 
@@ -85,15 +85,15 @@ TEST(Procrustes, LandmarksOnALineAndInAPlane) {
     Landmarks line(4, 3), goal(4, 3);
     line << 0, 0, 0, 1, 0, 0, 2, 0, 0, 5, 0, 0;
     goal << 3, 0, 0, 3, 1, 0, 3, 2, 0, 3, 5, 0;
-    const SimilarityMap found = procrustes(line, goal);
-    EXPECT_LT(found.sum_of_squares, 1e-24);
-    EXPECT_NEAR(found.rotation.determinant(), 1, 1e-12);
+    const SimilarityMap map = procrustes(line, goal);
+    EXPECT_LT(map.sum_of_squares, 1e-24);
+    EXPECT_NEAR(map.rotation.determinant(), 1, 1e-12);
     Landmarks triangle(3, 3);
     triangle << 0, 0, 0, 1, 0, 0, 0, 1, 0;
     EXPECT_LT(procrustes(triangle, motion(1, 1, {0, 0, 1}).apply(triangle)).sum_of_squares, 1e-24);
 }
 
-TEST(Procrustes, RefusesWhatItCannotUse) {
+TEST(Procrustes, RefusesInvalidConfigurations) {
     const Landmarks x = random_landmarks(5, 6);
     EXPECT_THROW(procrustes(x, random_landmarks(4, 6)), Error);
     EXPECT_THROW(procrustes(x.topRows(2), x.topRows(2)), Error);
@@ -105,7 +105,7 @@ TEST(Procrustes, RefusesWhatItCannotUse) {
     EXPECT_THROW(generalised_procrustes({x, random_landmarks(6, 1)}), Error);
 }
 
-TEST(GeneralisedProcrustes, OfMovedCopiesLeavesNothing) {
+TEST(GeneralisedProcrustes, MovedCopiesHaveNoResidual) {
     const Landmarks x = random_landmarks(10, 7);
     std::vector<Landmarks> copies{x};
     for (int i = 1; i < 6; ++i) copies.push_back(motion(i, 0.9 * i, Eigen::Vector3d(i, 0, -i)).apply(x));
@@ -123,7 +123,7 @@ TEST(GeneralisedProcrustes, OfMovedCopiesLeavesNothing) {
     EXPECT_GT(generalised_procrustes(copies).sum_of_squares, 1) << "sizes differ";
 }
 
-TEST(GeneralisedProcrustes, OfOneAndOfTwo) {
+TEST(GeneralisedProcrustes, OneAndTwoConfigurations) {
     const Landmarks x = random_landmarks(9, 8), y = random_landmarks(9, 9);
     EXPECT_LT(generalised_procrustes({x}).sum_of_squares, 1e-24);
     // About the mean of two lies half of what lies between them.
@@ -131,26 +131,28 @@ TEST(GeneralisedProcrustes, OfOneAndOfTwo) {
 }
 
 TEST(GeneralisedProcrustes, IsAFixedPointAndTheSameForAnyNumberOfThreads) {
-    std::vector<Landmarks> some;
+    std::vector<Landmarks> configurations;
     const Landmarks base = random_landmarks(15, 10);
     for (std::uint64_t i = 0; i < 12; ++i)
-        some.push_back(motion(1, static_cast<double>(i), {1, 1, 1}).apply(base + 0.2 * random_landmarks(15, 20 + i)));
+        configurations.push_back(motion(1, static_cast<double>(i), {1, 1, 1}).apply(base + 0.2 * random_landmarks(15, 20 + i)));
     const int before = threads();
     set_threads(1);
-    const GeneralisedProcrustes one = generalised_procrustes(some);
+    const GeneralisedProcrustes single_threaded = generalised_procrustes(configurations);
     set_threads(3);
-    const GeneralisedProcrustes three = generalised_procrustes(some);
+    const GeneralisedProcrustes three = generalised_procrustes(configurations);
     set_threads(before);
-    EXPECT_EQ(one.mean, three.mean);
-    ASSERT_TRUE(one.converged);
+    EXPECT_EQ(single_threaded.mean, three.mean);
+    ASSERT_TRUE(single_threaded.converged);
     Landmarks mean = Landmarks::Zero(15, 3);
-    for (const Landmarks& x : one.aligned) {
+    for (const Landmarks& x : single_threaded.aligned) {
         mean += x / 12;
-        EXPECT_LT((procrustes(x, one.mean).rotation - Eigen::Matrix3d::Identity()).norm(), 1e-7) << "no turn is better";
+        EXPECT_LT((procrustes(x, single_threaded.mean).rotation - Eigen::Matrix3d::Identity()).norm(), 1e-7)
+            << "no turn is better";
     }
-    EXPECT_LT((mean - one.mean).norm(), 1e-12);
-    const PrincipalComponents components = principal_components(shape_rows(one.aligned), 3);
-    EXPECT_NEAR(components.total_variance * 11, one.sum_of_squares, 1e-9) << "the variance of the shapes is what is left";
+    EXPECT_LT((mean - single_threaded.mean).norm(), 1e-12);
+    const PrincipalComponents components = principal_components(shape_rows(single_threaded.aligned), 3);
+    EXPECT_NEAR(components.total_variance * 11, single_threaded.sum_of_squares, 1e-9)
+        << "the variance of the shapes is what is left";
 }
 
 std::vector<Landmarks> configurations_in(const Path& folder) {

@@ -12,7 +12,7 @@ using namespace ostraka::test;
 
 namespace {
 
-Mesh made(const std::string& name, std::uint64_t vertices) {
+Mesh synthetic_mesh(const std::string& name, std::uint64_t vertices) {
     MakeOptions options;
     options.vertices = vertices;
     return make_mesh(synthetic_object(name), options).mesh;
@@ -21,7 +21,7 @@ Mesh made(const std::string& name, std::uint64_t vertices) {
 class RegisterCommand : public ::testing::Test {
 protected:
     void SetUp() override {
-        const Mesh hand = made("hand", 3000);
+        const Mesh hand = synthetic_mesh("hand", 3000);
         Mesh moved = hand, mirror = hand;
         const Eigen::Matrix3d turn = Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
         for (const Vertex v : hand.vertices()) {
@@ -30,27 +30,28 @@ protected:
         }
         write_mesh(scratch / "moved.ply", moved);
         write_mesh(scratch / "mirror.ply", mirror);
-        write_mesh(scratch / "hand.ply", made("hand", 6000));
-        write_mesh(scratch / "chair.ply", made("chair", 3000));
+        write_mesh(scratch / "hand.ply", synthetic_mesh("hand", 6000));
+        write_mesh(scratch / "chair.ply", synthetic_mesh("chair", 3000));
     }
-    [[nodiscard]] std::string at(const std::string& name) const { return (scratch / name).string(); }
+    [[nodiscard]] std::string file_path(const std::string& name) const { return (scratch / name).string(); }
     Scratch scratch;
 };
 
 }  // namespace
 
 TEST_F(RegisterCommand, WritesTheMovedMeshAndTheMatrix) {
-    const CommandResult result = run_command("mesh register " + at("moved.ply") + " " + at("hand.ply") + " " + at("out.ply") +
-                                             " --matrix " + at("m.json") + " --json");
+    const CommandResult result = run_command("mesh register " + file_path("moved.ply") + " " + file_path("hand.ply") + " " +
+                                             file_path("out.ply") + " --matrix " + file_path("m.json") + " --json");
     ASSERT_EQ(result.code, 0) << result.err;
     const Json report = parse_json(result.out, "report");
     EXPECT_STREQ(report["result"]["verdict"].GetString(), "aligned");
     EXPECT_NEAR(report["result"]["scale"].GetDouble(), 1000, 1);
-    const Json matrix = read_json(at("m.json"));
+    const Json matrix = read_json(file_path("m.json"));
     Eigen::Matrix4d m;
     for (unsigned i = 0; i < 4; ++i)
         for (unsigned j = 0; j < 4; ++j) m(i, j) = matrix[i][j].GetDouble();
-    const Mesh from = read_mesh(at("moved.ply")).mesh, out = read_mesh(at("out.ply")).mesh, hand = made("hand", 3000);
+    const Mesh from = read_mesh(file_path("moved.ply")).mesh, out = read_mesh(file_path("out.ply")).mesh,
+               hand = synthetic_mesh("hand", 3000);
     for (const Vertex v : from.vertices()) {
         const Eigen::Vector3d expected = (m * eigen(from.point(v)).homogeneous()).head<3>();
         EXPECT_LT((eigen(out.point(v)) - expected).norm(), 1e-9 * box_diagonal(hand));
@@ -58,9 +59,10 @@ TEST_F(RegisterCommand, WritesTheMovedMeshAndTheMatrix) {
     }
 }
 
-TEST_F(RegisterCommand, SaysNoToMirrorImagesAndOtherObjectsAndWritesNothing) {
+TEST_F(RegisterCommand, RefusesMirrorImagesAndOtherObjectsAndWritesNothing) {
     for (const auto& [source, words] : {std::pair{"mirror.ply", "mirror image"}, std::pair{"chair.ply", "not the same object"}}) {
-        const CommandResult result = run_command("mesh register " + at(source) + " " + at("hand.ply") + " " + at("no.ply"));
+        const CommandResult result =
+            run_command("mesh register " + file_path(source) + " " + file_path("hand.ply") + " " + file_path("no.ply"));
         EXPECT_EQ(result.code, 3) << source << result.err;
         EXPECT_NE(result.out.find(words), std::string::npos) << result.out;
         EXPECT_FALSE(std::filesystem::exists(scratch / "no.ply"));
@@ -69,10 +71,11 @@ TEST_F(RegisterCommand, SaysNoToMirrorImagesAndOtherObjectsAndWritesNothing) {
 
 TEST_F(RegisterCommand, BadInputNamesTheFile) {
     write_file(scratch / "flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    for (const std::string& files : {at("flat.obj") + " " + at("hand.ply"), at("hand.ply") + " " + at("flat.obj")}) {
+    for (const std::string& files :
+         {file_path("flat.obj") + " " + file_path("hand.ply"), file_path("hand.ply") + " " + file_path("flat.obj")}) {
         const CommandResult result = run_command("mesh register " + files);
         EXPECT_EQ(result.code, 1);
         EXPECT_NE(result.err.find("flat.obj"), std::string::npos) << result.err;
     }
-    EXPECT_EQ(run_command("mesh register " + at("hand.ply") + " " + at("hand.ply") + " --tolerance 2").code, 2);
+    EXPECT_EQ(run_command("mesh register " + file_path("hand.ply") + " " + file_path("hand.ply") + " --tolerance 2").code, 2);
 }

@@ -28,12 +28,13 @@ Fragment block(const Vector3d& at) {
     return fragment;
 }
 
-TEST(GroupAxis, OfSherdsThatLieWellTheyAgree) {
-    const Motion there = tilted();
-    const std::vector<Fragment> placed{sherd(0, 2, 0, 0.7, there), sherd(2, 4, 0.3, 1, there), sherd(4, 6, 0, 1, there)};
+TEST(GroupAxis, AxesOfWellPlacedSherdsAgree) {
+    const Motion placement = tilted();
+    const std::vector<Fragment> placed{sherd(0, 2, 0, 0.7, placement), sherd(2, 4, 0.3, 1, placement),
+                                       sherd(4, 6, 0, 1, placement)};
     const GroupAxis group = axis_of_group(placed, {{0, 1}, {1, 2}});
     ASSERT_TRUE(group.axis.found) << group.axis.reason;
-    EXPECT_GT(std::abs(eigen(group.axis.direction).dot(there.rotation * Vector3d::UnitZ())), 1 - 1e-5);
+    EXPECT_GT(std::abs(eigen(group.axis.direction).dot(placement.rotation * Vector3d::UnitZ())), 1 - 1e-5);
     EXPECT_NEAR(group.round, 1, 1e-9);
     EXPECT_NEAR(group.diameter, 3, 0.03);
     ASSERT_EQ(group.joins.size(), 2U);
@@ -57,7 +58,7 @@ TEST(GroupAxis, AWrongJoinContradicts) {
     EXPECT_EQ(group.fragments[2].use, SherdUse::left_out);
 }
 
-TEST(GroupAxis, BlocksWereNotTurned) {
+TEST(GroupAxis, BlocksHaveNoAxis) {
     const std::vector<Fragment> placed{block({0, 0, 0}), block({1, 0, 0}), block({0, 1.3, 0.2})};
     const GroupAxis group = axis_of_group(placed, {{0, 1}, {0, 2}});
     EXPECT_FALSE(group.axis.found);

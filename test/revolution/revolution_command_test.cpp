@@ -26,12 +26,12 @@ protected:
         pot.edge = 0.6;
         ShatterOptions breaking;
         breaking.pieces = 3;
-        for (const Sherd& one : shatter(make_pot(pot), breaking)) {
+        for (const Sherd& sherd : shatter(make_pot(pot), breaking)) {
             files.push_back(scratch / ("sherd" + std::to_string(files.size() + 1) + ".ply"));
-            write_mesh(files.back(), one.mesh);
+            write_mesh(files.back(), sherd.mesh);
         }
     }
-    [[nodiscard]] std::string all() const {
+    [[nodiscard]] std::string quoted_files() const {
         std::string text;
         for (const Path& file : files) text += quoted(file) + " ";
         return text;
@@ -40,9 +40,9 @@ protected:
     std::vector<Path> files;
 };
 
-TEST_F(RevolutionCommand, ReportsAsTheSchemaSays) {
+TEST_F(RevolutionCommand, ReportsAsInTheSchema) {
     const auto run =
-        run_command("template turn " + all() + "--vertices 3000 --unit mm --json --output " + quoted(scratch / "out"));
+        run_command("template turn " + quoted_files() + "--vertices 3000 --unit mm --json --output " + quoted(scratch / "out"));
     ASSERT_EQ(run.code, 0) << run.err;
     const Json report = parse_json(run.out, "report");
     const JsonValue& result = report["result"];
@@ -53,21 +53,21 @@ TEST_F(RevolutionCommand, ReportsAsTheSchemaSays) {
     EXPECT_STREQ(result["sherds"][0]["name"].GetString(), "sherd1");
     const Mesh mesh = read_mesh(scratch / "out" / "turned.ply").mesh;
     EXPECT_EQ(result["vertices"].GetUint64(), mesh.number_of_vertices());
-    const Template made = load_template(read_template(scratch / "out" / "turned.template.json"));
-    for (const Finding& finding : made.findings) EXPECT_FALSE(finding.defect) << finding.text;
+    const Template built = load_template(read_template(scratch / "out" / "turned.template.json"));
+    for (const Finding& finding : built.findings) EXPECT_FALSE(finding.defect) << finding.text;
     // What the schema does not allow is refused by it.
     Json broken = parse_json(run.out, "report");
     broken["result"].RemoveMember("height");
     EXPECT_THROW(validate(broken["result"], "turned", "report"), Error);
 }
 
-TEST_F(RevolutionCommand, AFitOnItMatchesRotationsByBreaks) {
-    ASSERT_EQ(run_command("template turn " + all() + "--vertices 6000 --output " + quoted(scratch / "out")).code, 0);
-    // Half a turn for the first one: about the vessel's axis, which tells nothing of where it is.
+TEST_F(RevolutionCommand, AFitMatchesRotationsByFractures) {
+    ASSERT_EQ(run_command("template turn " + quoted_files() + "--vertices 6000 --output " + quoted(scratch / "out")).code, 0);
+    // Half a turn of the first one about the axis of the vessel, which does not determine its position.
     Mesh mesh = read_mesh(files[0]).mesh;
     for (const Vertex v : mesh.vertices()) mesh.point(v) = Point(-mesh.point(v).x(), -mesh.point(v).y(), mesh.point(v).z());
     write_mesh(files[0], mesh);
-    const std::string fit = "fit " + quoted(scratch / "out" / "turned.template.json") + " " + all() +
+    const std::string fit = "fit " + quoted(scratch / "out" / "turned.template.json") + " " + quoted_files() +
                             "--facets auto --json --output " + quoted(scratch / "fitted");
     const auto run = run_command(fit);
     ASSERT_TRUE(run.code == 0 || run.code == 3) << run.err;
@@ -80,10 +80,10 @@ TEST_F(RevolutionCommand, AFitOnItMatchesRotationsByBreaks) {
     for (const auto& joint : result["joints"].GetArray())
         if (joint["carries"].GetBool() && joint["decided"].GetBool()) {
             const auto pose = [&](const std::string& name) {
-                for (const auto& one : result["fragments"].GetArray())
-                    if (name == one["name"].GetString()) {
-                        const double angle = std::atan2(one["pose"][1][0].GetDouble() - one["pose"][0][1].GetDouble(),
-                                                        one["pose"][0][0].GetDouble() + one["pose"][1][1].GetDouble());
+                for (const auto& entry : result["fragments"].GetArray())
+                    if (name == entry["name"].GetString()) {
+                        const double angle = std::atan2(entry["pose"][1][0].GetDouble() - entry["pose"][0][1].GetDouble(),
+                                                        entry["pose"][0][0].GetDouble() + entry["pose"][1][1].GetDouble());
                         return angle + (name == "sherd1" ? M_PI : 0.0);
                     }
                 ADD_FAILURE() << name;
@@ -91,9 +91,9 @@ TEST_F(RevolutionCommand, AFitOnItMatchesRotationsByBreaks) {
             };
             EXPECT_NEAR(std::remainder(pose(joint["first"].GetString()) - pose(joint["second"].GetString()), 2 * M_PI), 0, 0.06);
         }
-    for (const auto& one : result["fragments"].GetArray()) {
-        ASSERT_TRUE(one.HasMember("turn")) << one["name"].GetString();
-        EXPECT_TRUE(one["turn"]["decided"].GetBool());
+    for (const auto& entry : result["fragments"].GetArray()) {
+        ASSERT_TRUE(entry.HasMember("turn")) << entry["name"].GetString();
+        EXPECT_TRUE(entry["turn"]["decided"].GetBool());
     }
     const auto never = run_command(fit + " --turns never");
     EXPECT_FALSE(parse_json(never.out, "report")["result"].HasMember("joints"));
@@ -107,7 +107,7 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
     TriangleSoup box = to_soup(read_mesh(files[0]).mesh);
     for (auto& p : box.points) p = {p[0] / 20, p[1] + 30, p[2]};
     write_mesh(flat, build_mesh(box));
-    const std::string command = "template turn " + quoted(text) + " " + all() + quoted(flat) + " " + quoted(cut) +
+    const std::string command = "template turn " + quoted(text) + " " + quoted_files() + quoted(flat) + " " + quoted(cut) +
                                 " --vertices 3000 --output " + quoted(scratch / "out");
     const auto run = run_command(command + " --json");
     ASSERT_EQ(run.code, 0) << run.err;
@@ -116,18 +116,18 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
     validate(result, "turned", "report");
     ASSERT_EQ(result["sherds"].Size(), files.size() + 3);
     EXPECT_NEAR(result["height"].GetDouble(), 20, 0.5);
-    std::size_t out = 0;
-    for (const auto& one : result["sherds"].GetArray()) {
-        const std::string name = one["name"].GetString();
+    std::size_t left_out_count = 0;
+    for (const auto& sherd : result["sherds"].GetArray()) {
+        const std::string name = sherd["name"].GetString();
         if (name.rfind("sherd", 0) == 0) {
-            EXPECT_STRNE(one["use"].GetString(), "left out") << name;
+            EXPECT_STRNE(sherd["use"].GetString(), "left out") << name;
             continue;
         }
-        EXPECT_STREQ(one["use"].GetString(), "left out") << name;
-        EXPECT_TRUE(one.HasMember("reason")) << name;
-        ++out;
+        EXPECT_STREQ(sherd["use"].GetString(), "left out") << name;
+        EXPECT_TRUE(sherd.HasMember("reason")) << name;
+        ++left_out_count;
     }
-    EXPECT_EQ(out, 3U);
+    EXPECT_EQ(left_out_count, 3U);
     const auto words = run_command(command);
     EXPECT_NE(words.out.find("left out: text"), std::string::npos) << words.out;
     EXPECT_NE(words.out.find("cut.ply"), std::string::npos) << words.out;
@@ -139,15 +139,15 @@ TEST_F(RevolutionCommand, BadFilesAmongGoodOnesAreLeftOutInOneRun) {
     EXPECT_NE(none.err.find("cut.ply"), std::string::npos) << none.err;
 }
 
-TEST_F(RevolutionCommand, BadInputIsNamedAndNothingIsWritten) {
+TEST_F(RevolutionCommand, BadInputIsReportedAndNothingIsWritten) {
     const Path out = scratch / "out";
     const std::string rest = " --output " + quoted(out);
     const auto missing = run_command("template turn " + quoted(scratch / "nope.ply") + rest);
     EXPECT_EQ(missing.code, 1);
     EXPECT_NE(missing.err.find("nope.ply"), std::string::npos) << missing.err;
     EXPECT_EQ(run_command("template turn" + rest).code, 2) << "no sherd";
-    EXPECT_EQ(run_command("template turn " + all()).code, 2) << "no folder";
-    EXPECT_EQ(run_command("template turn " + all() + "--vertices 1" + rest).code, 2);
+    EXPECT_EQ(run_command("template turn " + quoted_files()).code, 2) << "no folder";
+    EXPECT_EQ(run_command("template turn " + quoted_files() + "--vertices 1" + rest).code, 2);
     TriangleSoup open = to_soup(read_mesh(files[0]).mesh);
     open.triangles.pop_back();
     write_mesh(scratch / "open.ply", build_mesh(open));

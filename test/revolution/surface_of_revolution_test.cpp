@@ -33,7 +33,7 @@ Motion shifted(const Motion& motion, const Vector3d& by) {
     return other.after(motion);
 }
 
-/// Largest distance of the wall, as it was made, from the template, both laid on one axis with their lowest places level.
+/// Largest distance of the true wall from the template, both on one axis with their lowest points at the same height.
 double worst(const RevolutionTemplate& revolved) {
     double maximum = 0;
     const double low = outside(0).y();
@@ -50,55 +50,55 @@ double worst(const RevolutionTemplate& revolved) {
 }
 
 TEST(RevolutionTemplate, IsTheVesselOfItsSherds) {
-    const Motion there = tilted();
-    const Vector3d up = there.rotation * Vector3d::UnitZ();
-    const Fragment a = sherd(0, 2, 0, 0.7, there), b = sherd(2.2, 4, 0.3, 1, there), c = sherd(4.1, 6, 0, 1, there);
+    const Motion pose = tilted();
+    const Vector3d up = pose.rotation * Vector3d::UnitZ();
+    const Fragment a = sherd(0, 2, 0, 0.7, pose), b = sherd(2.2, 4, 0.3, 1, pose), c = sherd(4.1, 6, 0, 1, pose);
     const RevolutionTemplate revolved = template_of_revolution({&a, &b, &c});
     EXPECT_GT(std::abs(eigen(revolved.axis.direction).dot(up)), 1 - 1e-5);
-    EXPECT_LT((eigen(revolved.axis.point) - there.translation).cross(up).norm(), 0.01);
+    EXPECT_LT((eigen(revolved.axis.point) - pose.translation).cross(up).norm(), 0.01);
     EXPECT_FALSE(revolved.base);
     EXPECT_TRUE(revolved.rim);
     EXPECT_TRUE(CGAL::is_closed(revolved.mesh));
     EXPECT_NEAR(double(revolved.mesh.number_of_vertices()), 25000, 1000);
-    // Either end may be up: there is no base to tell.
+    // Either end may be up: there is no base.
     const bool same_way = eigen(revolved.axis.direction).dot(up) > 0;
     if (same_way) {
         EXPECT_LT(worst(revolved), 0.02);
     }
     const SurfaceSearch surface(revolved.mesh);
-    for (const Fragment* one : {&a, &b, &c})
-        for (const Vertex v : one->mesh.vertices()) EXPECT_LT(surface.closest(one->mesh.point(v)).distance, 0.12);
-    for (const SherdOnProfile& one : revolved.sherds) {
-        EXPECT_TRUE(one.axis.found);
-        EXPECT_LT(one.lean, 0.3);
-        EXPECT_LT(one.aside, 0.01);
-        EXPECT_LT(one.residual, 0.01);
+    for (const Fragment* fragment : {&a, &b, &c})
+        for (const Vertex v : fragment->mesh.vertices()) EXPECT_LT(surface.closest(fragment->mesh.point(v)).distance, 0.12);
+    for (const SherdOnProfile& sherd_on_profile : revolved.sherds) {
+        EXPECT_TRUE(sherd_on_profile.axis.found);
+        EXPECT_LT(sherd_on_profile.lean, 0.3);
+        EXPECT_LT(sherd_on_profile.aside, 0.01);
+        EXPECT_LT(sherd_on_profile.residual, 0.01);
     }
     ASSERT_NO_THROW(check_annotations(revolved.annotations, revolved.mesh, "turned"));
     double outer = 0, inner = 0;
-    for (const Annotation& one : revolved.annotations.annotations) {
-        if (one.tag == "outer") outer = double(one.faces.size());
-        if (one.tag == "inner") inner = double(one.faces.size());
+    for (const Annotation& annotation : revolved.annotations.annotations) {
+        if (annotation.tag == "outer") outer = double(annotation.faces.size());
+        if (annotation.tag == "inner") inner = double(annotation.faces.size());
     }
     EXPECT_GT(outer, inner);
     EXPECT_EQ(outer + inner, double(revolved.mesh.number_of_faces()));
 }
 
-TEST(RevolutionTemplate, JointsOfALayoutGo) {
-    const Motion there = tilted();
-    const Vector3d up = there.rotation * Vector3d::UnitZ(), x = there.rotation * Vector3d::UnitX();
-    const Fragment a = sherd(0, 2, 0, 1, shifted(there, 0.08 * x + 0.05 * up)), b = sherd(2.2, 4, 0, 1, there),
-                   c = sherd(4.1, 6, 0, 1, shifted(there, -0.06 * x));
+TEST(RevolutionTemplate, GapsOfALayoutAreClosed) {
+    const Motion pose = tilted();
+    const Vector3d up = pose.rotation * Vector3d::UnitZ(), x = pose.rotation * Vector3d::UnitX();
+    const Fragment a = sherd(0, 2, 0, 1, shifted(pose, 0.08 * x + 0.05 * up)), b = sherd(2.2, 4, 0, 1, pose),
+                   c = sherd(4.1, 6, 0, 1, shifted(pose, -0.06 * x));
     const RevolutionTemplate revolved = template_of_revolution({&a, &b, &c});
-    for (const SherdOnProfile& one : revolved.sherds) EXPECT_LT(one.residual, 0.02);
+    for (const SherdOnProfile& sherd_on_profile : revolved.sherds) EXPECT_LT(sherd_on_profile.residual, 0.02);
     EXPECT_GT((revolved.sherds[0].motion.translation - revolved.sherds[1].motion.translation).norm(), 0.05);
-    EXPECT_NEAR((revolved.sherds[0].motion(there.translation + 0.05 * up) - revolved.sherds[1].motion(there.translation)).dot(up),
+    EXPECT_NEAR((revolved.sherds[0].motion(pose.translation + 0.05 * up) - revolved.sherds[1].motion(pose.translation)).dot(up),
                 0, 0.03);
 }
 
 TEST(RevolutionTemplate, OneSherdIsEnough) {
-    const Fragment one = sherd(0, 2.5, 0, 1, {});
-    const RevolutionTemplate revolved = template_of_revolution({&one});
+    const Fragment single = sherd(0, 2.5, 0, 1, {});
+    const RevolutionTemplate revolved = template_of_revolution({&single});
     EXPECT_GT(std::abs(revolved.axis.direction.z()), 1 - 1e-4);
     EXPECT_TRUE(CGAL::is_closed(revolved.mesh));
     double widest = 0;
@@ -137,49 +137,50 @@ Fragment named(const std::string& name, Fragment fragment) {
 }
 
 std::vector<const Fragment*> pointers(const std::vector<Fragment>& fragments) {
-    std::vector<const Fragment*> list;
-    for (const Fragment& one : fragments) list.push_back(&one);
-    return list;
+    std::vector<const Fragment*> result;
+    for (const Fragment& fragment : fragments) result.push_back(&fragment);
+    return result;
 }
 
 /// Five sherds of the pot, from foot to rim, none with a third of the turn.
-std::vector<Fragment> five_sherds(const Motion& there) {
-    std::vector<Fragment> list;
-    list.push_back(named("a", sherd(0, 1.2, 0, 0.6, there)));
-    list.push_back(named("b", sherd(1.5, 2.6, 0.4, 1, there)));
-    list.push_back(named("c", sherd(2.8, 4, 0, 0.5, there)));
-    list.push_back(named("d", sherd(4, 5, 0.45, 1, there)));
-    list.push_back(named("e", sherd(5.2, 6.2, 0.2, 0.8, there)));
-    return list;
+std::vector<Fragment> five_sherds(const Motion& pose) {
+    std::vector<Fragment> sherds;
+    sherds.push_back(named("a", sherd(0, 1.2, 0, 0.6, pose)));
+    sherds.push_back(named("b", sherd(1.5, 2.6, 0.4, 1, pose)));
+    sherds.push_back(named("c", sherd(2.8, 4, 0, 0.5, pose)));
+    sherds.push_back(named("d", sherd(4, 5, 0.45, 1, pose)));
+    sherds.push_back(named("e", sherd(5.2, 6.2, 0.2, 0.8, pose)));
+    return sherds;
 }
 
-TEST(RevolutionTemplate, ThreeOfEightSherdsAreOfNoUse) {
-    const Motion there = tilted();
-    const Vector3d up = there.rotation * Vector3d::UnitZ();
-    std::vector<Fragment> sherds = five_sherds(there);
+TEST(RevolutionTemplate, ThreeOfEightSherdsAreLeftOut) {
+    const Motion pose = tilted();
+    const Vector3d up = pose.rotation * Vector3d::UnitZ();
+    std::vector<Fragment> sherds = five_sherds(pose);
     Motion anywhere;
     anywhere.rotation = Eigen::AngleAxisd(1.1, Vector3d(1, 0.2, 0.4).normalized()).toRotationMatrix();
-    anywhere.translation = there.translation + Vector3d(2, 1, 0.5);
+    anywhere.translation = pose.translation + Vector3d(2, 1, 0.5);
     sherds.insert(sherds.begin() + 1, named("elsewhere", sherd(0, 1.5, 0, 0.9, anywhere)));
-    Motion beside = there;
-    beside.translation += there.rotation * Vector3d(1.4, 0.2, 1.3);
-    beside.rotation = there.rotation * Eigen::AngleAxisd(0.5, Vector3d::UnitX()).toRotationMatrix();
+    Motion beside = pose;
+    beside.translation += pose.rotation * Vector3d(1.4, 0.2, 1.3);
+    beside.rotation = pose.rotation * Eigen::AngleAxisd(0.5, Vector3d::UnitX()).toRotationMatrix();
     sherds.insert(sherds.begin() + 3, named("flat", tile(beside)));
-    Fragment large = named("inches", sherd(2.6, 4, 0.2, 0.9, there));
+    Fragment large = named("inches", sherd(2.6, 4, 0.2, 0.9, pose));
     large.mesh = scaled_by(large.mesh, 25.4);
     sherds.push_back(std::move(large));
     const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
-    for (const SherdOnProfile& one : revolved.sherds) {
-        const bool belongs = one.name.size() == 1;
-        EXPECT_EQ(one.use == SherdUse::left_out, !belongs) << one.name << ": " << one.reason;
-        EXPECT_EQ(one.reason.empty(), one.use == SherdUse::used) << one.name;
+    for (const SherdOnProfile& sherd_on_profile : revolved.sherds) {
+        const bool belongs = sherd_on_profile.name.size() == 1;
+        EXPECT_EQ(sherd_on_profile.use == SherdUse::left_out, !belongs)
+            << sherd_on_profile.name << ": " << sherd_on_profile.reason;
+        EXPECT_EQ(sherd_on_profile.reason.empty(), sherd_on_profile.use == SherdUse::used) << sherd_on_profile.name;
         if (belongs) {
-            EXPECT_LT(one.residual, 0.01) << one.name;
-            EXPECT_GT(one.weight, 0.02) << one.name;
+            EXPECT_LT(sherd_on_profile.residual, 0.01) << sherd_on_profile.name;
+            EXPECT_GT(sherd_on_profile.weight, 0.02) << sherd_on_profile.name;
         }
     }
     EXPECT_GT(std::abs(eigen(revolved.axis.direction).dot(up)), 1 - 1e-5);
-    EXPECT_LT((eigen(revolved.axis.point) - there.translation).cross(up).norm(), 0.01);
+    EXPECT_LT((eigen(revolved.axis.point) - pose.translation).cross(up).norm(), 0.01);
     EXPECT_LT(revolved.direction_error, 1);
     if (eigen(revolved.axis.direction).dot(up) > 0) {
         EXPECT_LT(worst(revolved), 0.02);
@@ -187,10 +188,10 @@ TEST(RevolutionTemplate, ThreeOfEightSherdsAreOfNoUse) {
     EXPECT_TRUE(CGAL::is_closed(revolved.mesh));
 }
 
-TEST(RevolutionTemplate, AShortArcTellsLittleOfTheAxisButItsWalls) {
-    const Motion there = tilted();
-    const std::vector<Fragment> sherds{named("wide", sherd(0, 2.2, 0, 1, there)), named("wider", sherd(2.4, 5, 0, 1, there)),
-                                       named("narrow", sherd(5.2, 5.4, 0.4, 0.5, there))};
+TEST(RevolutionTemplate, AShortArcContributesItsWallsButLittleToTheAxis) {
+    const Motion pose = tilted();
+    const std::vector<Fragment> sherds{named("wide", sherd(0, 2.2, 0, 1, pose)), named("wider", sherd(2.4, 5, 0, 1, pose)),
+                                       named("narrow", sherd(5.2, 5.4, 0.4, 0.5, pose))};
     const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
     EXPECT_EQ(revolved.sherds[0].use, SherdUse::used);
     EXPECT_EQ(revolved.sherds[1].use, SherdUse::used);
@@ -198,13 +199,13 @@ TEST(RevolutionTemplate, AShortArcTellsLittleOfTheAxisButItsWalls) {
     EXPECT_LT(revolved.sherds[2].weight, 0.8 * std::min(revolved.sherds[0].weight, revolved.sherds[1].weight));
     EXPECT_LT(revolved.sherds[2].residual, 0.01);
     double sum = 0;
-    for (const SherdOnProfile& one : revolved.sherds) sum += one.weight;
+    for (const SherdOnProfile& sherd_on_profile : revolved.sherds) sum += sherd_on_profile.weight;
     EXPECT_NEAR(sum, 1, 1e-6);
 }
 
-TEST(RevolutionTemplate, OfAnOpenSherdTheAxisCountsAndOneInsideOutIsTurned) {
-    const Motion there = tilted();
-    std::vector<Fragment> sherds = five_sherds(there);
+TEST(RevolutionTemplate, AnOpenSherdContributesItsAxisAndAnInvertedOneIsReversed) {
+    const Motion pose = tilted();
+    std::vector<Fragment> sherds = five_sherds(pose);
     CGAL::Euler::remove_face(sherds[2].mesh.halfedge(*sherds[2].mesh.faces().begin()), sherds[2].mesh);
     sherds[2].mesh.collect_garbage();
     TriangleSoup soup = to_soup(sherds[3].mesh);
@@ -228,7 +229,7 @@ TEST(RevolutionTemplate, OfAnOpenSherdTheAxisCountsAndOneInsideOutIsTurned) {
     EXPECT_GT(volume, 0) << area;
 }
 
-TEST(RevolutionTemplate, OfAFloorHalfIsEnough) {
+TEST(RevolutionTemplate, HalfAFloorIsEnough) {
     std::vector<Fragment> sherds = five_sherds({});
     std::vector<int> side;
     Fragment& floor = sherds.emplace_back();
@@ -241,7 +242,8 @@ TEST(RevolutionTemplate, OfAFloorHalfIsEnough) {
             return std::array<double, 3>{x, v * std::sqrt(0.93 * 0.93 - x * x), 0.2 * w};
         },
         side));
-    for (const int one : side) floor.facets.push_back(one < 4 ? Facet::fracture : one == 4 ? Facet::outer : Facet::inner);
+    for (const int side_number : side)
+        floor.facets.push_back(side_number < 4 ? Facet::fracture : side_number == 4 ? Facet::outer : Facet::inner);
     const RevolutionTemplate revolved = template_of_revolution(pointers(sherds));
     ASSERT_EQ(revolved.axis.direction.z() > 0.99, true);
     EXPECT_TRUE(revolved.base);
@@ -253,7 +255,7 @@ TEST(RevolutionTemplate, OfAFloorHalfIsEnough) {
     EXPECT_NEAR(high - low, 0.2, 0.02);
 }
 
-TEST(RevolutionTemplate, WhereNoSherdTellsAnythingAllAreNamed) {
+TEST(RevolutionTemplate, IfNoSherdIsUsableAllAreNamed) {
     Fragment few;
     few.name = "few";
     few.mesh = build_mesh(to_soup(tile({}).mesh));
@@ -278,7 +280,7 @@ TEST(RevolutionTemplate, WhereNoSherdTellsAnythingAllAreNamed) {
     }
 }
 
-TEST(RevolutionTemplate, OfTwoThatContradictEachOtherOneIsLeftOut) {
+TEST(RevolutionTemplate, OneOfTwoContradictingSherdsIsLeftOut) {
     Motion aside;
     aside.rotation = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix();
     const Fragment a = sherd(0, 2.5, 0, 1, {}), b = sherd(2.7, 4, 0, 1, aside);

@@ -32,8 +32,8 @@ struct FacetGraph {
     [[nodiscard]] std::size_t count() const { return places.size(); }
 };
 
-/// At most about `most` patches. Throws Error (input) for a mesh without area.
-FacetGraph facet_graph(const Mesh& mesh, std::size_t most = 24000);
+/// At most about `max_patches` patches. Throws Error (input) for a mesh without area.
+FacetGraph facet_graph(const Mesh& mesh, std::size_t max_patches = 24000);
 
 /// Results of rays cast from each patch into the solid.
 struct Walls {

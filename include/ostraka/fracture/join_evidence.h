@@ -33,9 +33,9 @@ struct JoinEvidence {
     double side_length = 0;  ///< length of the rim over which this is measured
 
     // Quality of the data, independent of the pose.
-    double noise = 0;   ///< noise of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
-    double edge = 0;    ///< mean edge length of the coarser mesh
-    double breaks = 0;  ///< root mean square deviation of the smoother fracture from a quadric
+    double noise = 0;      ///< noise of the intact surfaces: root mean square deviation from quadrics over small neighbourhoods
+    double edge = 0;       ///< mean edge length of the coarser mesh
+    double roughness = 0;  ///< root mean square deviation of the smoother fracture from a quadric
 
     // On a vessel the normals of the intact surfaces meet its axis, however worn the fractures are: root mean square distances
     // of the normals from the best axis, as shares of the smaller fragment's size.
@@ -53,7 +53,7 @@ struct JoinEvidence {
 
 /// Log odds of a true join against chance from the evidence alone, learnt from fractures with known truth
 /// (data/joins.model.json).
-double join_log_odds(const JoinEvidence& seen);
+double join_log_odds(const JoinEvidence& evidence);
 /// Calibrated probability that a candidate is right, from its log odds and their lead over the best other candidate of its pair
 /// (below 0: behind).
 double join_probability(double log_odds, double lead);
@@ -63,6 +63,6 @@ double log_odds_of_a_join_among(std::size_t fragments);
 /// SHA-256 of the model: results of different models are not comparable.
 std::string join_model_version();
 /// The feature that is the strongest evidence against a join, as text.
-std::string weakest_evidence(const JoinEvidence& seen);
+std::string weakest_evidence(const JoinEvidence& evidence);
 
 }  // namespace ostraka

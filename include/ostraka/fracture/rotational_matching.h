@@ -53,7 +53,7 @@ struct RotationMatch {
     double wall = 0;                 ///< median width of the fractures: the unit of closeness
 };
 
-/// `whole` is a surface of revolution about the line through `point` along `direction`, and the sherds lie on it up to a
+/// `vessel` is a surface of revolution about the line through `point` along `direction`, and the sherds lie on it up to a
 /// rotation about that line. Every rotation of each pair is scored by the fracture area that comes close, facing the other,
 /// less the surface area that both would cover. The best rotations are refined by ICP as in pair_breaks, with all six degrees
 /// of freedom, the sherd's own surface constrained to the template. The assembly maximises the sum over all pairs, including
@@ -61,7 +61,7 @@ struct RotationMatch {
 /// decided if no other rotation of its two sides about the axis is nearly as good. Sherds without a decided joint are reported
 /// and placed where they overlap nothing, if possible. Deterministic. Throws Error (usage) without sherds or for options out of
 /// range.
-RotationMatch match_rotations(const Mesh& whole, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+RotationMatch match_rotations(const Mesh& vessel, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                               const std::vector<SherdOnAxis>& sherds, const RotationMatchOptions& options = {});
 
 }  // namespace ostraka

@@ -39,13 +39,13 @@ private:
         std::string fragment;  ///< name of the fragment, for the reader of the file
         PoseSearchResult result;
     };
-    struct Whole;
+    struct TemplateSearch;
     [[nodiscard]] std::string key_of(const Fragment& fragment, double min_scale, double max_scale) const;
 
     const Mesh& mesh_;
     PoseSearchOptions options_;
-    std::string of_template_;  ///< checksum of the part common to all keys
-    std::unique_ptr<Whole> whole_;
+    std::string template_key_;  ///< checksum of the part common to all keys
+    std::unique_ptr<TemplateSearch> template_search_;
     std::map<std::string, StoredSearch> stored_;  ///< by key
     std::size_t made_ = 0, reused_ = 0;
 };

@@ -20,7 +20,7 @@ TemplateCage template_in_cage(const Mesh& mesh, Mesh cage);
 
 /// The template's first cage, with the template's coordinates that belong to it and have no normal term; if there are none,
 /// mean value coordinates are computed. Nothing for a template without a cage. Throws Error as template_in_cage.
-std::optional<TemplateCage> cage_of(const Template& known);
+std::optional<TemplateCage> cage_of(const Template& package);
 
 /// A cage generated around the template (`make_cage`), with mean value coordinates. Throws Error as make_cage.
 TemplateCage made_cage(const Mesh& mesh, std::uint64_t vertices = 200);

@@ -56,8 +56,8 @@ struct MeshRegistration {
 MeshRegistration register_mesh(const Mesh& source, const Mesh& target, const MeshRegistrationOptions& options = {});
 
 /// The verdict and its reasons as one sentence; `diagonal`: of the target.
-std::string in_words(const MeshRegistration& found, double diagonal);
+std::string in_words(const MeshRegistration& registration, double diagonal);
 /// Remarks on an alignment: poses that fit equally, motions that the shape leaves open.
-std::vector<std::string> remarks_on(const MeshRegistration& found);
+std::vector<std::string> remarks_on(const MeshRegistration& registration);
 
 }  // namespace ostraka

@@ -26,7 +26,7 @@ struct SlippableMotions {
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line; normal of the plane
     double pitch = 0;                                      ///< of a helix: translation per radian
 
-    /// As text, such as "turn about a line".
+    /// As text, such as "rotation about a line".
     [[nodiscard]] std::string text() const;
     /// Samples of the group: multiples from -1 to 1 of `radians` and `length` along each of its directions.
     struct Step {
