@@ -12,6 +12,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -187,7 +189,7 @@ double orientation(const CageArrays& cage) {
 Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
     const CageArrays cage(mesh);
     if (!(orientation(cage) > 0))
-        fail_input("cage", "is inside out or without volume", "turn its faces so that their normals point outward");
+        fail_input("cage", "is inside out or without volume", "reverse its faces so that their normals point outward");
     const std::vector<FacePlane> planes = planes_of(cage);
     const double snap = options.snap * cage.diagonal;
     Coordinates result;
@@ -203,16 +205,15 @@ Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const Coor
         for (std::size_t i = 0; i < work.psi.size(); ++i) psi[i] = work.psi[i].psi[l] / (4 * pi * cage.scale);
         winding_numbers[point] = work.near[l] != 0 ? std::numeric_limits<double>::quiet_NaN() : sum;
     });
-    std::string list;
+    std::string outside_indices;
     std::size_t outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!(std::fabs(winding_numbers[i] - 1) <= 1e-6))
-            if (++outside <= 10) list += (list.empty() ? "" : ", ") + std::to_string(i);
+            if (++outside <= 10) outside_indices += (outside_indices.empty() ? "" : ", ") + std::to_string(i);
     if (outside > 0)
         fail_input("cage",
-                   std::to_string(outside) + (outside == 1 ? " point does" : " points do") +
-                       " not lie strictly inside, where alone Green coordinates are defined: " + list +
-                       (outside > 10 ? " ..." : ""),
+                   fmt::format("{} {} not lie strictly inside, the only place where Green coordinates are defined: {}{}", outside,
+                               outside == 1 ? "point does" : "points do", outside_indices, outside > 10 ? " ..." : ""),
                    "widen the cage there, or use mean value coordinates");
     return result;
 }

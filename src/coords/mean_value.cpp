@@ -229,8 +229,9 @@ Coordinates mean_value(const Mesh& mesh, const std::vector<Point>& points, const
         double sum = 0;
         for (const Work::OfVertex& v : work.vertex) sum += v.weight[l];
         if (!(std::fabs(sum) > 0) || !std::isfinite(sum))
-            fail_input("point " + std::to_string(point), "has no mean value coordinates in this cage: its weights have no sum",
-                       "it lies too far from the cage, or the cage encloses nothing");
+            fail_input("point " + std::to_string(point),
+                       "has no mean value coordinates in this cage: the sum of its weights is zero or not finite",
+                       "move the point closer to the cage, or give a cage that encloses a volume");
         for (std::size_t i = 0; i < work.vertex.size(); ++i) row[i] = work.vertex[i].weight[l] / sum;
     });
     return result;
