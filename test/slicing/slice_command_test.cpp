@@ -358,7 +358,7 @@ TEST(SliceCommand, DirectionsInWords) {
 TEST(SliceCommand, ReportsOfTwoSlicesAndSkeletons) {
     const auto pair = run_command("slice " + vase + "--heights 60,120");
     EXPECT_EQ(pair.code, 0);
-    EXPECT_NE(pair.out.find("two places are always in line"), std::string::npos) << pair.out;
+    EXPECT_NE(pair.out.find("two barycentres are always collinear"), std::string::npos) << pair.out;
     EXPECT_NE(pair.out.find("2 of 2 slices show the wall alone"), std::string::npos) << pair.out;
     const auto single = run_command("slice " + vase + "--heights 60");
     EXPECT_NE(single.out.find("one slice tells nothing"), std::string::npos) << single.out;
