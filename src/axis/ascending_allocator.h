@@ -46,9 +46,9 @@ public:
     }
     /// False if the memory is not from here.
     bool give_back(void* p, std::size_t bytes) {
-        auto* at = static_cast<std::byte*>(p);
-        if (std::less<>()(at, begin_) || !std::less<>()(at, end_)) return false;
-        free_[rounded(bytes)].push_back(at);
+        auto* address = static_cast<std::byte*>(p);
+        if (std::less<>()(address, begin_) || !std::less<>()(address, end_)) return false;
+        free_[rounded(bytes)].push_back(address);
         return true;
     }
 

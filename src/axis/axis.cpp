@@ -98,14 +98,14 @@ Axis principal_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axi
     set_line(axis, centre, eigen(moments.directions[0]), centre);
     axis.quality = moments.variances[0] > 0 ? 1 - moments.variances[1] / moments.variances[0] : 0;
     axis.found = axis.quality > 0.1;
-    if (!axis.found) axis.reason = "it is as wide as it is long: the first two principal variances agree";
+    if (!axis.found) axis.reason = "it is as wide as it is long: the first two principal variances are nearly equal";
     return axis;
 }
 
 Axis circle_axis(const std::vector<Point>& points) {
     Axis axis;
     if (points.size() < 3) {
-        axis.reason = "a circle needs three points";
+        axis.reason = "a circle needs at least three points";
         return axis;
     }
     Vector3d mean = Vector3d::Zero();
@@ -115,21 +115,21 @@ Axis circle_axis(const std::vector<Point>& points) {
     for (const auto& p : points) covariance += (eigen(p) - mean) * (eigen(p) - mean).transpose() / double(points.size());
     const SymmetricEigen3 solver(covariance);
     const Vector3d a = oriented(solver.eigenvectors().col(0)), u = solver.eigenvectors().col(2), w = a.cross(u);
-    std::vector<Eigen::Vector2d> flat;
-    for (const auto& p : points) flat.emplace_back(u.dot(eigen(p) - mean), w.dot(eigen(p) - mean));
-    const ArcFit fit = fit_arc(flat);
+    std::vector<Eigen::Vector2d> planar_points;
+    for (const auto& p : points) planar_points.emplace_back(u.dot(eigen(p) - mean), w.dot(eigen(p) - mean));
+    const ArcFit fit = fit_arc(planar_points);
     const Circle& circle = fit.circle;
     if (circle.radius < 0) {
-        axis.reason = "its vertices lie on one line";
+        axis.reason = "its vertices are collinear";
         return axis;
     }
     double sum = 0;
-    for (std::size_t i = 0; i < flat.size(); ++i) {
-        const Eigen::Vector2d q = flat[i] - circle.centre;
-        const double off = a.dot(eigen(points[i]) - mean);
-        sum += std::pow(q.norm() - circle.radius, 2) + off * off;
+    for (std::size_t i = 0; i < planar_points.size(); ++i) {
+        const Eigen::Vector2d q = planar_points[i] - circle.centre;
+        const double offset = a.dot(eigen(points[i]) - mean);
+        sum += std::pow(q.norm() - circle.radius, 2) + offset * offset;
     }
-    const double rms = std::sqrt(sum / double(flat.size()));
+    const double rms = std::sqrt(sum / double(planar_points.size()));
     const Vector3d centre = mean + circle.centre.x() * u + circle.centre.y() * w;
     set_line(axis, centre, a, centre);
     axis.quality = std::max(0.0, 1 - rms / circle.radius);

@@ -33,24 +33,24 @@ double independent(const std::vector<RoundSample>& samples, const AxisGuess& gue
         double weight = 0, sum = 0, squares = 0;
     };
     std::map<std::pair<int, int>, Patch> patches;
-    double all = 0, squares = 0;
+    double total_weight = 0, squares = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const double at = samples[i].weight * profile.robust[i];
-        if (profile.bin_of[i] < 0 || !(at > 0)) continue;
+        const double weight = samples[i].weight * profile.robust[i];
+        if (profile.bin_of[i] < 0 || !(weight > 0)) continue;
         const Vector3d d = samples[i].p - line.point;
-        const double around = std::atan2(guess.w.dot(d), guess.u.dot(d)) * profile.radius[i];
-        Patch& patch = patches[{profile.bin_of[i], static_cast<int>(std::floor(around / side))}];
-        patch.weight += at, patch.sum += at * error[i], patch.squares += at * at;
-        all += at, squares += at * error[i] * error[i];
+        const double arc_length = std::atan2(guess.w.dot(d), guess.u.dot(d)) * profile.radius[i];
+        Patch& patch = patches[{profile.bin_of[i], static_cast<int>(std::floor(arc_length / side))}];
+        patch.weight += weight, patch.sum += weight * error[i], patch.squares += weight * weight;
+        total_weight += weight, squares += weight * error[i] * error[i];
     }
-    if (!(all > 0) || !(squares > 0)) return count;
-    const double variance = squares / all;
-    double of_means = 0, expected = 0;
+    if (!(total_weight > 0) || !(squares > 0)) return count;
+    const double variance = squares / total_weight;
+    double between_patches = 0, expected = 0;
     for (const auto& [key, patch] : patches) {
-        of_means += patch.sum * patch.sum / patch.weight;
+        between_patches += patch.sum * patch.sum / patch.weight;
         expected += variance * patch.squares / patch.weight;
     }
-    return count / std::max(1.0, of_means / std::max(1e-300, expected));
+    return count / std::max(1.0, between_patches / std::max(1e-300, expected));
 }
 
 }  // namespace
@@ -83,15 +83,15 @@ AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
     const TurnedProfile profile(samples, line);
     const AxisRefinement system(samples, line, profile, guess.u, guess.w);
     // Samples of a floor count by their normals alone.
-    constexpr double meets = 0.2;
-    double all = 0, round = 0;
+    constexpr double max_sine = 0.2;
+    double total_area = 0, consistent_area = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        all += samples[i].weight;
-        if (std::abs(sine(samples[i], line)) > meets) continue;
+        total_area += samples[i].weight;
+        if (std::abs(sine(samples[i], line)) > max_sine) continue;
         if (profile.bin_of[i] >= 0 && std::abs(profile.error[i]) > state_->tolerance) continue;
-        round += samples[i].weight;
+        consistent_area += samples[i].weight;
     }
-    evidence.round = all > 0 ? round / all : 0;
+    evidence.round = total_area > 0 ? consistent_area / total_area : 0;
     if (!(system.weight > 0)) return evidence;
     const Eigen::Matrix4d damped = system.H + 1e-9 * system.H.trace() * Eigen::Matrix4d::Identity();
     const Eigen::Vector4d step = -solve_ldlt<4>(damped, system.g);
@@ -103,8 +103,8 @@ AxisEvidence AxisWitness::at(const AxisGuess& guess) const {
         squares += samples[i].weight * profile.robust[i] * (profile.bin_of[i] >= 0 ? error[i] * error[i] : 0);
     }
     // Faces are chords: no mesh is rounder than this.
-    constexpr double least = 2e-4;
-    const double variance = squares / system.weight + least * least;
+    constexpr double min_deviation = 2e-4;
+    const double variance = squares / system.weight + min_deviation * min_deviation;
     evidence.residual = std::sqrt(variance) * scale;
     evidence.samples = independent(samples, guess, line, profile, error, system.count);
     const Eigen::Vector4d unit(1 / scale, 1 / scale, 1, 1);

@@ -2,6 +2,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <numeric>
 
 namespace ostraka {
@@ -23,8 +25,10 @@ Axis axis_to_cut_along(const Mesh& mesh, const std::vector<Index>& faces, const 
         return axis_by(*options.direction, mesh, faces, options.axis);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::input) throw;
-        fail_input("mesh", "no " + to_string(*options.direction) + " axis to slice along: the mesh (or part) " + error.problem(),
-                   "repair or simplify it (ostraka mesh), or slice along another --direction, such as up or 0,0,1");
+        fail_input(
+            "mesh",
+            fmt::format("no {} axis to slice along: the mesh (or part) {}", to_string(*options.direction), error.problem()),
+            "repair or simplify it (ostraka mesh), or slice along another --direction, such as up or 0,0,1");
     }
 }
 
@@ -38,9 +42,9 @@ CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const Cu
     if (options.direction) {
         const Axis axis = axis_to_cut_along(mesh, faces, options);
         if (!axis.found) {
-            CutObject none;
-            none.reason = "no " + to_string(*options.direction) + " axis to slice along: " + axis.reason;
-            return none;
+            CutObject unsliced;
+            unsliced.reason = fmt::format("no {} axis to slice along: {}", to_string(*options.direction), axis.reason);
+            return unsliced;
         }
         if (options.direction == AxisMethod::skeleton) return cut_across(mesh, axis.lines.at(0), options.places.count, faces);
         along = axis.direction * along < 0 ? -axis.direction : axis.direction;
@@ -56,16 +60,16 @@ CutObject cut_object(const Mesh& mesh, const std::vector<Index>& faces, const Cu
 
 std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Index>& faces, const CutObject& cut, bool by_shape,
                                         const AxisOptions& options) {
-    std::vector<ComparedAxis> list;
+    std::vector<ComparedAxis> axes;
     const std::vector<Point> centres = cut.centres();
-    if (centres.size() < 2) return list;
+    if (centres.size() < 2) return axes;
     const auto add_line = [&](const std::string& name, const SliceLine& line) {
-        list.push_back({name, {}, line, {}, straightness(centres, line)});
+        axes.push_back({name, {}, line, {}, straightness(centres, line)});
     };
     const auto add_curve = [&](const std::string& name, const std::vector<Point>& curve) {
-        list.push_back({name, {}, {}, curve, straightness(centres, curve)});
+        axes.push_back({name, {}, {}, curve, straightness(centres, curve)});
     };
-    const auto add_none = [&](const std::string& name, const std::string& reason) { list.push_back({name, reason, {}, {}, {}}); };
+    const auto add_none = [&](const std::string& name, const std::string& reason) { axes.push_back({name, reason, {}, {}, {}}); };
     const auto attempt = [&](const std::string& name, const auto& add) {
         try {
             add();
@@ -76,10 +80,10 @@ std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Inde
     };
     const std::string regression = "regression of barycentres";
     if (cut.parallel) add_line("mean of barycentres", mean_line(cut.frames[0], centres));
-    if (centres.size() == 2) add_none(regression, "two places are always in line");
+    if (centres.size() == 2) add_none(regression, "two barycentres are always collinear");
     else attempt(regression, [&] { add_line(regression, regression_line(cut.frames[0], centres)); });
     if (!cut.curve.empty()) add_curve("skeleton", cut.curve);
-    if (!by_shape) return list;
+    if (!by_shape) return axes;
     for (const AxisMethod method : {AxisMethod::rotation, AxisMethod::principal, AxisMethod::slices, AxisMethod::skeleton}) {
         if (method == AxisMethod::skeleton && !cut.curve.empty()) continue;
         const std::string name = to_string(method);
@@ -91,7 +95,7 @@ std::vector<ComparedAxis> compared_axes(const Mesh& mesh, const std::vector<Inde
             else add_curve(name, axis.lines.at(0));
         });
     }
-    return list;
+    return axes;
 }
 
 }  // namespace ostraka

@@ -53,9 +53,9 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     Line best = reweighted(
         samples,
         [&] {
-            LineComplex all;
-            for (const auto& s : samples) all.add(s.p, s.n, s.weight);
-            return line_of(all);
+            LineComplex complex;
+            for (const auto& s : samples) complex.add(s.p, s.n, s.weight);
+            return line_of(complex);
         }(),
         10);
     double maximum = score(samples, step, best);
@@ -68,19 +68,19 @@ Line first_guess(const std::vector<Sample>& samples, const AreaMoments& moments,
     CancelCheck check;
     for (int trial = 0; trial < options.trials; ++trial) {
         check();
-        LineComplex some;
+        LineComplex complex;
         for (int k = 0; k < 6; ++k) {
             const Sample& s = samples[random() % samples.size()];
-            some.add(s.p, s.n);
+            complex.add(s.p, s.n);
         }
-        const Line line = line_of(some);
+        const Line line = line_of(complex);
         if (line.direction.allFinite() && line.point.allFinite()) consider(line);
     }
     return reweighted(samples, best, 15);
 }
 
 /// Area-weighted mean squared distance from the profile, clamped to `limit`; samples without a bin count with `limit`.
-double off_profile(const std::vector<Sample>& samples, const Profile& profile, double limit) {
+double profile_deviation(const std::vector<Sample>& samples, const Profile& profile, double limit) {
     double sum = 0;
     for (std::size_t i = 0; i < samples.size(); ++i)
         sum += samples[i].weight * std::pow(profile.bin_of[i] < 0 ? limit : std::min(limit, std::abs(profile.error[i])), 2);
@@ -105,7 +105,7 @@ Line refined(const std::vector<Sample>& samples, Line axis, int rounds) {
 }
 
 /// The axis in a given direction that the normals meet best.
-Line along(const std::vector<Sample>& samples, const Vector3d& direction) {
+Line axis_along(const std::vector<Sample>& samples, const Vector3d& direction) {
     const auto [u, w] = across(direction);
     Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
@@ -127,11 +127,11 @@ struct BestAxis {
     bool rival = false;
 };
 BestAxis best_axis(const std::vector<Sample>& samples, const Line& guess) {
-    Matrix3d of_normals = Matrix3d::Zero();
-    for (const Sample& s : samples) of_normals += s.weight * s.n * s.n.transpose();
-    const SymmetricEigen3 solver(of_normals);
+    Matrix3d normal_moments = Matrix3d::Zero();
+    for (const Sample& s : samples) normal_moments += s.weight * s.n * s.n.transpose();
+    const SymmetricEigen3 solver(normal_moments);
     std::vector<Line> starts{guess};
-    for (int k = 0; k < 3; ++k) starts.push_back(along(samples, solver.eigenvectors().col(k)));
+    for (int k = 0; k < 3; ++k) starts.push_back(axis_along(samples, solver.eigenvectors().col(k)));
     std::vector<Line> lines;
     std::vector<Profile> profiles;
     double sigma = 1;
@@ -141,13 +141,14 @@ BestAxis best_axis(const std::vector<Sample>& samples, const Line& guess) {
         sigma = std::min(sigma, profiles.back().sigma);
     }
     std::vector<double> deviations;
-    for (const Profile& profile : profiles) deviations.push_back(off_profile(samples, profile, 4.685 * std::max(sigma, 1e-4)));
-    const auto least = static_cast<std::size_t>(std::min_element(deviations.begin(), deviations.end()) - deviations.begin());
-    BestAxis best{lines[least], false};
+    for (const Profile& profile : profiles)
+        deviations.push_back(profile_deviation(samples, profile, 4.685 * std::max(sigma, 1e-4)));
+    const auto best_index = static_cast<std::size_t>(std::min_element(deviations.begin(), deviations.end()) - deviations.begin());
+    BestAxis best{lines[best_index], false};
     const auto radius = [&](std::size_t k) { return upper_median(profiles[k].radius); };
     for (std::size_t k = 0; k < lines.size(); ++k)
         best.rival = best.rival || (std::abs(lines[k].direction.dot(best.line.direction)) < std::cos(pi / 12) &&
-                                    deviations[k] < 1.5 * deviations[least] && radius(k) < 3 * radius(least));
+                                    deviations[k] < 1.5 * deviations[best_index] && radius(k) < 3 * radius(best_index));
     return best;
 }
 
@@ -155,11 +156,11 @@ BestAxis best_axis(const std::vector<Sample>& samples, const Line& guess) {
 double sphere_error(const std::vector<Sample>& samples, const Profile& profile) {
     Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
     Eigen::Vector4d b = Eigen::Vector4d::Zero();
-    const auto each = [&](const auto& visit) {
+    const auto for_each_on_profile = [&](const auto& visit) {
         for (std::size_t i = 0; i < samples.size(); ++i)
             if (profile.bin_of[i] >= 0 && profile.robust[i] > 0) visit(samples[i]);
     };
-    each([&](const Sample& s) {
+    for_each_on_profile([&](const Sample& s) {
         const Eigen::Vector4d row(2 * s.p.x(), 2 * s.p.y(), 2 * s.p.z(), 1);
         A += s.weight * row * row.transpose();
         b += s.weight * s.p.squaredNorm() * row;
@@ -168,7 +169,7 @@ double sphere_error(const std::vector<Sample>& samples, const Profile& profile) 
     const double square = x[3] + x.head<3>().squaredNorm();
     if (!x.allFinite() || !(square > 0)) return std::numeric_limits<double>::infinity();
     std::vector<double> errors;
-    each([&](const Sample& s) { errors.push_back(std::abs((s.p - x.head<3>()).norm() - std::sqrt(square))); });
+    for_each_on_profile([&](const Sample& s) { errors.push_back(std::abs((s.p - x.head<3>()).norm() - std::sqrt(square))); });
     return 1.4826 * upper_median(std::move(errors));
 }
 
@@ -181,12 +182,12 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     const std::vector<Sample> samples = take_samples(mesh, faces, options.smoothing, centroid, scale);
     Axis axis;
     if (samples.size() < 12) {
-        axis.reason = "it has too few faces to tell";
+        axis.reason = "it has too few faces to determine an axis";
         return axis;
     }
     // Every line across a flat part is an axis.
     if (moments.variances[2] < 1e-4 * moments.variances[1]) {
-        axis.reason = "it is flat: every line across it would do";
+        axis.reason = "it is flat: every line perpendicular to it is an axis";
         return axis;
     }
     const auto [line, rival] = best_axis(samples, first_guess(samples, moments, options));
@@ -215,10 +216,10 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     const double information = system.tilt_information();
     const double error = profile.sigma / std::sqrt(std::max(1e-300, information * std::max(1.0, system.count)));
     // The shorter the arc, the more the radius is correlated with a translation of the axis towards it.
-    Vector3d towards = Vector3d::Zero();
-    for (const double angle : angles) towards += Vector3d(std::cos(angle), std::sin(angle), 0) / double(angles.size());
+    Vector3d mean_direction = Vector3d::Zero();
+    for (const double angle : angles) mean_direction += Vector3d(std::cos(angle), std::sin(angle), 0) / double(angles.size());
     const double diameter_error =
-        2 * profile.sigma * std::sqrt((system.radius_uncertainty(towards.head<2>()) + 1) / std::max(1.0, system.count));
+        2 * profile.sigma * std::sqrt((system.radius_uncertainty(mean_direction.head<2>()) + 1) / std::max(1.0, system.count));
     axis.quality = facing > 0 ? round / facing : 0;
     axis.figures = {{"largest diameter", 2 * largest * scale, "length"},
                     {"circle preserved", covered_percent(angles), "%"},
@@ -227,15 +228,15 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
                     {"diameter error", std::min(1e6, diameter_error) * scale, "length"}};
     if (sphere_error(samples, profile) < 2 * profile.sigma ||
         information < 2e-4 * system.shift_information() * system.radius * system.radius) {
-        axis.reason = "it is like a part of a sphere: many axes would do";
+        axis.reason = "it resembles a part of a sphere: many axes fit";
         return axis;
     }
     if (rival) {
-        axis.reason = "it is round about several lines: too little of its turn is there to tell which";
+        axis.reason = "several axes fit: too little of its circumference is preserved to distinguish them";
         return axis;
     }
     if (axis.quality < options.min_quality) {
-        axis.reason = "it is not round about any line";
+        axis.reason = "it is not rotationally symmetric about any line";
         return axis;
     }
     if (error > 0.09) {
@@ -243,19 +244,19 @@ Axis rotation_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
         return axis;
     }
     if (2 * diameter_error > largest) {
-        axis.reason = "too little of its turn is there: the diameter is not determined to within a half";
+        axis.reason = "too little of its circumference is preserved: the diameter is not determined to within a half";
         return axis;
     }
     axis.found = true;
     set_line(axis, centroid + scale * line.point, line.direction, centroid);
     double minimum = 1e300, maximum = -1e300;
-    const Vector3d a = eigen(axis.direction), at = eigen(axis.point);
+    const Vector3d a = eigen(axis.direction), origin = eigen(axis.point);
     for (const Index f : faces)
         for (const Vertex v : corners(mesh, Face(f))) {
-            const double h = a.dot(eigen(mesh.point(v)) - at);
+            const double h = a.dot(eigen(mesh.point(v)) - origin);
             minimum = std::min(minimum, h), maximum = std::max(maximum, h);
         }
-    axis.lines = {{point_of(at + minimum * a), point_of(at + maximum * a)}};
+    axis.lines = {{point_of(origin + minimum * a), point_of(origin + maximum * a)}};
     return axis;
 }
 

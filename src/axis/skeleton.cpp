@@ -16,6 +16,7 @@
 
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Random.h>
+#include <fmt/core.h>
 
 #include <queue>
 #include <set>
@@ -28,18 +29,18 @@ namespace {
 
 /// The component of `faces`, connected over edges, with the most faces.
 std::vector<Index> largest_piece(const Mesh& mesh, const std::vector<Index>& faces) {
-    std::vector<bool> left(mesh.number_of_faces(), false);
-    for (const Index f : faces) left[f] = true;
+    std::vector<bool> remaining(mesh.number_of_faces(), false);
+    for (const Index f : faces) remaining[f] = true;
     std::vector<Index> best;
     for (const Index seed : faces) {
-        if (!left[seed]) continue;
+        if (!remaining[seed]) continue;
         std::vector<Index> piece{seed};
-        left[seed] = false;
+        remaining[seed] = false;
         for (std::size_t i = 0; i < piece.size(); ++i)
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(Face(piece[i])))) {
                 const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || !left[next]) continue;
-                left[next] = false;
+                if (next == Mesh::null_face() || !remaining[next]) continue;
+                remaining[next] = false;
                 piece.push_back(next.idx());
             }
         if (piece.size() > best.size()) best = std::move(piece);
@@ -67,7 +68,8 @@ Mesh capped(const Mesh& mesh, const std::vector<Index>& faces, const Vector3d& c
     }
     Mesh part;
     if (try_build_mesh(soup, part).any())
-        fail_input("part", "touches itself at a vertex", "remove the faces that hang on by a vertex, or use --method slices");
+        fail_input("part", "touches itself at a vertex",
+                   "remove the faces that are connected only by a vertex, or use --method slices");
     for (const Halfedge hole : holes_of(part))
         if (close_hole(part, hole) == 0)
             fail_input("part", "has an opening that cannot be capped", "close it, or use --method slices");
@@ -93,53 +95,53 @@ struct Graph {
 };
 
 /// Distances from `start` and the predecessors on the shortest paths.
-std::pair<std::vector<double>, std::vector<std::size_t>> ways(const Graph& graph, std::size_t start) {
+std::pair<std::vector<double>, std::vector<std::size_t>> shortest_paths(const Graph& graph, std::size_t start) {
     std::vector<double> distance(graph.points.size(), std::numeric_limits<double>::infinity());
-    std::vector<std::size_t> before(graph.points.size(), start);
+    std::vector<std::size_t> predecessor(graph.points.size(), start);
     std::priority_queue<std::pair<double, std::size_t>, std::vector<std::pair<double, std::size_t>>, std::greater<>> queue;
     queue.emplace(distance[start] = 0, start);
     while (!queue.empty()) {
-        const auto [at, v] = queue.top();
+        const auto [path_length, v] = queue.top();
         queue.pop();
-        if (at > distance[v]) continue;
+        if (path_length > distance[v]) continue;
         for (const auto& [next, length] : graph.links[v])
-            if (at + length < distance[next]) {
-                distance[next] = at + length;
-                before[next] = v;
+            if (path_length + length < distance[next]) {
+                distance[next] = path_length + length;
+                predecessor[next] = v;
                 queue.emplace(distance[next], next);
             }
     }
-    return {distance, before};
+    return {distance, predecessor};
 }
 
 std::size_t farthest(const std::vector<double>& distance) {
     return static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
 }
 
-std::vector<std::size_t> main_way(const Graph& graph) {
+std::vector<std::size_t> longest_path(const Graph& graph) {
     std::size_t leaf = graph.points.size();
     for (std::size_t v = 0; v < graph.points.size() && leaf == graph.points.size(); ++v)
         if (graph.links[v].size() == 1) leaf = v;
-    std::vector<std::size_t> way;
+    std::vector<std::size_t> path;
     if (leaf == graph.points.size()) {
         // No leaf: follows a loop, as long as it does not branch.
         std::size_t last = 0, v = 0;
         do {
-            way.push_back(v);
+            path.push_back(v);
             if (graph.links[v].size() != 2) return {};
             const std::size_t next =
                 graph.links[v][0].first == last && v != last ? graph.links[v][1].first : graph.links[v][0].first;
             last = v;
             v = next;
-        } while (v != 0 && way.size() <= graph.points.size());
-        way.push_back(0);
-        return way;
+        } while (v != 0 && path.size() <= graph.points.size());
+        path.push_back(0);
+        return path;
     }
-    const std::size_t one_end = farthest(ways(graph, leaf).first);
-    const auto [distance, before] = ways(graph, one_end);
-    for (std::size_t v = farthest(distance);; v = before[v]) {
-        way.push_back(v);
-        if (v == one_end) return way;
+    const std::size_t one_end = farthest(shortest_paths(graph, leaf).first);
+    const auto [distance, predecessor] = shortest_paths(graph, one_end);
+    for (std::size_t v = farthest(distance);; v = predecessor[v]) {
+        path.push_back(v);
+        if (v == one_end) return path;
     }
 }
 
@@ -175,7 +177,7 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     const AreaMoments moments = part_moments(mesh, faces, options);
     const std::vector<Index> piece = largest_piece(mesh, faces);
     if (piece.size() > 200000)
-        fail_input("part", "has " + std::to_string(piece.size()) + " faces, too many for a skeleton", "simplify the mesh first");
+        fail_input("part", fmt::format("has {} faces, too many for a skeleton", piece.size()), "simplify the mesh first");
     const Vector3d centre = eigen(moments.centroid);
     const double scale = part_diagonal(mesh, piece);
     // The library's flow does not check for cancellation.
@@ -183,26 +185,26 @@ Axis skeleton_axis(const Mesh& mesh, const std::vector<Index>& faces, const Axis
     const Graph graph =
         run_apart_on(Job(capped(mesh, piece, centre, scale), {}), [](Job& job) { job.second = skeleton_of(job.first); }).second;
     Axis axis;
-    const std::vector<std::size_t> way = graph.points.empty() ? std::vector<std::size_t>() : main_way(graph);
+    const std::vector<std::size_t> path = graph.points.empty() ? std::vector<std::size_t>() : longest_path(graph);
     double length = 0;
-    for (std::size_t i = 1; i < way.size(); ++i) length += (graph.points[way[i]] - graph.points[way[i - 1]]).norm();
+    for (std::size_t i = 1; i < path.size(); ++i) length += (graph.points[path[i]] - graph.points[path[i - 1]]).norm();
     std::size_t branches = 0;
     for (const auto& links : graph.links) branches += links.size() > 2;
     if (length < 0.25) {
         axis.reason =
-            graph.length < 0.25 ? "it shrinks to a point: it is not longer than wide" : "its skeleton has no longest way";
+            graph.length < 0.25 ? "it contracts to a point: it is not longer than wide" : "its skeleton has no longest path";
         return axis;
     }
     std::vector<Vector3d> middles;
     std::vector<double> weights;
     std::vector<Point> line;
     std::set<std::pair<std::size_t, std::size_t>> used;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-        line.push_back(point_of(centre + scale * graph.points[way[i]]));
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        line.push_back(point_of(centre + scale * graph.points[path[i]]));
         if (i == 0) continue;
-        middles.push_back((graph.points[way[i]] + graph.points[way[i - 1]]) / 2);
-        weights.push_back((graph.points[way[i]] - graph.points[way[i - 1]]).norm() + 1e-12);
-        used.insert(std::minmax(way[i], way[i - 1]));
+        middles.push_back((graph.points[path[i]] + graph.points[path[i - 1]]) / 2);
+        weights.push_back((graph.points[path[i]] - graph.points[path[i - 1]]).norm() + 1e-12);
+        used.insert(std::minmax(path[i], path[i - 1]));
     }
     const LineFit fit = fit_line(middles, weights);
     set_line(axis, centre + scale * fit.point, fit.direction, centre);

@@ -101,8 +101,8 @@ Axis slice_axis(const Mesh& mesh, const std::vector<Index>& faces, const AxisOpt
     parallel_for(
         rough.size(),
         [&](std::size_t i) {
-            const std::size_t before = i >= 2 ? i - 2 : 0, after = std::min(i + 2, rough.size() - 1);
-            const Vector3d tangent = rough[after].centre - rough[before].centre;
+            const std::size_t previous = i >= 2 ? i - 2 : 0, next = std::min(i + 2, rough.size() - 1);
+            const Vector3d tangent = rough[next].centre - rough[previous].centre;
             if (tangent.norm() > 0)
                 fine[i] = cut(mesh, faces, rough[i].centre, tangent.normalized(), 3 * rough[i].radius + 1e-9 * diagonal);
         },

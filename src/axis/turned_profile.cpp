@@ -17,7 +17,7 @@ std::vector<RoundSample> take_samples(const Mesh& mesh, const std::vector<Index>
         for (const Vertex v : corners(mesh, Face(f))) vertices.push_back(v.idx());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto place = [&](Vertex v) {
+    const auto index_of = [&](Vertex v) {
         return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v.idx()) - vertices.begin());
     };
     std::vector<std::array<std::size_t, 3>> triangles;
@@ -25,7 +25,7 @@ std::vector<RoundSample> take_samples(const Mesh& mesh, const std::vector<Index>
     double total = 0;
     for (const Index f : faces) {
         const auto c = corners(mesh, Face(f));
-        triangles.push_back({place(c[0]), place(c[1]), place(c[2])});
+        triangles.push_back({index_of(c[0]), index_of(c[1]), index_of(c[2])});
         const Vector3d n = eigen(area_vector(mesh, Face(f)));
         for (const std::size_t v : triangles.back()) normals[v] += n;
         total += n.norm();
@@ -44,18 +44,18 @@ std::vector<RoundSample> take_samples(const Mesh& mesh, const std::vector<Index>
     }
     const std::size_t maximum = 8000;
     std::vector<RoundSample> samples;
-    double passed = 0;
-    std::size_t taken = 0;
+    double area_so_far = 0;
+    std::size_t sample_count = 0;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const double area = face_area(mesh, Face(faces[i]));
         if (!(area > 0)) continue;
-        passed += area;
+        area_so_far += area;
         double weight = area / total;
         if (faces.size() > maximum) {
-            const auto due = static_cast<std::size_t>(passed / total * double(maximum));
-            if (due <= taken) continue;
-            weight = double(due - taken) / double(maximum);
-            taken = due;
+            const auto due = static_cast<std::size_t>(area_so_far / total * double(maximum));
+            if (due <= sample_count) continue;
+            weight = double(due - sample_count) / double(maximum);
+            sample_count = due;
         }
         Vector3d p = Vector3d::Zero(), n = Vector3d::Zero();
         for (const Vertex v : corners(mesh, Face(faces[i]))) p += (eigen(mesh.point(v)) - centre) / (3 * scale);
@@ -83,9 +83,9 @@ TurnedProfile::TurnedProfile(const std::vector<RoundSample>& samples, const Axis
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const Vector3d d = samples[i].p - axis.point;
         height[i] = d.dot(axis.direction);
-        const Vector3d away = d - height[i] * axis.direction;
-        radius[i] = away.norm();
-        if (radius[i] > 0.01) facing[i] = samples[i].n.dot(away) / radius[i];
+        const Vector3d offset = d - height[i] * axis.direction;
+        radius[i] = offset.norm();
+        if (radius[i] > 0.01) facing[i] = samples[i].n.dot(offset) / radius[i];
         if (std::abs(facing[i]) < 0.3) continue;
         minimum = std::min(minimum, height[i]), maximum = std::max(maximum, height[i]);
     }
@@ -93,9 +93,9 @@ TurnedProfile::TurnedProfile(const std::vector<RoundSample>& samples, const Axis
     bins.resize(2 * static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (std::abs(facing[i]) < 0.3) continue;
-        const int at =
+        const int bin_index =
             maximum > minimum ? std::min(count - 1, static_cast<int>((height[i] - minimum) / (maximum - minimum) * count)) : 0;
-        bin_of[i] = 2 * at + (facing[i] > 0 ? 1 : 0);
+        bin_of[i] = 2 * bin_index + (facing[i] > 0 ? 1 : 0);
         bins[static_cast<std::size_t>(bin_of[i])].members.push_back(i);
     }
     for (int round = 0; round < 6; ++round) fit(samples, round == 0);
@@ -159,14 +159,14 @@ AxisRefinement::AxisRefinement(const std::vector<RoundSample>& samples, const Ax
         if (bin.hh > 1e-12 * bin.weight) slope /= bin.hh;
         else slope.setZero();
         for (const std::size_t i : bin.members) {
-            const double at = samples[i].weight * profile.robust[i];
+            const double sample_weight = samples[i].weight * profile.robust[i];
             const Eigen::Vector4d r = row(i) - mean - (profile.height[i] - bin.height) * slope;
             rows[i] = r;
-            H += at * r * r.transpose();
-            g += at * profile.error[i] * r;
-            squares += at * profile.error[i] * profile.error[i];
-            radius += at * profile.radius[i];
-            sum += at, sum_squares += at * at;
+            H += sample_weight * r * r.transpose();
+            g += sample_weight * profile.error[i] * r;
+            squares += sample_weight * profile.error[i] * profile.error[i];
+            radius += sample_weight * profile.radius[i];
+            sum += sample_weight, sum_squares += sample_weight * sample_weight;
         }
     }
     weight = sum;
@@ -184,9 +184,9 @@ double AxisRefinement::shift_information() const {
 }
 double AxisRefinement::tilt_information() const {
     const Eigen::Matrix2d shifts = H.topLeftCorner<2, 2>() + 1e-12 * (H.trace() + 1e-30) * Eigen::Matrix2d::Identity();
-    const Eigen::Matrix2d left =
+    const Eigen::Matrix2d schur_complement =
         H.bottomRightCorner<2, 2>() - H.bottomLeftCorner<2, 2>() * shifts.inverse() * H.topRightCorner<2, 2>();
-    return std::max(0.0, SymmetricEigen2(left).eigenvalues()[0]) / weight;
+    return std::max(0.0, SymmetricEigen2(schur_complement).eigenvalues()[0]) / weight;
 }
 
 }  // namespace ostraka::detail

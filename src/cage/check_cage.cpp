@@ -11,6 +11,7 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Side_of_triangle_mesh.h>
+#include <fmt/core.h>
 
 #include <cmath>
 
@@ -21,18 +22,18 @@ namespace {
 constexpr std::size_t max_listed = 1000;
 
 std::size_t count_components(const Mesh& mesh) {
-    std::vector<bool> seen(mesh.number_of_faces(), false);
+    std::vector<bool> visited(mesh.number_of_faces(), false);
     std::size_t count = 0;
     for (const Face first : mesh.faces()) {
-        if (seen[first]) continue;
+        if (visited[first]) continue;
         ++count;
         std::vector<Face> stack{first};
-        seen[first] = true;
+        visited[first] = true;
         while (!stack.empty()) {
             const Face f = stack.back();
             stack.pop_back();
             for (const Face g : mesh.faces_around_face(mesh.halfedge(f)))
-                if (g != Mesh::null_face() && !seen[g]) seen[g] = true, stack.push_back(g);
+                if (g != Mesh::null_face() && !visited[g]) visited[g] = true, stack.push_back(g);
         }
     }
     return count;
@@ -97,9 +98,9 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
     for (Index v = 0; v < count; ++v) {
         result.clearance = std::min(result.clearance, nearest[v].distance);
         if (sides[v] == CGAL::ON_BOUNDED_SIDE) continue;
-        const bool on = sides[v] == CGAL::ON_BOUNDARY;
-        result.touching += on;
-        result.outside.push_back({v, on ? 0 : nearest[v].distance, nearest[v].face});
+        const bool on_boundary = sides[v] == CGAL::ON_BOUNDARY;
+        result.touching += on_boundary;
+        result.outside.push_back({v, on_boundary ? 0 : nearest[v].distance, nearest[v].face});
     }
     std::vector<char> crossed(mesh.number_of_faces(), 0);
     parallel_for(mesh.number_of_faces(), [&](std::size_t f) {
@@ -118,7 +119,7 @@ CageCheck check_in_unit(const Mesh& cage, const Mesh& mesh) {
 }
 
 /// Replaces face indices of a level by those of the whole cage.
-void number_as_whole(const SubMesh& level, CageCheck& check) {
+void use_indices_of_whole_cage(const SubMesh& level, CageCheck& check) {
     for (auto& [f, g] : check.intersections) f = level.faces[f], g = level.faces[g];
     for (OutsideVertex& vertex : check.outside)
         if (vertex.face != no_index) vertex.face = level.faces[vertex.face];
@@ -132,15 +133,15 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
     const double largest = std::max(largest_coordinate_of(cage), largest_coordinate_of(mesh));
     int exponent = 0;
     if (largest > 0 && std::isfinite(largest)) (void)std::frexp(largest, &exponent);
-    const Mesh own = scaled(cage, -exponent);
-    const std::vector<CageLevel> levels = cage_levels(own);
+    const Mesh scaled_cage = scaled(cage, -exponent);
+    const std::vector<CageLevel> levels = cage_levels(scaled_cage);
     const Mesh object = scaled(mesh, -exponent);
-    CageCheck result = check_in_unit(levels.size() > 1 ? levels[0].cage.mesh : own, object);
+    CageCheck result = check_in_unit(levels.size() > 1 ? levels[0].cage.mesh : scaled_cage, object);
     if (levels.size() > 1) {
-        number_as_whole(levels[0].cage, result);
+        use_indices_of_whole_cage(levels[0].cage, result);
         for (std::size_t l = 1; l < levels.size(); ++l) {
             CageCheck inner = check_in_unit(levels[l].cage.mesh, Mesh());
-            number_as_whole(levels[l].cage, inner);
+            use_indices_of_whole_cage(levels[l].cage, inner);
             result.outward = result.outward && inner.outward;
             result.degenerate += inner.degenerate;
             result.components += inner.components;
@@ -155,38 +156,43 @@ CageCheck check_cage(const Mesh& cage, const Mesh& mesh) {
 }
 
 std::vector<Finding> findings(const CageCheck& check, const std::string& unit) {
-    std::vector<Finding> list;
-    const std::string of_length = unit.empty() ? "" : " " + unit;
-    if (check.components == 0) return {{true, "cage", "has no faces: make one with 'cage make'"}};
-    if (!check.closed) list.push_back({true, "cage", "has a border: close it with 'mesh repair', or make one with 'cage make'"});
-    if (check.flat) return {{true, "cage", "has no face with an area: make one with 'cage make'"}};
-    if (check.closed && !check.outward) list.push_back({true, "cage", "is inside out: turn its faces with 'mesh repair'"});
+    std::vector<Finding> result;
+    const std::string unit_suffix = unit.empty() ? "" : " " + unit;
+    if (check.components == 0) return {{true, "cage", "has no faces: make a cage with 'cage make'"}};
+    if (!check.closed)
+        result.push_back({true, "cage", "has a border: close it with 'mesh repair', or make a cage with 'cage make'"});
+    if (check.flat) return {{true, "cage", "has no face with an area: make a cage with 'cage make'"}};
+    if (check.closed && !check.outward) result.push_back({true, "cage", "is inside out: reverse its faces with 'mesh repair'"});
     if (check.degenerate > 0)
-        list.push_back({true, "cage", counted(check.degenerate, "face") + " without area: move or merge its vertices"});
+        result.push_back(
+            {true, "cage", fmt::format("has {} without area: move or merge the vertices", counted(check.degenerate, "face"))});
     for (std::size_t i = 0; i < check.intersections.size() && i < 5; ++i)
-        list.push_back({true, "face " + std::to_string(check.intersections[i].first),
-                        "meets face " + std::to_string(check.intersections[i].second) + ": move their vertices apart"});
+        result.push_back({true, fmt::format("face {}", check.intersections[i].first),
+                          fmt::format("intersects face {}: move their vertices apart", check.intersections[i].second)});
     if (check.intersections.size() > 5)
-        list.push_back({true, "cage", std::to_string(check.intersections.size() - 5) + " more pairs of faces meet"});
+        result.push_back({true, "cage", fmt::format("has {} more pairs of intersecting faces", check.intersections.size() - 5)});
     for (std::size_t i = 0; i < check.outside.size() && i < 5; ++i) {
         const OutsideVertex& o = check.outside[i];
-        const std::string place =
-            o.distance > 0 ? "is " + digits(o.distance, 4) + of_length + " outside near face " : "is on face ";
-        list.push_back({true, "vertex " + std::to_string(o.vertex) + " of the mesh",
-                        place + std::to_string(o.face) + ": move that face's vertices outwards" +
-                            (o.distance > 0 ? " by more than that" : "")});
+        result.push_back({true, fmt::format("vertex {} of the mesh", o.vertex),
+                          o.distance > 0
+                              ? fmt::format("is {}{} outside near face {}: move that face's vertices outwards by more than that",
+                                            digits(o.distance, 4), unit_suffix, o.face)
+                              : fmt::format("is on face {}: move that face's vertices outwards", o.face)});
     }
     if (check.outside.size() > 5)
-        list.push_back({true, "mesh", std::to_string(check.outside.size() - 5) + " more vertices are not inside the cage"});
+        result.push_back(
+            {true, "mesh", fmt::format("has {} more vertices that are not inside the cage", check.outside.size() - 5)});
     for (std::size_t i = 0; i < check.crossing.size() && i < 5; ++i)
-        list.push_back({true, "face " + std::to_string(check.crossing[i]) + " of the mesh",
-                        "is crossed by the cage though its vertices are inside: move the cage outwards there"});
+        result.push_back({true, fmt::format("face {} of the mesh", check.crossing[i]),
+                          "is crossed by the cage although its vertices are inside: move the cage outwards there"});
     if (check.crossing.size() > 5)
-        list.push_back({true, "mesh", std::to_string(check.crossing.size() - 5) + " more faces are crossed"});
-    if (check.nested > 0) list.push_back({false, "cage", "holds " + counted(check.nested, "cage") + " within the outermost"});
+        result.push_back(
+            {true, "mesh", fmt::format("has {} more faces that are crossed by the cage", check.crossing.size() - 5)});
+    if (check.nested > 0)
+        result.push_back({false, "cage", fmt::format("contains {} within the outermost", counted(check.nested, "cage"))});
     if (check.components > 1 + check.nested)
-        list.push_back({false, "cage", "has " + std::to_string(check.components) + " components"});
-    return list;
+        result.push_back({false, "cage", fmt::format("has {} components", check.components)});
+    return result;
 }
 
 }  // namespace ostraka

@@ -27,10 +27,10 @@ Mesh upper_half(const Mesh& surface, const MirrorPlane& plane) {
     }
     std::map<std::pair<Index, Index>, Index> cuts;
     const auto cut = [&](Vertex above, Vertex below) {
-        const auto [entry, fresh] = cuts.try_emplace(std::minmax(above.idx(), below.idx()), 0);
-        if (fresh) {
-            const double share = height[above] / (height[above] - height[below]);
-            entry->second = add(surface.point(above) + share * (surface.point(below) - surface.point(above)));
+        const auto [entry, inserted] = cuts.try_emplace(std::minmax(above.idx(), below.idx()), 0);
+        if (inserted) {
+            const double weight = height[above] / (height[above] - height[below]);
+            entry->second = add(surface.point(above) + weight * (surface.point(below) - surface.point(above)));
         }
         return entry->second;
     };
@@ -49,15 +49,15 @@ Mesh upper_half(const Mesh& surface, const MirrorPlane& plane) {
             soup.triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
     }
     // Drops points that no triangle above the plane uses.
-    std::vector<Index> kept(soup.points.size(), no_index);
+    std::vector<Index> new_index(soup.points.size(), no_index);
     TriangleSoup half;
     for (auto& triangle : soup.triangles) {
         for (Index& v : triangle) {
-            if (kept[v] == no_index) {
-                kept[v] = static_cast<Index>(half.points.size());
+            if (new_index[v] == no_index) {
+                new_index[v] = static_cast<Index>(half.points.size());
                 half.points.push_back(soup.points[v]);
             }
-            v = kept[v];
+            v = new_index[v];
         }
         half.triangles.push_back(triangle);
     }

@@ -6,6 +6,8 @@
 
 #include "shrink.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,28 +43,30 @@ Mesh without_loose_vertices(Mesh mesh) {
 /// Checks what the wrap requires: at least one triangle with positive area, and coordinates fine enough for the clearance
 /// within the offset.
 void check_soup(const TriangleSoup& soup, double offset) {
-    const auto at = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
-    const bool surface = std::any_of(soup.triangles.begin(), soup.triangles.end(),
-                                     [&](const auto& t) { return !CGAL::collinear(at(t[0]), at(t[1]), at(t[2])); });
-    if (!surface)
-        fail_input("mesh", "has no face with an area (the corners of each lie on a line)", "give a mesh with a surface");
+    const auto point = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
+    const bool has_surface = std::any_of(soup.triangles.begin(), soup.triangles.end(),
+                                         [&](const auto& t) { return !CGAL::collinear(point(t[0]), point(t[1]), point(t[2])); });
+    if (!has_surface)
+        fail_input("mesh", "has no face with an area (the corners of each face are collinear)", "give a mesh with a surface");
     double largest = 0;
     for (const auto& p : soup.points)
         for (const double x : p) largest = std::max(largest, std::abs(x));
     // The clearance is a tenth of the offset and must be at least a hundred rounding steps.
     const double rounding = largest * std::numeric_limits<double>::epsilon();
     if (!(offset >= 1000 * rounding))
-        fail_input("mesh",
-                   "is too far from the origin for its size: coordinates are rounded to " + digits(rounding, 3) +
-                       " there, and the offset of the wrap is " + digits(offset, 3),
-                   "translate it to the origin, or raise the offset");
+        fail_input(
+            "mesh",
+            fmt::format(
+                "is too far from the origin for its size: coordinates are rounded to {} there, and the offset of the wrap is {}",
+                digits(rounding, 3), digits(offset, 3)),
+            "translate the mesh to the origin, or raise the offset");
 }
 
 /// The plane with its normal scaled to a length near one. Throws Error (usage) if it is not finite or the normal is zero.
 MirrorPlane checked(const MirrorPlane& plane) {
     const auto finite = [](const auto& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); };
     if (!finite(plane.point) || !finite(plane.normal))
-        throw Error(ErrorKind::usage, "mirror plane", "a number of it is not finite", "give a point and a direction");
+        throw Error(ErrorKind::usage, "mirror plane", "a coordinate is not finite", "give a point and a direction");
     const Vector normal = scaled_vector(plane.normal);
     if (normal == CGAL::NULL_VECTOR) throw Error(ErrorKind::usage, "mirror plane", "its normal is zero", "give a direction");
     return {plane.point, normal};
@@ -77,7 +81,7 @@ CageResult make_cage(const Mesh& object, const CageOptions& options, const CageD
     const Mesh mesh = without_loose_vertices(object);
     const double diagonal = box_diagonal(mesh);
     if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces", "give a mesh with faces");
-    if (!(diagonal > 0)) fail_input("mesh", "has no extent", "give a mesh whose vertices are not all in one place");
+    if (!(diagonal > 0)) fail_input("mesh", "has no extent", "give a mesh whose vertices do not coincide");
     const TriangleSoup soup = obstacle_of(mesh, mirror);
     check_soup(soup, options.offset * diagonal);
     const cage::Obstacle obstacle(soup);
@@ -92,7 +96,7 @@ CageResult make_cage(const Mesh& object, const CageOptions& options, const CageD
             alpha /= 2;
             continue;
         }
-        const double tried = alpha;
+        const double used_alpha = alpha;
         alpha *= 2;
         if (options.genus == CageOptions::Genus::fill && check_cage(surface, Mesh()).genus > 0) continue;
         const std::size_t size = surface.number_of_vertices();
@@ -105,27 +109,27 @@ CageResult make_cage(const Mesh& object, const CageOptions& options, const CageD
         if (surface.number_of_faces() == 0 || !check_cage(surface, mesh).valid()) continue;
         if (best.cage.number_of_faces() == 0 || reached < best.cage.number_of_vertices()) {
             best.cage = std::move(surface);
-            best.alpha = tried;
+            best.alpha = used_alpha;
             best.wrap_vertices = size;
             best.reached = reached <= options.vertices;
         }
         if (best.reached || options.alpha > 0) break;
     }
     if (best.cage.number_of_faces() == 0)
-        throw Error(ErrorKind::failure, "cage", "no wrap of the mesh gives a cage that passes its check",
-                    options.alpha > 0 ? "leave --alpha out, or raise it" : "raise --offset");
+        throw Error(ErrorKind::failure, "cage", "no wrap of the mesh results in a valid cage",
+                    options.alpha > 0 ? "omit --alpha, or raise it" : "raise --offset");
     return best;
 }
 
 std::vector<CageResult> make_nested_cages(const Mesh& mesh, std::vector<std::uint64_t> levels, const CageOptions& options,
                                           const CageDensity& density, const std::optional<MirrorPlane>& mirror) {
-    if (levels.empty()) throw Error(ErrorKind::usage, "levels", "there are none", "give numbers of vertices");
+    if (levels.empty()) throw Error(ErrorKind::usage, "levels", "no level is given", "give numbers of vertices");
     std::sort(levels.rbegin(), levels.rend());
     std::vector<CageResult> results;
     for (const std::uint64_t level : levels) {
-        CageOptions here = options;
-        here.vertices = level;
-        results.push_back(make_cage(results.empty() ? mesh : results.back().cage, here, density, mirror));
+        CageOptions level_options = options;
+        level_options.vertices = level;
+        results.push_back(make_cage(results.empty() ? mesh : results.back().cage, level_options, density, mirror));
     }
     return results;
 }

@@ -19,7 +19,7 @@ struct Obstacle::Tree {
 };
 
 Obstacle::Obstacle(const TriangleSoup& soup) : tree_(new Tree) {
-    const auto at = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
+    const auto point = [&](Index v) { return Point(soup.points[v][0], soup.points[v][1], soup.points[v][2]); };
     DisjointSets sets(soup.points.size());
     std::vector<bool> used(soup.points.size(), false);
     for (const auto& [a, b, c] : soup.triangles) {
@@ -27,10 +27,10 @@ Obstacle::Obstacle(const TriangleSoup& soup) : tree_(new Tree) {
         sets.unite_into(a, c);
         used[a] = used[b] = used[c] = true;
         // A triangle without area is part of its neighbours' edges, or a separate piece that is represented by its point.
-        if (!CGAL::collinear(at(a), at(b), at(c))) tree_->triangles.emplace_back(at(a), at(b), at(c));
+        if (!CGAL::collinear(point(a), point(b), point(c))) tree_->triangles.emplace_back(point(a), point(b), point(c));
     }
     for (Index v = 0; v < sets.size(); ++v)
-        if (used[v] && sets.find(v) == v) pieces_.push_back(at(v));
+        if (used[v] && sets.find(v) == v) pieces_.push_back(point(v));
     tree_->search.insert(tree_->triangles.begin(), tree_->triangles.end());
     build_watched(tree_->search);
 }

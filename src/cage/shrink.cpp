@@ -30,7 +30,7 @@ struct Quadric {
         c += weight * height * height;
     }
     Quadric operator+(const Quadric& other) const { return {a + other.a, b + other.b, c + other.c}; }
-    [[nodiscard]] double at(const Vector3d& x) const { return std::max(0.0, x.dot(a * x) - 2 * b.dot(x) + c); }
+    [[nodiscard]] double value_at(const Vector3d& x) const { return std::max(0.0, x.dot(a * x) - 2 * b.dot(x) + c); }
 };
 
 double solid_angle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -60,13 +60,13 @@ public:
         if (density)
             for (const Vertex v : mesh.vertices()) density_[v] = density(mesh.point(v));
         for (const Face f : mesh.faces()) {
-            const std::array<Point, 3> at = places(f);
-            grid_.insert(f, box_of(at));
+            const std::array<Point, 3> points = corner_points(f);
+            grid_.insert(f, box_of(points));
             const Vector3d area = eigen(area_vector(mesh, f));
             const double size = area.norm();
             if (!(size > 0)) continue;
             const Vector3d normal = area / size;
-            for (const Vertex v : corners(mesh, f)) quadrics_[v].add_plane(normal, normal.dot(local(at[0])), size / 3);
+            for (const Vertex v : corners(mesh, f)) quadrics_[v].add_plane(normal, normal.dot(local(points[0])), size / 3);
         }
         for (const Edge e : mesh.edges()) {
             check_cancelled();
@@ -74,9 +74,9 @@ public:
         }
     }
 
-    std::size_t run(std::size_t wanted) {
+    std::size_t run(std::size_t target) {
         std::size_t count = mirror_ ? whole_size(mesh_) : mesh_.number_of_vertices();
-        while (count > wanted && !queue_.empty()) {
+        while (count > target && !queue_.empty()) {
             check_cancelled();
             const Entry entry = queue_.top();
             queue_.pop();
@@ -84,19 +84,19 @@ public:
             if (mesh_.is_removed(e) || entry.stamp != stamps_[entry.edge]) continue;
             const Halfedge h = mesh_.halfedge(e);
             if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_) || pinches(h)) continue;
-            std::optional<Point> place;
+            std::optional<Point> position;
             for (const auto& [cost, p] : candidates(h, entry.stage))
                 if (admissible(h, p, entry.stage)) {
-                    place = p;
+                    position = p;
                     break;
                 }
-            if (!place) {
+            if (!position) {
                 if (entry.stage + 1 < stages) push(e, entry.stage + 1);
                 continue;
             }
-            const bool both = mirror_ && mesh_.is_border(mesh_.source(h)) && mesh_.is_border(mesh_.target(h));
-            count -= !mirror_ || both ? 1 : 2;
-            collapse(h, *place);
+            const bool both_on_plane = mirror_ && mesh_.is_border(mesh_.source(h)) && mesh_.is_border(mesh_.target(h));
+            count -= !mirror_ || both_on_plane ? 1 : 2;
+            collapse(h, *position);
         }
         return count;
     }
@@ -118,14 +118,14 @@ private:
 
     [[nodiscard]] Vector3d local(const Point& p) const { return eigen(p - origin_); }
     [[nodiscard]] Point world(const Vector3d& v) const { return origin_ + vector_of(v); }
-    [[nodiscard]] std::array<Point, 3> places(Face f) const {
+    [[nodiscard]] std::array<Point, 3> corner_points(Face f) const {
         const auto [a, b, c] = corners(mesh_, f);
         return {mesh_.point(a), mesh_.point(b), mesh_.point(c)};
     }
 
     void push(Edge e, int stage) {
-        const auto list = candidates(mesh_.halfedge(e), stage);
-        if (!list.empty()) queue_.push({list.front().first, e.idx(), stamps_[e], stage});
+        const auto positions = candidates(mesh_.halfedge(e), stage);
+        if (!positions.empty()) queue_.push({positions.front().first, e.idx(), stamps_[e], stage});
     }
 
     /// True if a collapse in a half would leave or create an edge between two vertices on the plane that is not on the border;
@@ -141,10 +141,10 @@ private:
         }
         // Neighbours on the plane must be connected to the new vertex along the border.
         for (const Vertex v : {a, b})
-            for (const Halfedge around : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
-                const Vertex other = mesh_.source(around);
+            for (const Halfedge incident : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
+                const Vertex other = mesh_.source(incident);
                 if (other == a || other == b || !mesh_.is_border(other)) continue;
-                if (!mesh_.is_border(v) || !mesh_.is_border(mesh_.edge(around))) return true;
+                if (!mesh_.is_border(v) || !mesh_.is_border(mesh_.edge(incident))) return true;
             }
         return false;
     }
@@ -159,21 +159,21 @@ private:
         const Matrix3d soft = q.a + 1e-3 * trace * Matrix3d::Identity();
         const Vector3d best = solve_ldlt<3>(soft, q.b + 1e-3 * trace * middle);
         const double length = (pa - pb).squaredNorm(), density = std::max(density_[a], density_[b]);
-        std::vector<Vector3d> list;
-        if (stage == 0) list = {best, middle, pa, pb};
-        else list = outer_places(h, middle, best);
+        std::vector<Vector3d> positions;
+        if (stage == 0) positions = {best, middle, pa, pb};
+        else positions = outer_places(h, middle, best);
         const bool on_plane = mirror_ && (mesh_.is_border(a) || mesh_.is_border(b));
-        const bool both = on_plane && mesh_.is_border(a) && mesh_.is_border(b);
+        const bool both_on_plane = on_plane && mesh_.is_border(a) && mesh_.is_border(b);
         std::vector<std::pair<double, Point>> result;
-        for (Vector3d p : list) {
+        for (Vector3d p : positions) {
             if (on_plane) {
-                if (!both && (p == pa || p == pb)) p = mesh_.is_border(a) ? pa : pb;
+                if (!both_on_plane && (p == pa || p == pb)) p = mesh_.is_border(a) ? pa : pb;
                 const Vector3d n = eigen(unit_);
                 p -= n * n.dot(p - local(mirror_->point));
             }
             if (!p.allFinite()) continue;
-            const double bent = q.at(p) + 1e-4 * trace * (length + (p - middle).squaredNorm());
-            result.emplace_back(bent * density * density, world(p));
+            const double deviation = q.value_at(p) + 1e-4 * trace * (length + (p - middle).squaredNorm());
+            result.emplace_back(deviation * density * density, world(p));
         }
         std::stable_sort(result.begin(), result.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
         return result;
@@ -183,16 +183,16 @@ private:
     /// farther out along the normal.
     [[nodiscard]] std::vector<Vector3d> outer_places(Halfedge h, const Vector3d& middle, const Vector3d& best) const {
         std::vector<std::pair<Vector3d, double>> planes;
-        Vector3d out = Vector3d::Zero();
-        for (const Face f : around(h)) {
+        Vector3d normal_sum = Vector3d::Zero();
+        for (const Face f : faces_around(h)) {
             const Vector3d area = eigen(area_vector(mesh_, f));
-            out += area;
+            normal_sum += area;
             if (!(area.norm() > 0)) continue;
             const Vector3d n = area.normalized();
-            planes.emplace_back(n, n.dot(local(places(f)[0])));
+            planes.emplace_back(n, n.dot(local(corner_points(f)[0])));
         }
-        std::vector<Vector3d> list;
-        const double size = std::sqrt(out.norm());
+        std::vector<Vector3d> positions;
+        const double size = std::sqrt(normal_sum.norm());
         for (const Vector3d& start : {best, middle}) {
             Vector3d x = start;
             std::vector<double> pushed(planes.size(), 0);
@@ -203,15 +203,16 @@ private:
                     x += (push - pushed[i]) * planes[i].first;
                     pushed[i] = push;
                 }
-            if ((x - start).norm() < 4 * size) list.push_back(x);
+            if ((x - start).norm() < 4 * size) positions.push_back(x);
         }
-        if (out.norm() > 0)
-            for (const double share : {0.1, 0.25, 0.5, 1.0}) list.push_back(middle + share * size * out.normalized());
-        return list;
+        if (normal_sum.norm() > 0)
+            for (const double fraction : {0.1, 0.25, 0.5, 1.0})
+                positions.push_back(middle + fraction * size * normal_sum.normalized());
+        return positions;
     }
 
     /// The faces around both ends of the edge.
-    [[nodiscard]] std::vector<Face> around(Halfedge h) const {
+    [[nodiscard]] std::vector<Face> faces_around(Halfedge h) const {
         std::vector<Face> faces;
         for (const Vertex v : {mesh_.source(h), mesh_.target(h)})
             for (const Face f : mesh_.faces_around_target(mesh_.halfedge(v)))
@@ -225,31 +226,31 @@ private:
         const Vertex a = mesh_.source(h), b = mesh_.target(h);
         if (mirror_ && !mesh_.is_border(a) && !mesh_.is_border(b) && (p - mirror_->point) * unit_ <= 1e-5 * diagonal_)
             return false;
-        const std::vector<Face> old = around(h);
+        const std::vector<Face> old = faces_around(h);
         std::vector<Triangle> triangles;
-        std::vector<std::array<Point, 3>> at;
+        std::vector<std::array<Point, 3>> new_points;
         for (const Face f : old) {
             Triangle corner = corners(mesh_, f);
-            std::array<Point, 3> place = places(f);
+            std::array<Point, 3> points = corner_points(f);
             int moved = 0;
             for (std::size_t k = 0; k < 3; ++k)
-                if (corner[k] == a || corner[k] == b) corner[k] = b, place[k] = p, ++moved;
+                if (corner[k] == a || corner[k] == b) corner[k] = b, points[k] = p, ++moved;
             if (moved == 2) continue;  // removed by the collapse
-            if (CGAL::collinear(place[0], place[1], place[2])) return false;
-            const Vector3d before = eigen(area_vector(mesh_, f));
-            const Vector3d u = eigen(place[1] - place[0]), v = eigen(place[2] - place[0]), w = eigen(place[2] - place[1]);
-            const Vector3d after = u.cross(v) / 2;
+            if (CGAL::collinear(points[0], points[1], points[2])) return false;
+            const Vector3d old_area = eigen(area_vector(mesh_, f));
+            const Vector3d u = eigen(points[1] - points[0]), v = eigen(points[2] - points[0]), w = eigen(points[2] - points[1]);
+            const Vector3d new_area = u.cross(v) / 2;
             if (stage < 2) {
-                if (after.dot(before) < 0.2 * after.norm() * before.norm()) return false;
+                if (new_area.dot(old_area) < 0.2 * new_area.norm() * old_area.norm()) return false;
                 const double longest = std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()});
-                if (after.norm() < 0.02 * longest) return false;
-            } else if (after.norm() < 1e-4 * std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()})) {
+                if (new_area.norm() < 0.02 * longest) return false;
+            } else if (new_area.norm() < 1e-4 * std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()})) {
                 return false;
             }
             triangles.push_back(corner);
-            at.push_back(place);
+            new_points.push_back(points);
         }
-        for (const auto& t : at) {
+        for (const auto& t : new_points) {
             if (obstacle_.meets(t[0], t[1], t[2])) return false;
             if (stage == 2) continue;
             // The triangle moved inwards by the clearance must not meet the object either.
@@ -257,41 +258,41 @@ private:
             n = -clearance_ / std::sqrt(n.squared_length()) * n;
             if (obstacle_.meets(t[0] + n, t[1] + n, t[2] + n)) return false;
         }
-        if (!keeps_pieces(old, at)) return false;
-        const std::set<Face> gone(old.begin(), old.end());
+        if (!keeps_pieces(old, new_points)) return false;
+        const std::set<Face> removed_faces(old.begin(), old.end());
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             for (std::size_t j = i + 1; j < triangles.size(); ++j)
-                if (overlap(triangles[i], at[i], triangles[j], at[j])) return false;
-            const bool met = grid_.any(box_of(at[i]), [&](Face f) {
-                return gone.count(f) == 0 && overlap(triangles[i], at[i], corners(mesh_, f), places(f));
+                if (overlap(triangles[i], new_points[i], triangles[j], new_points[j])) return false;
+            const bool overlaps = grid_.any(box_of(new_points[i]), [&](Face f) {
+                return removed_faces.count(f) == 0 && overlap(triangles[i], new_points[i], corners(mesh_, f), corner_points(f));
             });
-            if (met) return false;
+            if (overlaps) return false;
         }
         return true;
     }
 
     /// True if no piece of the object lies in the volume between the old and the new faces.
-    [[nodiscard]] bool keeps_pieces(const std::vector<Face>& old, const std::vector<std::array<Point, 3>>& fresh) const {
+    [[nodiscard]] bool keeps_pieces(const std::vector<Face>& old, const std::vector<std::array<Point, 3>>& new_triangles) const {
         CGAL::Bbox_3 box;
-        for (const Face f : old) box += box_of(places(f));
-        for (const auto& t : fresh) box += box_of(t);
+        for (const Face f : old) box += box_of(corner_points(f));
+        for (const auto& t : new_triangles) box += box_of(t);
         for (const Point& piece : obstacle_.pieces()) {
             // For a half, also tested with the image of the piece, which stands for the piece relative to the other half.
             double change = 0;
-            bool near = false;
+            bool is_near = false;
             for (int side = 0; side < (mirror_ ? 2 : 1); ++side) {
                 const Point q = side == 0 ? piece : image(piece, *mirror_);
                 if (!CGAL::do_overlap(q.bbox(), box)) continue;
-                near = true;
+                is_near = true;
             }
-            if (!near) continue;
+            if (!is_near) continue;
             for (int side = 0; side < (mirror_ ? 2 : 1); ++side) {
                 const Vector3d q = local(side == 0 ? piece : image(piece, *mirror_));
                 for (const Face f : old) {
-                    const auto t = places(f);
+                    const auto t = corner_points(f);
                     change -= solid_angle(local(t[0]) - q, local(t[1]) - q, local(t[2]) - q);
                 }
-                for (const auto& t : fresh) change += solid_angle(local(t[0]) - q, local(t[1]) - q, local(t[2]) - q);
+                for (const auto& t : new_triangles) change += solid_angle(local(t[0]) - q, local(t[1]) - q, local(t[2]) - q);
             }
             if (std::abs(change) > pi) return false;
         }
@@ -300,20 +301,20 @@ private:
 
     void collapse(Halfedge h, const Point& p) {
         const Vertex a = mesh_.source(h), b = mesh_.target(h);
-        for (const Face f : around(h)) grid_.remove(f, box_of(places(f)));
+        for (const Face f : faces_around(h)) grid_.remove(f, box_of(corner_points(f)));
         const Quadric q = quadrics_[a] + quadrics_[b];
         const double density = std::max(density_[a], density_[b]);
-        const Vertex kept = CGAL::Euler::collapse_edge(mesh_.edge(h), mesh_);
-        mesh_.point(kept) = p;
-        quadrics_[kept] = q;
-        density_[kept] = density;
-        for (const Face f : mesh_.faces_around_target(mesh_.halfedge(kept)))
-            if (f != Mesh::null_face()) grid_.insert(f, box_of(places(f)));
+        const Vertex merged_vertex = CGAL::Euler::collapse_edge(mesh_.edge(h), mesh_);
+        mesh_.point(merged_vertex) = p;
+        quadrics_[merged_vertex] = q;
+        density_[merged_vertex] = density;
+        for (const Face f : mesh_.faces_around_target(mesh_.halfedge(merged_vertex)))
+            if (f != Mesh::null_face()) grid_.insert(f, box_of(corner_points(f)));
         // Edges that were evaluated with the old faces are evaluated again.
-        std::set<Edge> near;
-        for (const Vertex v : mesh_.vertices_around_target(mesh_.halfedge(kept)))
-            for (const Halfedge g : mesh_.halfedges_around_target(mesh_.halfedge(v))) near.insert(mesh_.edge(g));
-        for (const Edge e : near) {
+        std::set<Edge> affected_edges;
+        for (const Vertex v : mesh_.vertices_around_target(mesh_.halfedge(merged_vertex)))
+            for (const Halfedge g : mesh_.halfedges_around_target(mesh_.halfedge(v))) affected_edges.insert(mesh_.edge(g));
+        for (const Edge e : affected_edges) {
             ++stamps_[e];
             push(e, 0);
         }
@@ -335,9 +336,9 @@ private:
 
 }  // namespace
 
-std::size_t shrink(Mesh& surface, const Obstacle& obstacle, std::size_t wanted, double clearance, const CageDensity& density,
+std::size_t shrink(Mesh& surface, const Obstacle& obstacle, std::size_t target, double clearance, const CageDensity& density,
                    const std::optional<MirrorPlane>& mirror) {
-    const std::size_t count = Shrinker(surface, obstacle, clearance, density, mirror).run(wanted);
+    const std::size_t count = Shrinker(surface, obstacle, clearance, density, mirror).run(target);
     surface.collect_garbage();
     return count;
 }

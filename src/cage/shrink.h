@@ -21,10 +21,10 @@ private:
     std::vector<Point> pieces_;
 };
 
-/// Collapses edges until `wanted` vertices are left or no collapse is admissible. `surface` is closed or, with a mirror plane,
-/// one half whose border lies on the plane; `wanted` then counts both halves. Faces keep about `clearance` from the object
+/// Collapses edges until `target` vertices are left or no collapse is admissible. `surface` is closed or, with a mirror plane,
+/// one half whose border lies on the plane; `target` then counts both halves. Faces keep about `clearance` from the object
 /// where possible. Returns the number of vertices reached.
-std::size_t shrink(Mesh& surface, const Obstacle& obstacle, std::size_t wanted, double clearance, const CageDensity& density,
+std::size_t shrink(Mesh& surface, const Obstacle& obstacle, std::size_t target, double clearance, const CageDensity& density,
                    const std::optional<MirrorPlane>& mirror);
 
 /// Number of vertices of the whole surface of which this is one half.

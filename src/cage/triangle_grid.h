@@ -11,7 +11,7 @@ namespace ostraka::cage {
 using Triangle = std::array<Vertex, 3>;
 
 /// True if two triangles intersect elsewhere than at the vertices and edges that they share. Exact.
-bool overlap(const Triangle& s, const std::array<Point, 3>& at_s, const Triangle& t, const std::array<Point, 3>& at_t);
+bool overlap(const Triangle& s, const std::array<Point, 3>& points_s, const Triangle& t, const std::array<Point, 3>& points_t);
 
 /// Hash grids of doubling cell sizes: a triangle lies in the grid whose cells are at least as large as its bounding box, in at
 /// most eight cells.
@@ -21,40 +21,40 @@ public:
 
     void insert(Face face, const CGAL::Bbox_3& box) {
         const int level = level_of(box);
-        Level& here = levels_[level];
-        ++here.size;
-        each_cell(level, box, [&](const Key& key) { here.cells[key].push_back(face); });
+        Level& grid = levels_[level];
+        ++grid.size;
+        each_cell(level, box, [&](const Key& key) { grid.cells[key].push_back(face); });
     }
     void remove(Face face, const CGAL::Bbox_3& box) {
         const int level = level_of(box);
-        Level& here = levels_[level];
-        --here.size;
+        Level& grid = levels_[level];
+        --grid.size;
         each_cell(level, box, [&](const Key& key) {
-            auto& list = here.cells[key];
-            list.erase(std::find(list.begin(), list.end(), face));
-            if (list.empty()) here.cells.erase(key);
+            auto& faces = grid.cells[key];
+            faces.erase(std::find(faces.begin(), faces.end(), face));
+            if (faces.empty()) grid.cells.erase(key);
         });
     }
     /// Calls `visit(face)` for each triangle whose cells meet the box, possibly more than once, until it returns true. Returns
     /// whether it did.
     template <class Visit>
     bool any(const CGAL::Bbox_3& box, Visit&& visit) const {
-        for (const auto& [level, here] : levels_) {
-            if (here.size == 0) continue;
-            bool found = false;
-            if (cells_of(level, box) > static_cast<double>(here.cells.size())) {
-                for (const auto& [key, list] : here.cells)
-                    for (const Face face : list)
-                        if (!found && visit(face)) found = true;
+        for (const auto& [level, grid] : levels_) {
+            if (grid.size == 0) continue;
+            bool stopped = false;
+            if (cells_of(level, box) > static_cast<double>(grid.cells.size())) {
+                for (const auto& [key, faces] : grid.cells)
+                    for (const Face face : faces)
+                        if (!stopped && visit(face)) stopped = true;
             } else {
                 each_cell(level, box, [&](const Key& key) {
-                    const auto list = here.cells.find(key);
-                    if (found || list == here.cells.end()) return;
-                    for (const Face face : list->second)
-                        if (!found && visit(face)) found = true;
+                    const auto faces = grid.cells.find(key);
+                    if (stopped || faces == grid.cells.end()) return;
+                    for (const Face face : faces->second)
+                        if (!stopped && visit(face)) stopped = true;
                 });
             }
-            if (found) return true;
+            if (stopped) return true;
         }
         return false;
     }

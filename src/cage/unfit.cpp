@@ -3,6 +3,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,16 +24,17 @@ std::vector<std::string> unfit_for_deformation(const CageCheck& check, const Coo
     if (check.flat) reasons.emplace_back("the cage has no face with an area");
     if (check.closed && !check.flat && !check.outward) reasons.emplace_back("the cage is inside out");
     if (!check.outside.empty())
-        reasons.push_back(std::to_string(check.outside.size()) +
-                          (check.outside.size() == 1 ? " vertex of the mesh is" : " vertices of the mesh are") +
-                          " not inside the cage");
-    if (!check.crossing.empty()) reasons.push_back("the cage crosses " + counted(check.crossing.size(), "face") + " of the mesh");
+        reasons.push_back(fmt::format("{} {} not inside the cage", check.outside.size(),
+                                      check.outside.size() == 1 ? "vertex of the mesh is" : "vertices of the mesh are"));
+    if (!check.crossing.empty())
+        reasons.push_back(fmt::format("the cage crosses {} of the mesh", counted(check.crossing.size(), "face")));
     if (!check.intersections.empty())
-        reasons.push_back(counted(check.intersections.size(), "pair") + " of faces of the cage cross");
-    if (check.degenerate > 0) reasons.push_back(counted(check.degenerate, "face") + " of the cage without area");
+        reasons.push_back(fmt::format("{} of faces of the cage intersect", counted(check.intersections.size(), "pair")));
+    if (check.degenerate > 0) reasons.push_back(fmt::format("the cage has {} without area", counted(check.degenerate, "face")));
     if (const double factor = amplification(coordinates); factor > max_amplification)
-        reasons.push_back("a vertex of the mesh moves up to " + digits(factor, 3) + " times as far as the cage (weights from " +
-                          digits(coordinates.vertex.minCoeff(), 3) + " to " + digits(coordinates.vertex.maxCoeff(), 3) + ")");
+        reasons.push_back(fmt::format("a vertex of the mesh moves up to {} times as far as the cage (weights from {} to {})",
+                                      digits(factor, 3), digits(coordinates.vertex.minCoeff(), 3),
+                                      digits(coordinates.vertex.maxCoeff(), 3)));
     return reasons;
 }
 

@@ -4,6 +4,7 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/eigen.h"
 
+#include <fmt/core.h>
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -50,31 +51,31 @@ DualState dual_at(std::span<const double> weights, std::span<const Vector3d> cor
 }  // namespace
 
 bool project_row(std::span<double> weights, std::span<const Vector3d> corners, const Vector3d& place) {
-    constexpr int most = 60;
-    constexpr double close = 4e-15, enough = 1e-12;
+    constexpr int max_steps = 60;
+    constexpr double converged = 4e-15, acceptable = 1e-12;
     Vector4d mu = Vector4d::Zero();
     DualState state = dual_at(weights, corners, place, mu);
     double error = state.residual.lpNorm<Eigen::Infinity>();
-    for (int step = 0; step < most && error > close; ++step) {
+    for (int step = 0; step < max_steps && error > converged; ++step) {
         const double damping = 1e-15 * (1 + state.hessian.trace());
-        const Vector4d way = -(state.hessian + damping * Matrix4d::Identity()).ldlt().solve(state.residual);
-        if (!way.allFinite()) break;
-        const double slope = state.residual.dot(way);
-        bool better = false;
+        const Vector4d direction = -(state.hessian + damping * Matrix4d::Identity()).ldlt().solve(state.residual);
+        if (!direction.allFinite()) break;
+        const double slope = state.residual.dot(direction);
+        bool improved = false;
         for (double length = 1; length > 1e-6; length *= 0.5) {
-            const Vector4d next = mu + length * way;
-            DualState there = dual_at(weights, corners, place, next);
-            const double rest = there.residual.lpNorm<Eigen::Infinity>();
+            const Vector4d next = mu + length * direction;
+            DualState candidate = dual_at(weights, corners, place, next);
+            const double candidate_error = candidate.residual.lpNorm<Eigen::Infinity>();
             // Close to the optimum the differences of the dual value drown in rounding; there the residual decides.
-            if (there.value <= state.value + 1e-4 * length * slope || rest < 0.5 * error) {
-                better = rest < error || there.value < state.value;
-                mu = next, state = std::move(there), error = rest;
+            if (candidate.value <= state.value + 1e-4 * length * slope || candidate_error < 0.5 * error) {
+                improved = candidate_error < error || candidate.value < state.value;
+                mu = next, state = std::move(candidate), error = candidate_error;
                 break;
             }
         }
-        if (!better) break;
+        if (!improved) break;
     }
-    if (!(error < enough)) return false;
+    if (!(error < acceptable)) return false;
     for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = std::max(0.0, weights[j] + row_of(corners[j], place).dot(mu));
     return true;
 }
@@ -83,22 +84,22 @@ namespace {
 
 /// Fills one row: drops weights of the estimate up to the threshold and projects the rest; where the projection fails, retries
 /// with lower thresholds.
-void settle(std::span<const double> estimate, const std::vector<Vector3d>& corners, const Vector3d& place, double drop,
-            std::vector<std::pair<int, double>>& row) {
+void fill_row(std::span<const double> estimate, const std::vector<Vector3d>& corners, const Vector3d& place, double drop,
+              std::vector<std::pair<int, double>>& row) {
     std::vector<double> weights;
-    std::vector<Vector3d> kept;
+    std::vector<Vector3d> kept_corners;
     std::vector<int> columns;
-    for (const double least : {drop, 0.1 * drop, 1e-12, -1.0}) {
-        weights.clear(), kept.clear(), columns.clear();
+    for (const double threshold : {drop, 0.1 * drop, 1e-12, -1.0}) {
+        weights.clear(), kept_corners.clear(), columns.clear();
         for (std::size_t j = 0; j < estimate.size(); ++j)
-            if (estimate[j] > least || least < 0) {
-                weights.push_back(std::max(estimate[j], 0.0)), kept.push_back(corners[j]);
+            if (estimate[j] > threshold || threshold < 0) {
+                weights.push_back(std::max(estimate[j], 0.0)), kept_corners.push_back(corners[j]);
                 columns.push_back(static_cast<int>(j));
             }
-        if (project_row(weights, kept, place)) break;
-        if (least >= 0) continue;
-        fail_input("cage", "a point has no weights that are not negative: it lies outside of the cage's convex hull",
-                   "give a cage that the mesh lies in");
+        if (project_row(weights, kept_corners, place)) break;
+        if (threshold >= 0) continue;
+        fail_input("cage", "a point has no non-negative weights: it lies outside the cage's convex hull",
+                   "give a cage that contains the mesh");
     }
     for (std::size_t k = 0; k < columns.size(); ++k)
         if (weights[k] > 0) row.emplace_back(columns[k], weights[k]);
@@ -118,13 +119,13 @@ Coordinates bounded_coordinates(const UnitCage& cage, const std::vector<Point>& 
         on_cage[i] = nearest[i].distance <= std::max(snap, min_snap);
         outside[i] = !on_cage[i] && !search.inside(p);
     });
-    std::string list;
+    std::string outside_indices;
     std::size_t count = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (outside[i] && ++count <= 10) list += (list.empty() ? "" : ", ") + std::to_string(i);
+        if (outside[i] && ++count <= 10) outside_indices += (outside_indices.empty() ? "" : ", ") + std::to_string(i);
     if (count > 0)
-        fail_input("cage", std::to_string(count) + " points are not inside it: " + list + (count > 10 ? " ..." : ""),
-                   kind + " coordinates are defined inside the cage; give a larger one, or use mean-value coordinates");
+        fail_input("cage", fmt::format("{} points are not inside it: {}{}", count, outside_indices, count > 10 ? " ..." : ""),
+                   kind + " coordinates are defined inside the cage; give a larger cage, or use mean-value coordinates");
     if (std::find(on_cage.begin(), on_cage.end(), 0) != on_cage.end()) prepare();
 
     const std::size_t columns = cage.corners.size();
@@ -143,7 +144,7 @@ Coordinates bounded_coordinates(const UnitCage& cage, const std::vector<Point>& 
             std::fill(row.begin(), row.end(), 0.0);
             const Vector3d place = cage.unit(points[i]);
             estimate(place, row);
-            settle(row, cage.corners, place, drop, rows[i]);
+            fill_row(row, cage.corners, place, drop, rows[i]);
         }
     });
     Coordinates result;

@@ -7,15 +7,15 @@
 namespace ostraka::coords {
 
 CageArrays::CageArrays(const Mesh& cage) {
-    Three low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    Vector3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
     for (const Vertex v : cage.vertices()) {
-        points.push_back(three(cage.point(v)));
+        points.push_back(vector3(cage.point(v)));
         for (std::size_t k = 0; k < 3; ++k) {
             low[k] = std::min(low[k], points.back()[k]);
             high[k] = std::max(high[k], points.back()[k]);
         }
     }
-    const Three extent = high - low;
+    const Vector3 extent = high - low;
     const double largest = *std::max_element(extent.begin(), extent.end());
     if (!(largest > 0) || !std::isfinite(largest))
         fail_input("cage", "has no extent", "its points must be finite and not all the same");
@@ -29,7 +29,7 @@ CageArrays::CageArrays(const Mesh& cage) {
         edge_index[e] = static_cast<Index>(edges.size());
         const Halfedge h = cage.halfedge(e, 0);
         const Index a = cage.source(h), b = cage.target(h);
-        const Three along = scale * (points[b] - points[a]);
+        const Vector3 along = scale * (points[b] - points[a]);
         edges.push_back({a, b, along, length(along)});
     }
     for (const Face f : cage.faces()) {

@@ -12,6 +12,7 @@
 #include <CGAL/Polyhedral_mesh_domain_with_features_3.h>
 #include <CGAL/Random.h>
 #include <CGAL/make_mesh_3.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -111,18 +112,18 @@ Vector3d UnitCage::unit(const Point& p) const {
 
 CageInterior::CageInterior(const Mesh& cage, std::size_t nodes, const std::string& kind) : mesher_(std::make_unique<Mesher>()) {
     if (CGAL::Polygon_mesh_processing::does_self_intersect(cage))
-        fail_input("cage", "crosses itself, so that it has no inside for " + kind + " coordinates",
+        fail_input("cage", fmt::format("intersects itself, so that it has no interior for {} coordinates", kind),
                    "repair the cage ('ostraka cage check' names the faces), or use mean-value coordinates");
     const double volume = std::fabs(CGAL::Polygon_mesh_processing::volume(cage));
     if (!(volume > 1e-12))
-        fail_input("cage", "has no volume to speak of, so that it has no inside for " + kind + " coordinates",
+        fail_input("cage", fmt::format("has almost no volume, so that it has no interior for {} coordinates", kind),
                    "use mean-value coordinates");
     const double size = std::cbrt(volume / (static_cast<double>(nodes) * cell_volume));
     // On very regular cages the mesher may fail an internal check; another cell size avoids that.
     for (int attempt = 0; !fill(cage, size * (1 - 0.07 * attempt), *mesher_); ++attempt)
         if (attempt == attempts)
-            throw Error(ErrorKind::failure, "cage", "could not be filled with tetrahedra for " + kind + " coordinates",
-                        "ask for another number of nodes, or use mean-value coordinates");
+            throw Error(ErrorKind::failure, "cage", fmt::format("could not be filled with tetrahedra for {} coordinates", kind),
+                        "choose another number of nodes, or use mean-value coordinates");
     const Complex& complex = mesher_->complex;
     const SurfaceSearch search(cage);
     const auto number_of = [&](VertexHandle v) {
@@ -139,7 +140,8 @@ CageInterior::CageInterior(const Mesh& cage, std::size_t nodes, const std::strin
         cells_.push_back(corners);
     }
     if (cells_.empty())
-        fail_input("cage", "could not be filled with tetrahedra for " + kind + " coordinates", "use mean-value coordinates");
+        fail_input("cage", fmt::format("could not be filled with tetrahedra for {} coordinates", kind),
+                   "use mean-value coordinates");
 }
 
 CageInterior::~CageInterior() = default;
@@ -155,24 +157,25 @@ InteriorPlace CageInterior::locate(const Vector3d& p) const {
         // The point lies between the tetrahedra and the cage: take the best tetrahedron around the cell found.
         double maximum = -std::numeric_limits<double>::infinity();
         const CellHandle start = best;
-        std::vector<CellHandle> around;
+        std::vector<CellHandle> incident_cells;
         for (int k = 0; k < 4; ++k)
             if (!triangulation.is_infinite(start->vertex(k)))
-                triangulation.incident_cells(start->vertex(k), std::back_inserter(around));
-        CellHandle found;
-        for (const CellHandle cell : around) {
+                triangulation.incident_cells(start->vertex(k), std::back_inserter(incident_cells));
+        CellHandle candidate;
+        for (const CellHandle cell : incident_cells) {
             if (triangulation.is_infinite(cell) || !complex.is_in_complex(cell)) continue;
             const std::array<double, 4> w = weights_in(cell, p);
-            const double least = *std::min_element(w.begin(), w.end());
-            if (least > maximum || (least == maximum && w < weights)) maximum = least, found = cell, weights = w;
+            const double smallest_weight = *std::min_element(w.begin(), w.end());
+            if (smallest_weight > maximum || (smallest_weight == maximum && w < weights))
+                maximum = smallest_weight, candidate = cell, weights = w;
         }
-        if (found == CellHandle()) {  // no tetrahedron near: take the nearest node
+        if (candidate == CellHandle()) {  // no tetrahedron near: take the nearest node
             const auto v = triangulation.nearest_power_vertex(Triangulation::Weighted_point(point_of(p)).point());
-            const auto known = mesher_->number.find(v);
-            const Index node = known == mesher_->number.end() ? 0 : known->second;
+            const auto numbered_node = mesher_->number.find(v);
+            const Index node = numbered_node == mesher_->number.end() ? 0 : numbered_node->second;
             return {{node, node, node, node}, {1, 0, 0, 0}};
         }
-        best = found;
+        best = candidate;
     }
     InteriorPlace place;
     double sum = 0;

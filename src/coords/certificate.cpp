@@ -6,6 +6,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/parallel.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,28 +33,29 @@ struct OnCage {
 
 /// One index per vertex, equal for coincident vertices.
 std::vector<Index> places_of(const Mesh& cage) {
-    std::map<std::array<double, 3>, Index> known;
+    std::map<std::array<double, 3>, Index> index_of_position;
     std::vector<Index> place;
     for (const Vertex v : cage.vertices()) {
         const Point& p = cage.point(v);
-        place.push_back(known.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(known.size())).first->second);
+        place.push_back(
+            index_of_position.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(index_of_position.size())).first->second);
     }
     return place;
 }
 
-double deviation(const std::string& kind, const Mesh& cage, const OnCage& on, const CoordinateOptions& options) {
-    const Coordinates c = compute_coordinates(kind, cage, on.points, options);
+double deviation(const std::string& kind, const Mesh& cage, const OnCage& samples, const CoordinateOptions& options) {
+    const Coordinates computed = compute_coordinates(kind, cage, samples.points, options);
     const std::vector<Index> place = places_of(cage);
-    double worst = 0;
+    double maximum = 0;
     std::vector<double> row(place.size());
-    for (std::size_t i = 0; i < on.points.size(); ++i) {
+    for (std::size_t i = 0; i < samples.points.size(); ++i) {
         std::fill(row.begin(), row.end(), 0.0);
         for (std::size_t j = 0; j < place.size(); ++j)
-            row[place[j]] += c.vertex(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-        for (std::size_t k = 0; k < 3; ++k) row[place[on.corners[i][k]]] -= on.weights[i][k];
-        for (const double x : row) worst = std::max(worst, std::fabs(x));
+            row[place[j]] += computed.vertex(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        for (std::size_t k = 0; k < 3; ++k) row[place[samples.corners[i][k]]] -= samples.weights[i][k];
+        for (const double x : row) maximum = std::max(maximum, std::fabs(x));
     }
-    return worst;
+    return maximum;
 }
 
 void certify_kind(const Mesh& cage, const CoordinateOptions& options, CoordinateCertificate& result) {
@@ -75,7 +78,7 @@ void certify_kind(const Mesh& cage, const CoordinateOptions& options, Coordinate
 }
 
 /// Contribution of one point to the certificate.
-struct OfPoint {
+struct PointCertificate {
     double partition = 0, linear = 0, minimum = 0, maximum = 0, negative_sum = 0;
     Index negative = 0;
     bool finite = true;
@@ -89,8 +92,7 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
     const auto rows = static_cast<Eigen::Index>(points.size()), columns = static_cast<Eigen::Index>(cage.number_of_vertices());
     if (W.rows() != rows || W.cols() != columns ||
         (coordinates.has_normals() && (Q.rows() != rows || Q.cols() != static_cast<Eigen::Index>(cage.number_of_faces()))))
-        fail_usage("the coordinates have " + std::to_string(W.rows()) + " rows and " + std::to_string(W.cols()) +
-                       " columns, not " + std::to_string(rows) + " and " + std::to_string(columns),
+        fail_usage(fmt::format("the coordinates have {} rows and {} columns, not {} and {}", W.rows(), W.cols(), rows, columns),
                    "give the mesh and the cage that they were computed for");
     if (columns == 0) fail_input("cage", "has no vertices");
     CoordinateCertificate result{coordinates.kind, points.size(), cage.number_of_vertices(), cage.number_of_faces()};
@@ -109,42 +111,43 @@ CoordinateCertificate certify(const Coordinates& coordinates, const Mesh& cage, 
             std::minmax_element(corner.begin(), corner.end(), [k](const Point& a, const Point& b) { return a[k] < b[k]; });
         diagonal = std::hypot(diagonal, ((*high)[k] - (*low)[k]) / extent);
     }
-    std::vector<OfPoint> found(points.size());
+    std::vector<PointCertificate> certificates(points.size());
     parallel_for(points.size(), [&](std::size_t i) {
-        OfPoint& one = found[i];
+        PointCertificate& certificate = certificates[i];
         const double* w = W.row(static_cast<Eigen::Index>(i)).data();
         double sum = 0;
-        Vector off(0, 0, 0);
-        one.minimum = one.maximum = w[0];
+        Vector error(0, 0, 0);
+        certificate.minimum = certificate.maximum = w[0];
         for (std::size_t j = 0; j < corner.size(); ++j) {
             sum += w[j];
-            off += w[j] / extent * (corner[j] - points[i]);
-            one.minimum = std::min(one.minimum, w[j]);
-            one.maximum = std::max(one.maximum, w[j]);
-            if (w[j] < 0) ++one.negative, one.negative_sum -= w[j];
+            error += w[j] / extent * (corner[j] - points[i]);
+            certificate.minimum = std::min(certificate.minimum, w[j]);
+            certificate.maximum = std::max(certificate.maximum, w[j]);
+            if (w[j] < 0) ++certificate.negative, certificate.negative_sum -= w[j];
         }
         if (coordinates.has_normals()) {
             const double* q = Q.row(static_cast<Eigen::Index>(i)).data();
-            for (std::size_t j = 0; j < normals.size(); ++j) off += q[j] / extent * normals[j];
+            for (std::size_t j = 0; j < normals.size(); ++j) error += q[j] / extent * normals[j];
         }
-        one.partition = std::fabs(sum - 1);
-        one.linear = std::sqrt(off.squared_length()) / diagonal;
-        one.finite = std::isfinite(sum) && std::isfinite(one.linear);
+        certificate.partition = std::fabs(sum - 1);
+        certificate.linear = std::sqrt(error.squared_length()) / diagonal;
+        certificate.finite = std::isfinite(sum) && std::isfinite(certificate.linear);
     });
     double negative = 0, negative_rows = 0;
-    result.minimum = found[0].minimum;
-    result.maximum = found[0].maximum;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const OfPoint& one = found[i];
-        if (!one.finite)
-            fail_input("coordinates", "the weights of point " + std::to_string(i) + " are not finite", "compute them anew");
-        result.partition = std::max(result.partition, one.partition);
-        if (one.linear > result.linear || i == 0) result.linear = one.linear, result.worst_linear = static_cast<Index>(i);
-        result.minimum = std::min(result.minimum, one.minimum);
-        result.maximum = std::max(result.maximum, one.maximum);
-        result.negative_sum = std::max(result.negative_sum, one.negative_sum);
-        negative += one.negative;
-        negative_rows += one.negative > 0 ? 1 : 0;
+    result.minimum = certificates[0].minimum;
+    result.maximum = certificates[0].maximum;
+    for (std::size_t i = 0; i < certificates.size(); ++i) {
+        const PointCertificate& certificate = certificates[i];
+        if (!certificate.finite)
+            fail_input("coordinates", fmt::format("the weights of point {} are not finite", i), "compute them again");
+        result.partition = std::max(result.partition, certificate.partition);
+        if (certificate.linear > result.linear || i == 0)
+            result.linear = certificate.linear, result.worst_linear = static_cast<Index>(i);
+        result.minimum = std::min(result.minimum, certificate.minimum);
+        result.maximum = std::max(result.maximum, certificate.maximum);
+        result.negative_sum = std::max(result.negative_sum, certificate.negative_sum);
+        negative += certificate.negative;
+        negative_rows += certificate.negative > 0 ? 1 : 0;
     }
     const auto count = static_cast<double>(points.size());
     result.negative = negative / count / static_cast<double>(corner.size());

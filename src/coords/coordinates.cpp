@@ -8,6 +8,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,40 +18,40 @@ namespace ostraka {
 namespace {
 
 std::vector<CoordinateKind>& kinds() {
-    static std::vector<CoordinateKind> list{
+    static std::vector<CoordinateKind> registered{
         {"mean-value", "mean value coordinates (Ju, Schaefer, Warren 2005)", true, false, &coords::mean_value},
         {"green", "Green coordinates (Lipman, Levin, Cohen-Or 2008), for unconstrained deformation", false, true, &coords::green},
         {"harmonic", "harmonic coordinates (Joshi et al. 2007) on tetrahedra", true, false, &coords::harmonic},
         {"local", "local barycentric coordinates (Zhang et al. 2014) on tetrahedra", true, false, &coords::local},
         {"positive-mean-value", "positive mean value coordinates (Lipman et al. 2007)", true, false,
          &coords::positive_mean_value}};
-    return list;
+    return registered;
 }
 
 bool is_finite(const Point& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); }
 
 void check_cage(const Mesh& cage) {
     if (cage.number_of_faces() == 0) fail_input("cage", "has no faces", "give a closed triangle mesh around the mesh");
-    if (cage.has_garbage()) fail_input("cage", "holds removed elements", "collect its garbage first");
+    if (cage.has_garbage()) fail_input("cage", "contains removed elements", "collect its garbage first");
     for (const Vertex v : cage.vertices())
         if (!is_finite(cage.point(v)))
-            fail_input("cage", "vertex " + std::to_string(v) + " is not finite", "give a cage with finite coordinates");
+            fail_input("cage", fmt::format("vertex {} is not finite", v.idx()), "give a cage with finite coordinates");
     for (const Face f : cage.faces())
-        if (cage.degree(f) != 3) fail_input("cage", "face " + std::to_string(f) + " is no triangle", "triangulate the cage");
+        if (cage.degree(f) != 3) fail_input("cage", fmt::format("face {} is not a triangle", f.idx()), "triangulate the cage");
     for (const Halfedge h : cage.halfedges())
         if (cage.is_border(h))
             fail_input("cage",
-                       "is open: it has a border at the edge from vertex " + std::to_string(cage.source(h)) + " to vertex " +
-                           std::to_string(cage.target(h)),
-                       "close it, with 'ostraka mesh repair' for example");
+                       fmt::format("is open: it has a border at the edge from vertex {} to vertex {}", cage.source(h).idx(),
+                                   cage.target(h).idx()),
+                       "close it, for example with 'ostraka mesh repair'");
 }
 
 }  // namespace
 
 void add_coordinate_kind(CoordinateKind kind) {
-    for (CoordinateKind& known : kinds())
-        if (known.name == kind.name) {
-            known = std::move(kind);
+    for (CoordinateKind& existing : kinds())
+        if (existing.name == kind.name) {
+            existing = std::move(kind);
             return;
         }
     kinds().push_back(std::move(kind));
@@ -64,7 +66,7 @@ std::vector<std::string> coordinate_kinds() {
 const CoordinateKind& coordinate_kind(const std::string& name) {
     for (const CoordinateKind& kind : kinds())
         if (kind.name == name) return kind;
-    fail_usage("there are no coordinates of the kind '" + name + "'", "use one of: " + joined(coordinate_kinds()));
+    fail_usage(fmt::format("there are no coordinates of the kind '{}'", name), "use one of: " + joined(coordinate_kinds()));
 }
 
 Coordinates compute_coordinates(const std::string& name, const Mesh& cage, const std::vector<Point>& points,
@@ -78,10 +80,10 @@ Coordinates compute_coordinates(const std::string& name, const Mesh& cage, const
     // One number per point and cage vertex, and per point and cage face for kinds with a normal term.
     const double columns =
         static_cast<double>(cage.number_of_vertices()) + (kind.with_normals ? static_cast<double>(cage.number_of_faces()) : 0.0);
-    require_memory(8 * columns * static_cast<double>(points.size()),
-                   name + " coordinates of " + std::to_string(points.size()) + " points in a cage of " +
-                       std::to_string(cage.number_of_vertices()) + " vertices",
-                   "give a coarser cage or mesh");
+    require_memory(
+        8 * columns * static_cast<double>(points.size()),
+        fmt::format("{} coordinates of {} points in a cage of {} vertices", name, points.size(), cage.number_of_vertices()),
+        "give a coarser cage or mesh");
     Coordinates result = kind.compute(cage, points, options);
     result.kind = name;
     return result;
@@ -103,8 +105,9 @@ Coordinates compute_coordinates(const std::string& kind, const Mesh& cage, const
 
 std::vector<Vector> stretched_normals(const Mesh& rest_cage, const std::vector<Point>& cage_points) {
     if (cage_points.size() != rest_cage.number_of_vertices())
-        fail_usage("the moved cage has " + std::to_string(cage_points.size()) + " points, the cage " +
-                   std::to_string(rest_cage.number_of_vertices()) + " vertices");
+        fail_usage(fmt::format("the moved cage has {} points, but the cage has {} vertices", cage_points.size(),
+                               rest_cage.number_of_vertices()),
+                   "give one point for each vertex of the cage");
     std::vector<Vector> normals;
     normals.reserve(rest_cage.number_of_faces());
     for (const Face f : rest_cage.faces()) {
@@ -131,13 +134,13 @@ std::vector<Point> deformed(const Coordinates& coordinates, const Mesh& rest_cag
     const auto columns = static_cast<std::size_t>(coordinates.vertex.cols());
     const auto rows = static_cast<std::size_t>(coordinates.vertex.rows());
     if (columns != rest_cage.number_of_vertices() || columns != cage_points.size())
-        fail_usage("coordinates of " + std::to_string(columns) + " cage vertices, a cage of " +
-                       std::to_string(rest_cage.number_of_vertices()) + " and " + std::to_string(cage_points.size()) +
-                       " moved points",
+        fail_usage(fmt::format("the coordinates of {} cage vertices do not match a cage of {} vertices and {} moved points",
+                               columns, rest_cage.number_of_vertices(), cage_points.size()),
                    "give the cage that the coordinates were computed for");
     if (coordinates.has_normals() && (static_cast<std::size_t>(coordinates.normal.cols()) != rest_cage.number_of_faces() ||
                                       static_cast<std::size_t>(coordinates.normal.rows()) != rows))
-        fail_usage("normal weights that do not fit the faces of the cage");
+        fail_usage("the normal weights do not match the faces of the cage",
+                   "give the cage that the coordinates were computed for");
     using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
     Columns V(static_cast<Eigen::Index>(columns), 3), N(0, 3);
     // Relative to the first vertex, so that no digits are lost far from the origin.

@@ -12,6 +12,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -25,27 +27,29 @@ constexpr double flat = 1e-10;
 
 /// Data of a face beside CageFace.
 struct FacePlane {
-    Three unit;                ///< unit normal
-    std::array<Three, 3> out;  ///< outward normals of the edges in the plane
-    Three across;              ///< out_i . out_j of the edges that meet at corner k
-    Three over_height;         ///< 1 / height over edge k
+    Vector3 unit;                ///< unit normal
+    std::array<Vector3, 3> out;  ///< outward normals of the edges in the plane
+    Vector3 across;              ///< out_i . out_j of the edges that meet at corner k
+    Vector3 over_height;         ///< 1 / height over edge k
 };
 
 struct Work {
     explicit Work(const CageArrays& cage) : vertex(cage.points.size()), edge(cage.edges.size()), psi(cage.faces.size()) {}
-    struct OfVertex {
-        Lanes p[3], r, phi;
+    struct VertexLanes {
+        VectorLanes p;  ///< from x to the vertex
+        Lanes r, phi;   ///< |p|, and the weight
     };
-    struct OfEdge {
-        Lanes q[3], square, start, end, log;  ///< foot point on the line, |q|^2, parameters of the ends along the line, L
+    struct EdgeLanes {
+        VectorLanes q;                  ///< from x to its foot on the edge's line
+        Lanes square, start, end, log;  ///< |q|^2, parameters of the ends along the line, L
     };
-    struct OfFace {
+    struct FaceLanes {
         Lanes psi;
     };
-    std::vector<OfVertex> vertex;
-    std::vector<OfEdge> edge;
-    std::vector<OfFace> psi;
-    Lanes x[3];
+    std::vector<VertexLanes> vertex;
+    std::vector<EdgeLanes> edge;
+    std::vector<FaceLanes> psi;
+    VectorLanes x;
     Lanes near;  ///< 1 where the point lies on the cage
 };
 
@@ -64,48 +68,39 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
     const double scale = cage.scale;
     Lanes near{};
     for (std::size_t i = 0; i < work.vertex.size(); ++i) {
-        Work::OfVertex& v = work.vertex[i];
-        const Three& point = cage.points[i];
+        Work::VertexLanes& v = work.vertex[i];
+        const Vector3 point = cage.points[i];
 #pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
-            const double px = scale * (point[0] - work.x[0][l]), py = scale * (point[1] - work.x[1][l]),
-                         pz = scale * (point[2] - work.x[2][l]);
-            const double r = std::sqrt(px * px + py * py + pz * pz);
+            const Vector3 p = scale * (point - work.x.at(l));
+            const double r = std::sqrt(dot(p, p));
             near[l] = r <= snap ? 1 : near[l];
-            v.p[0][l] = px;
-            v.p[1][l] = py;
-            v.p[2][l] = pz;
+            v.p.set(l, p);
             v.r[l] = r;
             v.phi[l] = 0;
         }
     }
     for (std::size_t i = 0; i < work.edge.size(); ++i) {
         const CageEdge& edge = cage.edges[i];
-        Work::OfEdge& e = work.edge[i];
-        const Work::OfVertex &from = work.vertex[edge.from], &to = work.vertex[edge.to];
-        const double size = edge.length, over = size > 0 ? 1 / size : 0;
-        const double tx = over * edge.along[0], ty = over * edge.along[1], tz = over * edge.along[2];
+        Work::EdgeLanes& e = work.edge[i];
+        const Work::VertexLanes &from = work.vertex[edge.from], &to = work.vertex[edge.to];
+        const double size = edge.length;
+        const Vector3 t = (size > 0 ? 1 / size : 0) * edge.along;
 #pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
             const bool first = from.r[l] <= to.r[l];
-            const double px = first ? from.p[0][l] : to.p[0][l], py = first ? from.p[1][l] : to.p[1][l],
-                         pz = first ? from.p[2][l] : to.p[2][l];
-            const double s = tx * px + ty * py + tz * pz;
-            double qx = px - s * tx, qy = py - s * ty, qz = pz - s * tz;
-            const double again = tx * qx + ty * qy + tz * qz;
-            qx -= again * tx;
-            qy -= again * ty;
-            qz -= again * tz;
-            const double square = qx * qx + qy * qy + qz * qz;
+            const Vector3 p = select(first, from.p.at(l), to.p.at(l));
+            // The foot on the line, with one step of re-orthogonalisation.
+            const double s = dot(t, p);
+            const Vector3 rough = p - s * t, q = rough - dot(t, rough) * t;
+            const double square = dot(q, q);
             const double a = first ? s : s - size, b = first ? s + size : s;
             const double ra = from.r[l], rb = to.r[l], inner = a * b + square, product = ra * rb;
             // (ra + rb)^2 - size^2 = 2 (ra rb + inner); close to the edge the sum cancels and is computed from the distance.
             const double opposite = product - inner, sum = ra + rb + size;
             const double difference = inner < 0 ? size * size * square / (opposite > 0 ? opposite : 1) : product + inner;
             near[l] = square <= snap * snap && a <= 0 && b >= 0 ? 1 : near[l];
-            e.q[0][l] = qx;
-            e.q[1][l] = qy;
-            e.q[2][l] = qz;
+            e.q.set(l, q);
             e.square[l] = square;
             e.start[l] = a;
             e.end[l] = b;
@@ -116,8 +111,8 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
     for (std::size_t i = 0; i < work.psi.size(); ++i) {
         const CageFace& face = cage.faces[i];
         const FacePlane& plane = planes[i];
-        Work::OfVertex &v0 = work.vertex[face.corner[0]], &v1 = work.vertex[face.corner[1]], &v2 = work.vertex[face.corner[2]];
-        const Work::OfEdge &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
+        Work::VertexLanes &v0 = work.vertex[face.corner[0]], &v1 = work.vertex[face.corner[1]], &v2 = work.vertex[face.corner[2]];
+        const Work::EdgeLanes &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
         const double size0 = cage.edges[face.edge[0]].length, size1 = cage.edges[face.edge[1]].length,
                      size2 = cage.edges[face.edge[2]].length;
         // The ends of an edge in the face's own direction, from corner k + 1 to corner k + 2.
@@ -125,7 +120,7 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
         const Lanes &start0 = s0 > 0 ? e0.start : e0.end, &end0 = s0 > 0 ? e0.end : e0.start;
         const Lanes &start1 = s1 > 0 ? e1.start : e1.end, &end1 = s1 > 0 ? e1.end : e1.start;
         const Lanes &start2 = s2 > 0 ? e2.start : e2.end, &end2 = s2 > 0 ? e2.end : e2.start;
-        const Three n = plane.unit, out0 = plane.out[0], out1 = plane.out[1], out2 = plane.out[2];
+        const Vector3 n = plane.unit, out0 = plane.out[0], out1 = plane.out[1], out2 = plane.out[2];
         const double a0 = plane.across[0], a1 = plane.across[1], a2 = plane.across[2];
         const double close = plane.over_height[0] > 0 ? snap : -1;  // disabled for a face that is skipped
         const double f0 = plane.over_height[0], f1 = plane.over_height[1], f2 = plane.over_height[2];
@@ -133,13 +128,10 @@ void integrate(const CageArrays& cage, const std::vector<FacePlane>& planes, dou
         for (int l = 0; l < lanes; ++l) {
             // The height, computed from the foot point on the nearest edge.
             const double q0 = e0.square[l], q1 = e1.square[l], q2 = e2.square[l];
-            const double h0 = n[0] * e0.q[0][l] + n[1] * e0.q[1][l] + n[2] * e0.q[2][l];
-            const double h1 = n[0] * e1.q[0][l] + n[1] * e1.q[1][l] + n[2] * e1.q[2][l];
-            const double h2 = n[0] * e2.q[0][l] + n[1] * e2.q[1][l] + n[2] * e2.q[2][l];
+            const Vector3 foot0 = e0.q.at(l), foot1 = e1.q.at(l), foot2 = e2.q.at(l);
+            const double h0 = dot(n, foot0), h1 = dot(n, foot1), h2 = dot(n, foot2);
             const double h01 = q0 <= q1 ? h0 : h1, q01 = q0 <= q1 ? q0 : q1, h = q01 <= q2 ? h01 : h2, height = std::fabs(h);
-            const double d0 = out0[0] * e0.q[0][l] + out0[1] * e0.q[1][l] + out0[2] * e0.q[2][l];
-            const double d1 = out1[0] * e1.q[0][l] + out1[1] * e1.q[1][l] + out1[2] * e1.q[2][l];
-            const double d2 = out2[0] * e2.q[0][l] + out2[1] * e2.q[1][l] + out2[2] * e2.q[2][l];
+            const double d0 = dot(out0, foot0), d1 = dot(out1, foot1), d2 = dot(out2, foot2);
             const double omega = solid_angle_of_edge(d0, q0, height, size0, s0 * start0[l], s0 * end0[l], v1.r[l], v2.r[l]) +
                                  solid_angle_of_edge(d1, q1, height, size1, s1 * start1[l], s1 * end1[l], v2.r[l], v0.r[l]) +
                                  solid_angle_of_edge(d2, q2, height, size2, s2 * start2[l], s2 * end2[l], v0.r[l], v1.r[l]);
@@ -187,7 +179,7 @@ double orientation(const CageArrays& cage) {
 Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const CoordinateOptions& options) {
     const CageArrays cage(mesh);
     if (!(orientation(cage) > 0))
-        fail_input("cage", "is inside out or without volume", "turn its faces so that their normals point outward");
+        fail_input("cage", "is inside out or without volume", "reverse its faces so that their normals point outward");
     const std::vector<FacePlane> planes = planes_of(cage);
     const double snap = options.snap * cage.diagonal;
     Coordinates result;
@@ -203,16 +195,15 @@ Coordinates green(const Mesh& mesh, const std::vector<Point>& points, const Coor
         for (std::size_t i = 0; i < work.psi.size(); ++i) psi[i] = work.psi[i].psi[l] / (4 * pi * cage.scale);
         winding_numbers[point] = work.near[l] != 0 ? std::numeric_limits<double>::quiet_NaN() : sum;
     });
-    std::string list;
+    std::string outside_indices;
     std::size_t outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!(std::fabs(winding_numbers[i] - 1) <= 1e-6))
-            if (++outside <= 10) list += (list.empty() ? "" : ", ") + std::to_string(i);
+            if (++outside <= 10) outside_indices += (outside_indices.empty() ? "" : ", ") + std::to_string(i);
     if (outside > 0)
         fail_input("cage",
-                   std::to_string(outside) + (outside == 1 ? " point does" : " points do") +
-                       " not lie strictly inside, where alone Green coordinates are defined: " + list +
-                       (outside > 10 ? " ..." : ""),
+                   fmt::format("{} {} not lie strictly inside, the only place where Green coordinates are defined: {}{}", outside,
+                               outside == 1 ? "point does" : "points do", outside_indices, outside > 10 ? " ..." : ""),
                    "widen the cage there, or use mean value coordinates");
     return result;
 }

@@ -61,7 +61,7 @@ WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage) 
     const auto columns = static_cast<Eigen::Index>(cage.corners.size());
     WeightMatrix weights = weights_on_cage(inside, cage);
     if (count == 0) return weights;
-    std::vector<Eigen::Triplet<double, int>> entries, known;
+    std::vector<Eigen::Triplet<double, int>> entries, fixed;
     entries.reserve(inside.cells().size() * 6);
     for (std::size_t t = 0; t < inside.cells().size(); ++t) {
         const auto& cell = inside.cells()[t];
@@ -71,29 +71,29 @@ WeightMatrix harmonic_weights(const CageInterior& inside, const UnitCage& cage) 
                 if (row < 0 || row < column) continue;
                 const double value = gradients.volume[t] * gradients.of_corner[t][a].dot(gradients.of_corner[t][b]);
                 if (column >= 0) entries.emplace_back(row, column, value);
-                else known.emplace_back(row, static_cast<int>(cell[b]), value);
+                else fixed.emplace_back(row, static_cast<int>(cell[b]), value);
             }
     }
     LowerTriangle matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
     Eigen::SparseMatrix<double, Eigen::RowMajor, int> coupling(count, static_cast<int>(nodes));
-    coupling.setFromTriplets(known.begin(), known.end());
+    coupling.setFromTriplets(fixed.begin(), fixed.end());
     SparseCholesky cholesky;
     cholesky.analyse(matrix);
     if (!cholesky.factor(matrix))
         throw Error(ErrorKind::failure, "cage", "the harmonic equation cannot be solved on the tetrahedra inside it",
-                    "ask for fewer or more of them, or use mean-value coordinates");
+                    "choose another number of nodes, or use mean-value coordinates");
     // Blocks of columns, so that the right-hand sides stay small.
     constexpr Eigen::Index block = 32;
     Progress progress("harmonic", static_cast<std::size_t>(columns));
     for (Eigen::Index first = 0; first < columns; first += block) {
-        const Eigen::Index wide = std::min(block, columns - first);
-        const Eigen::MatrixXd boundary = weights.middleCols(first, wide);
+        const Eigen::Index width = std::min(block, columns - first);
+        const Eigen::MatrixXd boundary = weights.middleCols(first, width);
         Eigen::MatrixXd values = -(coupling * boundary);
         cholesky.solve(values);
         for (std::size_t v = 0; v < nodes; ++v)
-            if (unknown[v] >= 0) weights.row(static_cast<Eigen::Index>(v)).segment(first, wide) = values.row(unknown[v]);
-        progress.advance(static_cast<std::size_t>(wide));
+            if (unknown[v] >= 0) weights.row(static_cast<Eigen::Index>(v)).segment(first, width) = values.row(unknown[v]);
+        progress.advance(static_cast<std::size_t>(width));
     }
     return weights;
 }
@@ -102,11 +102,11 @@ namespace {
 
 /// Adds the weights at a position, linear in its tetrahedron, to a row.
 void interpolate(const CageInterior& inside, const WeightMatrix& weights, const Vector3d& place, std::span<double> row) {
-    const InteriorPlace at = inside.locate(place);
+    const InteriorPlace location = inside.locate(place);
     for (std::size_t k = 0; k < 4; ++k) {
-        if (at.weights[k] == 0) continue;
-        const double* from = weights.row(static_cast<Eigen::Index>(at.nodes[k])).data();
-        for (std::size_t j = 0; j < row.size(); ++j) row[j] += at.weights[k] * from[j];
+        if (location.weights[k] == 0) continue;
+        const double* from = weights.row(static_cast<Eigen::Index>(location.nodes[k])).data();
+        for (std::size_t j = 0; j < row.size(); ++j) row[j] += location.weights[k] * from[j];
     }
 }
 

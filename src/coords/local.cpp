@@ -47,11 +47,11 @@ std::vector<double> distances_from(const std::vector<std::vector<std::pair<Index
     CancelCheck check;
     while (!queue.empty()) {
         check();
-        const auto [at, v] = queue.top();
+        const auto [path_length, v] = queue.top();
         queue.pop();
-        if (at > distance[v]) continue;
+        if (path_length > distance[v]) continue;
         for (const auto& [other, length] : edges[v])
-            if (at + length < distance[other]) queue.emplace(distance[other] = at + length, other);
+            if (path_length + length < distance[other]) queue.emplace(distance[other] = path_length + length, other);
     }
     double largest = 0;
     for (const double d : distance)
@@ -66,9 +66,9 @@ std::vector<std::vector<std::pair<Index, double>>> edges_of(const CageInterior& 
         for (const Index a : cell)
             for (const Index b : cell)
                 if (a != b) edges[a].emplace_back(b, (inside.nodes()[a] - inside.nodes()[b]).norm());
-    for (auto& list : edges) {
-        std::sort(list.begin(), list.end());
-        list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (auto& neighbours : edges) {
+        std::sort(neighbours.begin(), neighbours.end());
+        neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
     }
     return edges;
 }
@@ -76,7 +76,7 @@ std::vector<std::vector<std::pair<Index, double>>> edges_of(const CageInterior& 
 /// The candidates of an interior node: the columns in which it has a weight, and its index in them.
 struct NodeRow {
     std::vector<Index> column;
-    std::vector<std::size_t> at;
+    std::vector<std::size_t> index_in_column;
 };
 
 class LocalWeights {
@@ -89,29 +89,29 @@ public:
 
     /// Alternating direction method of multipliers (Boyd et al. 2011); stops when the total variation changes by at most the
     /// share `tolerance` in ten steps.
-    void iterate(int most, double tolerance) {
-        constexpr int round = 10;
-        Progress progress("local coordinates", static_cast<std::size_t>(most));
-        double before = std::numeric_limits<double>::infinity();
-        for (int step = 1; step <= most; ++step) {
+    void iterate(int max_steps, double tolerance) {
+        constexpr int check_interval = 10;
+        Progress progress("local coordinates", static_cast<std::size_t>(max_steps));
+        double previous_variation = std::numeric_limits<double>::infinity();
+        for (int step = 1; step <= max_steps; ++step) {
             parallel_for(
                 columns_.size(), [&](std::size_t i) { update_column(columns_[i]); }, 1);
             parallel_for(
                 inner_.size(), [&](std::size_t k) { update_node(k); }, 64);
             progress.advance();
-            if (step % round != 0) continue;
+            if (step % check_interval != 0) continue;
             double gap = 0, change = 0, variation = 0;
             for (const Column& column : columns_) gap += column.gap, change += column.change, variation += column.total;
-            if (std::abs(before - variation) <= tolerance * variation) break;
-            before = variation;
+            if (std::abs(previous_variation - variation) <= tolerance * variation) break;
+            previous_variation = variation;
             // With a suitable penalty both residuals fall at the same rate (Boyd et al., 3.4.1).
-            if (step > most / 2) continue;
+            if (step > max_steps / 2) continue;
             if (gap > 100 * change) scale_penalty(2);
             else if (change > 100 * gap) scale_penalty(0.5);
         }
         // The result: the smooth weights, projected to the constraints.
         parallel_for(
-            inner_.size(), [&](std::size_t k) { settle_node(k); }, 64);
+            inner_.size(), [&](std::size_t k) { project_node(k); }, 64);
         for (std::size_t c = 0; c < columns_.size(); ++c)
             for (std::size_t k = 0; k < columns_[c].nodes.size(); ++k)
                 weights_(static_cast<Eigen::Index>(columns_[c].nodes[k]), static_cast<Eigen::Index>(c)) = columns_[c].z[k];
@@ -153,7 +153,7 @@ private:
         for (std::size_t k = 0; k < inner_.size(); ++k)
             for (std::size_t j = 0; j < rows_[k].column.size(); ++j) {
                 Column& column = columns_[rows_[k].column[j]];
-                rows_[k].at.push_back(column.nodes.size());
+                rows_[k].index_in_column.push_back(column.nodes.size());
                 column.nodes.push_back(inner_[k]);
                 column.z.push_back(start[k][j]);
             }
@@ -170,16 +170,16 @@ private:
         std::size_t edge_count = 0;
         for (std::size_t t = 0; t < inside_.cells().size(); ++t)
             for (const Index v : inside_.cells()[t]) mass_[v] += gradients_.volume[t] / 4;
-        for (const auto& list : edges)
-            for (const auto& [other, length] : list) edge += length, ++edge_count;
+        for (const auto& neighbours : edges)
+            for (const auto& [other, length] : neighbours) edge += length, ++edge_count;
         edge /= static_cast<double>(std::max<std::size_t>(edge_count, 1));
         stiffness_ = 1 / square(3 * edge);
         // A weight falls from one to zero over about the length of a cage edge.
-        double reach = 0;
+        double cage_edge_length = 0;
         for (const Edge e : cage_.mesh.edges())
-            reach += (cage_.corners[cage_.mesh.vertex(e, 0)] - cage_.corners[cage_.mesh.vertex(e, 1)]).norm();
-        reach /= static_cast<double>(cage_.mesh.number_of_edges());
-        step_ = 0.1 / reach;
+            cage_edge_length += (cage_.corners[cage_.mesh.vertex(e, 0)] - cage_.corners[cage_.mesh.vertex(e, 1)]).norm();
+        cage_edge_length /= static_cast<double>(cage_.mesh.number_of_edges());
+        step_ = 0.1 / cage_edge_length;
         parallel_for(
             columns_.size(), [&](std::size_t i) { set_up_column(i, cells_of, edges); }, 1);
     }
@@ -203,8 +203,8 @@ private:
         if (n == 0) return;
         const std::vector<double> distance = distances_from(edges, node_at(i));
         const auto place_of = [&](Index v) {
-            const auto found = std::lower_bound(column.nodes.begin(), column.nodes.end(), v);
-            return found != column.nodes.end() && *found == v ? static_cast<int>(found - column.nodes.begin()) : -1;
+            const auto node = std::lower_bound(column.nodes.begin(), column.nodes.end(), v);
+            return node != column.nodes.end() && *node == v ? static_cast<int>(node - column.nodes.begin()) : -1;
         };
         for (const Index v : column.nodes) column.cells.insert(column.cells.end(), cells_of[v].begin(), cells_of[v].end());
         std::sort(column.cells.begin(), column.cells.end());
@@ -216,10 +216,10 @@ private:
             const auto& gradient = gradients_.of_corner[t];
             std::array<int, 4> place{};
             Vector3d fixed = Vector3d::Zero();
-            double away = 0;
+            double mean_distance = 0;
             for (std::size_t k = 0; k < 4; ++k) {
                 place[k] = place_of(cell[k]);
-                away += distance[cell[k]] / 4;
+                mean_distance += distance[cell[k]] / 4;
                 if (place[k] < 0)
                     fixed += weights_(static_cast<Eigen::Index>(cell[k]), static_cast<Eigen::Index>(i)) * gradient[k];
             }
@@ -232,7 +232,7 @@ private:
             }
             column.place.push_back(place);
             column.fixed.push_back(fixed);
-            column.variation.push_back(away);
+            column.variation.push_back(mean_distance);
         }
         for (std::size_t k = 0; k < n; ++k)
             entries.emplace_back(static_cast<int>(k), static_cast<int>(k), stiffness_ * mass_[column.nodes[k]]);
@@ -240,8 +240,8 @@ private:
         matrix.setFromTriplets(entries.begin(), entries.end());
         column.factor.compute(matrix);
         if (column.factor.info() != Eigen::Success)
-            throw Error(ErrorKind::failure, "cage", "local coordinates cannot be solved for on the tetrahedra inside it",
-                        "ask for fewer or more of them, or use mean-value coordinates");
+            throw Error(ErrorKind::failure, "cage", "the local coordinates cannot be computed on the tetrahedra inside it",
+                        "choose another number of nodes, or use mean-value coordinates");
         column.u.assign(column.cells.size(), Vector3d::Zero());
         for (std::size_t c = 0; c < column.cells.size(); ++c) column.x.push_back(gradient_in(column, c));
     }
@@ -263,56 +263,57 @@ private:
             column.change += square(column.z[k] - column.last[k]);
         }
         column.last = column.z;
-        Eigen::VectorXd right(static_cast<Eigen::Index>(n));
+        Eigen::VectorXd right_hand_side(static_cast<Eigen::Index>(n));
         for (std::size_t k = 0; k < n; ++k)
-            right[static_cast<Eigen::Index>(k)] =
+            right_hand_side[static_cast<Eigen::Index>(k)] =
                 stiffness_ * mass_[column.nodes[k]] * (column.z[k] - column.y[k]) - column.coupling[k];
         for (std::size_t c = 0; c < column.cells.size(); ++c) {
-            const Vector3d wanted = gradients_.volume[column.cells[c]] * (column.x[c] - column.u[c]);
+            const Vector3d target = gradients_.volume[column.cells[c]] * (column.x[c] - column.u[c]);
             for (std::size_t k = 0; k < 4; ++k)
-                if (column.place[c][k] >= 0) right[column.place[c][k]] += gradients_.of_corner[column.cells[c]][k].dot(wanted);
+                if (column.place[c][k] >= 0)
+                    right_hand_side[column.place[c][k]] += gradients_.of_corner[column.cells[c]][k].dot(target);
         }
-        const Eigen::VectorXd solved = column.factor.solve(right);
-        std::copy(solved.data(), solved.data() + solved.size(), column.w.begin());
+        const Eigen::VectorXd solution = column.factor.solve(right_hand_side);
+        std::copy(solution.data(), solution.data() + solution.size(), column.w.begin());
         for (std::size_t c = 0; c < column.cells.size(); ++c) {
-            const Vector3d own = gradient_in(column, c), g = own + column.u[c];
-            column.total += column.variation[c] * gradients_.volume[column.cells[c]] * own.norm();
-            const double length = g.norm(), least = step_ * column.variation[c];
-            column.x[c] = length > least ? Vector3d((1 - least / length) * g) : Vector3d(Vector3d::Zero());
+            const Vector3d gradient = gradient_in(column, c), g = gradient + column.u[c];
+            column.total += column.variation[c] * gradients_.volume[column.cells[c]] * gradient.norm();
+            const double length = g.norm(), threshold = step_ * column.variation[c];
+            column.x[c] = length > threshold ? Vector3d((1 - threshold / length) * g) : Vector3d(Vector3d::Zero());
             column.u[c] = g - column.x[c];
         }
     }
 
     void update_node(std::size_t k) {
         const NodeRow& row = rows_[k];
-        std::vector<double> wanted(row.column.size());
-        for (std::size_t j = 0; j < wanted.size(); ++j) {
+        std::vector<double> target(row.column.size());
+        for (std::size_t j = 0; j < target.size(); ++j) {
             const Column& column = columns_[row.column[j]];
-            wanted[j] = column.w[row.at[j]] + column.y[row.at[j]];
+            target[j] = column.w[row.index_in_column[j]] + column.y[row.index_in_column[j]];
         }
-        const std::vector<double> kept = nearest_kept(k, wanted);
-        for (std::size_t j = 0; j < wanted.size(); ++j) {
+        const std::vector<double> projected = projected_weights(k, target);
+        for (std::size_t j = 0; j < target.size(); ++j) {
             Column& column = columns_[row.column[j]];
-            column.z[row.at[j]] = kept[j];
-            column.y[row.at[j]] = wanted[j] - kept[j];
+            column.z[row.index_in_column[j]] = projected[j];
+            column.y[row.index_in_column[j]] = target[j] - projected[j];
         }
     }
 
-    void settle_node(std::size_t k) {
+    void project_node(std::size_t k) {
         const NodeRow& row = rows_[k];
-        std::vector<double> wanted(row.column.size());
-        for (std::size_t j = 0; j < wanted.size(); ++j) wanted[j] = columns_[row.column[j]].w[row.at[j]];
-        const std::vector<double> kept = nearest_kept(k, wanted);
-        for (std::size_t j = 0; j < kept.size(); ++j) columns_[row.column[j]].z[row.at[j]] = kept[j];
+        std::vector<double> target(row.column.size());
+        for (std::size_t j = 0; j < target.size(); ++j) target[j] = columns_[row.column[j]].w[row.index_in_column[j]];
+        const std::vector<double> projected = projected_weights(k, target);
+        for (std::size_t j = 0; j < projected.size(); ++j) columns_[row.column[j]].z[row.index_in_column[j]] = projected[j];
     }
 
     /// The weights of a node projected to the constraints; its current copies if the projection fails.
-    [[nodiscard]] std::vector<double> nearest_kept(std::size_t k, std::vector<double> weights) const {
+    [[nodiscard]] std::vector<double> projected_weights(std::size_t k, std::vector<double> weights) const {
         const NodeRow& row = rows_[k];
         std::vector<Vector3d> corners(row.column.size());
         for (std::size_t j = 0; j < corners.size(); ++j) corners[j] = cage_.corners[row.column[j]];
         if (!project_row(weights, corners, inside_.nodes()[inner_[k]]))
-            for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = columns_[row.column[j]].z[row.at[j]];
+            for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = columns_[row.column[j]].z[row.index_in_column[j]];
         return weights;
     }
 

@@ -23,16 +23,18 @@ constexpr double sliver = 1.0 / 1024;
 struct Work {
     explicit Work(const CageArrays& cage)
         : vertex(cage.points.size()), edge(cage.edges.size()), sliver_lanes(cage.faces.size()) {}
-    struct OfVertex {
-        Lanes p[3], weight;
+    struct VertexLanes {
+        VectorLanes p;  ///< from x to the vertex
+        Lanes weight;
     };
-    struct OfEdge {
-        Lanes c[3], theta, over_sine;  ///< p_from x p_to, the angle between the two, the angle divided by the length of c
+    struct EdgeLanes {
+        VectorLanes c;               ///< p_from x p_to
+        Lanes theta, theta_by_sine;  ///< angle between p_from and p_to; the same divided by the length of c
     };
-    std::vector<OfVertex> vertex;
-    std::vector<OfEdge> edge;
+    std::vector<VertexLanes> vertex;
+    std::vector<EdgeLanes> edge;
     std::vector<std::uint8_t> sliver_lanes;  ///< per face: bit l is set if the face is a sliver in lane l
-    Lanes x[3];
+    VectorLanes x;
     Lanes near;  ///< 1 where the point may lie on the cage
 };
 
@@ -42,68 +44,58 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
     const double scale = cage.scale;
     Lanes near{};
     for (std::size_t i = 0; i < work.vertex.size(); ++i) {
-        Work::OfVertex& v = work.vertex[i];
-        const Three& point = cage.points[i];
+        Work::VertexLanes& v = work.vertex[i];
+        const Vector3 point = cage.points[i];
 #pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
-            const double px = scale * (point[0] - work.x[0][l]), py = scale * (point[1] - work.x[1][l]),
-                         pz = scale * (point[2] - work.x[2][l]);
-            near[l] = px * px + py * py + pz * pz <= snap_squared ? 1 : near[l];
-            v.p[0][l] = px;
-            v.p[1][l] = py;
-            v.p[2][l] = pz;
+            const Vector3 p = scale * (point - work.x.at(l));
+            near[l] = dot(p, p) <= snap_squared ? 1 : near[l];
+            v.p.set(l, p);
             v.weight[l] = 0;
         }
     }
     for (std::size_t i = 0; i < work.edge.size(); ++i) {
         const CageEdge& edge = cage.edges[i];
-        Work::OfEdge& e = work.edge[i];
-        const Work::OfVertex &from = work.vertex[edge.from], &to = work.vertex[edge.to];
-        const double ax = edge.along[0], ay = edge.along[1], az = edge.along[2];
+        Work::EdgeLanes& e = work.edge[i];
+        const Work::VertexLanes &from = work.vertex[edge.from], &to = work.vertex[edge.to];
+        const Vector3 along = edge.along;
         const double close = snap_squared * edge.length * edge.length;
 #pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
-            const double px = from.p[0][l], py = from.p[1][l], pz = from.p[2][l];
-            const double qx = to.p[0][l], qy = to.p[1][l], qz = to.p[2][l];
+            const Vector3 p = from.p.at(l), q = to.p.at(l);
             // Computed from the nearer end and the edge vector, which avoids the rounding error of p_from x p_to for a distant
             // end.
-            const bool first = px * px + py * py + pz * pz <= qx * qx + qy * qy + qz * qz;
-            const double nx = first ? px : qx, ny = first ? py : qy, nz = first ? pz : qz;
-            const double cx = ny * az - nz * ay, cy = nz * ax - nx * az, cz = nx * ay - ny * ax;
-            const double square = cx * cx + cy * cy + cz * cz, cosine = px * qx + py * qy + pz * qz;
+            const Vector3 c = cross(select(dot(p, p) <= dot(q, q), p, q), along);
+            const double square = dot(c, c), cosine = dot(p, q);
             const double sine = std::sqrt(square), theta = angle(sine, cosine);
             near[l] = square <= close && cosine <= 0 ? 1 : near[l];
-            e.c[0][l] = cx;
-            e.c[1][l] = cy;
-            e.c[2][l] = cz;
+            e.c.set(l, c);
             e.theta[l] = theta;
-            e.over_sine[l] = sine > 0 ? theta / (sine > 0 ? sine : 1) : 0;
+            e.theta_by_sine[l] = sine > 0 ? theta / (sine > 0 ? sine : 1) : 0;
         }
     }
     for (std::size_t i = 0; i < work.sliver_lanes.size(); ++i) {
         const CageFace& face = cage.faces[i];
-        const Work::OfEdge &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
-        Work::OfVertex &v0 = work.vertex[face.corner[0]], &v1 = work.vertex[face.corner[1]], &v2 = work.vertex[face.corner[2]];
+        const Work::EdgeLanes &e0 = work.edge[face.edge[0]], &e1 = work.edge[face.edge[1]], &e2 = work.edge[face.edge[2]];
+        Work::VertexLanes &v0 = work.vertex[face.corner[0]], &v1 = work.vertex[face.corner[1]], &v2 = work.vertex[face.corner[2]];
         const double s0 = face.sign[0], s1 = face.sign[1], s2 = face.sign[2];
-        const double Nx = face.normal[0], Ny = face.normal[1], Nz = face.normal[2];
+        const Vector3 normal = face.normal;
         const double flat = snap * face.double_area;
         std::int64_t slivers[lanes];
 #pragma GCC ivdep
         for (int l = 0; l < lanes; ++l) {
-            const double k0 = s0 * e0.over_sine[l], k1 = s1 * e1.over_sine[l], k2 = s2 * e2.over_sine[l];
-            const double mx = k0 * e0.c[0][l] + k1 * e1.c[0][l] + k2 * e2.c[0][l];
-            const double my = k0 * e0.c[1][l] + k1 * e1.c[1][l] + k2 * e2.c[1][l];
-            const double mz = k0 * e0.c[2][l] + k1 * e1.c[2][l] + k2 * e2.c[2][l];
+            const Vector3 c0 = e0.c.at(l), c1 = e1.c.at(l), c2 = e2.c.at(l);
+            const Vector3 m = s0 * e0.theta_by_sine[l] * c0 + s1 * e1.theta_by_sine[l] * c1 + s2 * e2.theta_by_sine[l] * c2;
             const double perimeter = e0.theta[l] + e1.theta[l] + e2.theta[l];
-            const double det = v0.p[0][l] * Nx + v0.p[1][l] * Ny + v0.p[2][l] * Nz;
-            const bool thin = mx * mx + my * my + mz * mz <= sliver * sliver * perimeter * perimeter;
+            const double det = dot(v0.p.at(l), normal);
+            const bool thin = dot(m, m) <= sliver * sliver * perimeter * perimeter;
             const bool touches = std::fabs(det) <= flat;
             near[l] = touches && !thin ? 1 : near[l];
             slivers[l] = thin ? 1 : 0;
-            const double over = thin || det == 0 ? 0 : 0.5 / (det == 0 ? 1 : det);
-            v0.weight[l] += over * s0 * (mx * e0.c[0][l] + my * e0.c[1][l] + mz * e0.c[2][l]);
-            v1.weight[l] += over * s1 * (mx * e1.c[0][l] + my * e1.c[1][l] + mz * e1.c[2][l]);
-            v2.weight[l] += over * s2 * (mx * e2.c[0][l] + my * e2.c[1][l] + mz * e2.c[2][l]);
+            const double factor = thin || det == 0 ? 0 : 0.5 / (det == 0 ? 1 : det);
+            v0.weight[l] += factor * s0 * dot(m, c0);
+            v1.weight[l] += factor * s1 * dot(m, c1);
+            v2.weight[l] += factor * s2 * dot(m, c2);
         }
         std::int64_t bits = 0;
         for (int l = 0; l < lanes; ++l) bits |= slivers[l] << l;
@@ -116,11 +108,11 @@ void sum_weights(const CageArrays& cage, double snap, Work& work) {
 /// W_i = |c_i| N_i / (2 det), N_i = theta_i - theta_(i+1) cos A_(i-1) - theta_(i-1) cos A_(i+1) with the angles A of the
 /// spherical triangle. The small difference of its sides comes from sin((b + c - a) / 2) sin((a + b + c) / 2) = sin b sin c
 /// cos^2(A / 2), and 1 - |cos A| from sin A = |p| det / (|c| |c|). N vanishes as det^2, and therefore W as det.
-Three sliver_weights(const Three (&p)[3], const Three (&c)[3], const Three& theta, double det) {
-    Three cl, pl;
+Vector3 sliver_weights(const Vector3 (&p)[3], const Vector3 (&c)[3], const Vector3& theta, double det) {
+    Vector3 cl, pl;
     for (std::size_t k = 0; k < 3; ++k) cl[k] = length(c[k]), pl[k] = length(p[k]);
     if (!(cl[0] * cl[1] * cl[2] > 0) || det == 0) return {0, 0, 0};
-    Three one_minus, one_plus, sine;  // 1 - cos A, 1 + cos A; sines of the sides
+    Vector3 one_minus, one_plus, sine;  // 1 - cos A, 1 + cos A; sines of the sides
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
         const double cosine = -dot(c[i], c[j]) / (cl[i] * cl[j]), s = pl[k] * det / (cl[i] * cl[j]);
@@ -136,7 +128,7 @@ Three sliver_weights(const Three (&p)[3], const Three (&c)[3], const Three& thet
     const double half = std::sin(0.5 * (theta[0] + theta[1] + theta[2]));
     if (!(half > 0)) return {0, 0, 0};
     const double excess = 2 * std::asin(std::min(1.0, 0.5 * sine[i] * sine[j] * one_plus[k] / half));
-    Three N;
+    Vector3 N;
     N[k] = -excess + theta[i] * one_minus[j] + theta[j] * one_minus[i];
     N[i] = excess - theta[j] * one_plus[k] + theta[k] * one_minus[j];
     N[j] = excess - theta[i] * one_plus[k] + theta[k] * one_minus[i];
@@ -149,23 +141,22 @@ void add_slivers(const CageArrays& cage, Work& work) {
         const CageFace& face = cage.faces[i];
         for (int l = 0; l < lanes; ++l) {
             if ((work.sliver_lanes[i] >> l & 1) == 0) continue;
-            Three p[3], c[3], theta;
+            Vector3 p[3], c[3], theta;
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto& vertex = work.vertex[face.corner[k]].p;
-                const Work::OfEdge& edge = work.edge[face.edge[k]];
-                p[k] = {vertex[0][l], vertex[1][l], vertex[2][l]};
-                c[k] = face.sign[k] * Three{edge.c[0][l], edge.c[1][l], edge.c[2][l]};
+                const Work::EdgeLanes& edge = work.edge[face.edge[k]];
+                p[k] = work.vertex[face.corner[k]].p.at(l);
+                c[k] = face.sign[k] * edge.c.at(l);
                 theta[k] = edge.theta[l];
             }
-            const Three weights = sliver_weights(p, c, theta, dot(p[0], face.normal));
+            const Vector3 weights = sliver_weights(p, c, theta, dot(p[0], face.normal));
             for (std::size_t k = 0; k < 3; ++k) work.vertex[face.corner[k]].weight[l] += weights[k];
         }
     }
 }
 
 /// Fills the weights of a point that lies on the cage: linear on the nearest vertex, else edge, else face.
-bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double* row) {
-    const auto clear = [&] { std::fill(row, row + cage.points.size(), 0.0); };
+bool weights_on_cage(const CageArrays& cage, const Vector3& x, double snap, double* row) {
+    const auto clear_row = [&] { std::fill(row, row + cage.points.size(), 0.0); };
     double minimum = snap;
     std::size_t best = cage.points.size();
     for (std::size_t i = 0; i < cage.points.size(); ++i) {
@@ -173,41 +164,41 @@ bool weights_on_cage(const CageArrays& cage, const Three& x, double snap, double
         if (d <= minimum && (best == cage.points.size() || d < minimum)) minimum = d, best = i;
     }
     if (best < cage.points.size()) {
-        clear();
+        clear_row();
         row[best] = 1;
         return true;
     }
     best = cage.edges.size(), minimum = snap;
-    double share = 0;
+    double parameter = 0;
     for (std::size_t i = 0; i < cage.edges.size(); ++i) {
         const CageEdge& edge = cage.edges[i];
         if (!(edge.length > 0)) continue;
         const double t = -dot(cage.from(x, edge.from), edge.along) / (edge.length * edge.length);
         if (!(t >= 0 && t <= 1)) continue;
         const double d = length(cage.from(x, edge.from) + t * edge.along);
-        if (d <= minimum && (best == cage.edges.size() || d < minimum)) minimum = d, best = i, share = t;
+        if (d <= minimum && (best == cage.edges.size() || d < minimum)) minimum = d, best = i, parameter = t;
     }
     if (best < cage.edges.size()) {
-        clear();
-        row[cage.edges[best].from] = 1 - share;
-        row[cage.edges[best].to] = share;
+        clear_row();
+        row[cage.edges[best].from] = 1 - parameter;
+        row[cage.edges[best].to] = parameter;
         return true;
     }
     best = cage.faces.size(), minimum = snap;
-    Three barycentric{};
+    Vector3 barycentric{};
     for (std::size_t i = 0; i < cage.faces.size(); ++i) {
         const CageFace& face = cage.faces[i];
         if (!(face.double_area > 0)) continue;
-        const Three p[3]{cage.from(x, face.corner[0]), cage.from(x, face.corner[1]), cage.from(x, face.corner[2])};
+        const Vector3 p[3]{cage.from(x, face.corner[0]), cage.from(x, face.corner[1]), cage.from(x, face.corner[2])};
         const double d = std::fabs(dot(p[0], face.normal)) / face.double_area;
         if (!(d <= minimum) || (best < cage.faces.size() && !(d < minimum))) continue;
-        Three b;
+        Vector3 b;
         for (std::size_t k = 0; k < 3; ++k) b[k] = dot(cross(p[(k + 1) % 3], p[(k + 2) % 3]), face.normal);
         if (!(b[0] >= 0 && b[1] >= 0 && b[2] >= 0)) continue;
         minimum = d, best = i, barycentric = 1 / (b[0] + b[1] + b[2]) * b;
     }
     if (best == cage.faces.size()) return false;
-    clear();
+    clear_row();
     for (std::size_t k = 0; k < 3; ++k) row[cage.faces[best].corner[k]] = barycentric[k];
     return true;
 }
@@ -225,12 +216,13 @@ Coordinates mean_value(const Mesh& mesh, const std::vector<Point>& points, const
     };
     for_each_point<Work>(cage, points, compute, [&](const Work& work, std::size_t l, std::size_t point) {
         double* row = result.vertex.row(static_cast<Eigen::Index>(point)).data();
-        if (work.near[l] != 0 && weights_on_cage(cage, three(points[point]), snap, row)) return;
+        if (work.near[l] != 0 && weights_on_cage(cage, vector3(points[point]), snap, row)) return;
         double sum = 0;
-        for (const Work::OfVertex& v : work.vertex) sum += v.weight[l];
+        for (const Work::VertexLanes& v : work.vertex) sum += v.weight[l];
         if (!(std::fabs(sum) > 0) || !std::isfinite(sum))
-            fail_input("point " + std::to_string(point), "has no mean value coordinates in this cage: its weights have no sum",
-                       "it lies too far from the cage, or the cage encloses nothing");
+            fail_input("point " + std::to_string(point),
+                       "has no mean value coordinates in this cage: the sum of its weights is zero or not finite",
+                       "move the point closer to the cage, or give a cage that encloses a volume");
         for (std::size_t i = 0; i < work.vertex.size(); ++i) row[i] = work.vertex[i].weight[l] / sum;
     });
     return result;

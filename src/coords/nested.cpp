@@ -47,20 +47,20 @@ double signed_volume(const Mesh& mesh) {
 /// The faces of the chosen components, and the isolated vertices if `loose`.
 SubMesh part_of(const Mesh& cage, const FacePieces& pieces, const std::vector<bool>& chosen, bool loose) {
     SubMesh part;
-    std::vector<Index> place(cage.number_of_vertices(), no_index);
-    std::vector<bool> use(cage.number_of_vertices(), false);
+    std::vector<Index> new_index(cage.number_of_vertices(), no_index);
+    std::vector<bool> used(cage.number_of_vertices(), false);
     for (const Face f : cage.faces())
         if (chosen[pieces.of_face[f]])
-            for (const Vertex v : corners(cage, f)) use[v] = true;
+            for (const Vertex v : corners(cage, f)) used[v] = true;
     for (const Vertex v : cage.vertices())
-        if (use[v] || (loose && cage.is_isolated(v))) {
-            place[v] = part.mesh.add_vertex(cage.point(v));
+        if (used[v] || (loose && cage.is_isolated(v))) {
+            new_index[v] = part.mesh.add_vertex(cage.point(v));
             part.vertices.push_back(v);
         }
     for (const Face f : cage.faces()) {
         if (!chosen[pieces.of_face[f]]) continue;
         const auto [a, b, c] = corners(cage, f);
-        part.mesh.add_face(Vertex(place[a]), Vertex(place[b]), Vertex(place[c]));
+        part.mesh.add_face(Vertex(new_index[a]), Vertex(new_index[b]), Vertex(new_index[c]));
         part.faces.push_back(f);
     }
     return part;
@@ -73,46 +73,47 @@ double smooth_step(double t) {
 }
 
 /// The influence of a level on each vertex of a mesh, 0 to 1.
-std::vector<double> holds_of(const Mesh& cage, const Mesh& mesh, double fade) {
+std::vector<double> level_influence(const Mesh& cage, const Mesh& mesh, double fade) {
     const std::vector<Point> points = points_of(mesh);
     const std::vector<bool> inside = strictly_inside(cage, points);
     // Only the largest piece inside counts: other parts of the object that reach into the cage are ignored.
-    std::vector<bool> seen(points.size(), false);
+    std::vector<bool> visited(points.size(), false);
     std::vector<Index> piece;
     for (const Vertex first : mesh.vertices()) {
-        if (!inside[first] || seen[first]) continue;
-        std::vector<Index> reached{first};
-        seen[first] = true;
-        for (std::size_t i = 0; i < reached.size(); ++i)
-            if (!mesh.is_isolated(Vertex(reached[i])))
-                for (const Vertex v : mesh.vertices_around_target(mesh.halfedge(Vertex(reached[i]))))
-                    if (inside[v] && !seen[v]) seen[v] = true, reached.push_back(v);
-        if (reached.size() > piece.size()) piece = std::move(reached);
+        if (!inside[first] || visited[first]) continue;
+        std::vector<Index> component{first};
+        visited[first] = true;
+        for (std::size_t i = 0; i < component.size(); ++i)
+            if (!mesh.is_isolated(Vertex(component[i])))
+                for (const Vertex v : mesh.vertices_around_target(mesh.halfedge(Vertex(component[i]))))
+                    if (inside[v] && !visited[v]) visited[v] = true, component.push_back(v);
+        if (component.size() > piece.size()) piece = std::move(component);
     }
-    std::vector<bool> held(points.size(), false);
-    for (const Index v : piece) held[v] = true;
+    std::vector<bool> in_piece(points.size(), false);
+    for (const Index v : piece) in_piece[v] = true;
     const SurfaceSearch search(cage);
     std::vector<Point> entries;
     for (const Edge e : mesh.edges()) {
-        Vertex in = mesh.vertex(e, 0), out = mesh.vertex(e, 1);
-        if (held[in] == held[out]) continue;
-        if (held[out]) std::swap(in, out);
-        const double before = search.closest(mesh.point(in)).distance, after = search.closest(mesh.point(out)).distance;
-        const double t = before + after > 0 ? before / (before + after) : 0;
-        entries.push_back(mesh.point(in) + t * (mesh.point(out) - mesh.point(in)));
+        Vertex inner = mesh.vertex(e, 0), outer = mesh.vertex(e, 1);
+        if (in_piece[inner] == in_piece[outer]) continue;
+        if (in_piece[outer]) std::swap(inner, outer);
+        const double inner_distance = search.closest(mesh.point(inner)).distance,
+                     outer_distance = search.closest(mesh.point(outer)).distance;
+        const double t = inner_distance + outer_distance > 0 ? inner_distance / (inner_distance + outer_distance) : 0;
+        entries.push_back(mesh.point(inner) + t * (mesh.point(outer) - mesh.point(inner)));
     }
-    std::vector<double> holds(points.size(), 0);
+    std::vector<double> influence(points.size(), 0);
     if (entries.empty()) {
-        for (const Index v : piece) holds[v] = 1;
-        return holds;
+        for (const Index v : piece) influence[v] = 1;
+        return influence;
     }
     const PointTree tree(entries);
     const double length = fade * box_diagonal(cage);
     parallel_for(piece.size(), [&](std::size_t i) {
-        const double off = std::sqrt(tree.nearest(points[piece[i]]).squared);
-        holds[piece[i]] = length > 0 ? smooth_step(off / length) : 1;
+        const double distance = std::sqrt(tree.nearest(points[piece[i]]).squared);
+        influence[piece[i]] = length > 0 ? smooth_step(distance / length) : 1;
     });
-    return holds;
+    return influence;
 }
 
 }  // namespace
@@ -122,46 +123,48 @@ std::vector<CageLevel> cage_levels(const Mesh& cage) {
         cage, [](Face) { return true; }, [](Halfedge) { return true; });
     const bool open =
         std::any_of(cage.halfedges().begin(), cage.halfedges().end(), [&](Halfedge h) { return cage.is_border(h); });
-    const auto all_of = [&](auto&& wanted) {
+    const auto select_pieces = [&](auto&& condition) {
         std::vector<bool> chosen(pieces.count, false);
-        for (Index k = 0; k < pieces.count; ++k) chosen[k] = wanted(k);
+        for (Index k = 0; k < pieces.count; ++k) chosen[k] = condition(k);
         return chosen;
     };
-    const auto whole = [&] { return CageLevel{part_of(cage, pieces, all_of([](Index) { return true; }), true), 0}; };
+    const auto single_level = [&] {
+        return CageLevel{part_of(cage, pieces, select_pieces([](Index) { return true; }), true), 0};
+    };
     std::vector<CageLevel> levels;
     if (pieces.count < 2 || open) {
-        levels.push_back(whole());
+        levels.push_back(single_level());
         return levels;
     }
     // The parent of each component is the smallest component around it.
-    std::vector<SubMesh> component;
+    std::vector<SubMesh> components;
     std::vector<double> volume;
     for (Index k = 0; k < pieces.count; ++k) {
-        component.push_back(part_of(cage, pieces, all_of([&](Index other) { return other == k; }), false));
-        volume.push_back(signed_volume(component.back().mesh));
+        components.push_back(part_of(cage, pieces, select_pieces([&](Index other) { return other == k; }), false));
+        volume.push_back(signed_volume(components.back().mesh));
     }
     std::vector<Index> parent(pieces.count, no_index);
     for (Index k = 0; k < pieces.count; ++k) {
-        const std::vector<Point> places = points_of(component[k].mesh);
+        const std::vector<Point> points = points_of(components[k].mesh);
         for (Index other = 0; other < pieces.count; ++other) {
             if (other == k || !(volume[k] * volume[other] > 0) || !(std::abs(volume[other]) > std::abs(volume[k]))) continue;
             if (parent[k] != no_index && std::abs(volume[parent[k]]) <= std::abs(volume[other])) continue;
-            const std::vector<bool> inside = strictly_inside(component[other].mesh, places);
-            if (2 * std::count(inside.begin(), inside.end(), true) > static_cast<std::ptrdiff_t>(places.size()))
+            const std::vector<bool> inside = strictly_inside(components[other].mesh, points);
+            if (2 * std::count(inside.begin(), inside.end(), true) > static_cast<std::ptrdiff_t>(points.size()))
                 parent[k] = other;
         }
     }
-    levels.push_back({part_of(cage, pieces, all_of([&](Index k) { return parent[k] == no_index; }), true), 0});
+    levels.push_back({part_of(cage, pieces, select_pieces([&](Index k) { return parent[k] == no_index; }), true), 0});
     std::vector<std::size_t> level_of(pieces.count, 0);
-    std::vector<bool> done = all_of([&](Index k) { return parent[k] == no_index; });
-    for (bool more = true; more;) {
-        more = false;
-        const std::vector<bool> before = done;
+    std::vector<bool> assigned = select_pieces([&](Index k) { return parent[k] == no_index; });
+    for (bool changed = true; changed;) {
+        changed = false;
+        const std::vector<bool> previously_assigned = assigned;
         for (Index k = 0; k < pieces.count; ++k) {
-            if (before[k] || !before[parent[k]]) continue;
+            if (previously_assigned[k] || !previously_assigned[parent[k]]) continue;
             level_of[k] = levels.size();
-            levels.push_back({std::move(component[k]), level_of[parent[k]]});
-            done[k] = more = true;
+            levels.push_back({std::move(components[k]), level_of[parent[k]]});
+            assigned[k] = changed = true;
         }
     }
     return levels;
@@ -178,7 +181,8 @@ std::vector<WeightMatrix> carrying_weights(const std::vector<CageLevel>& levels)
 Coordinates nested_coordinates(const std::string& kind, const std::vector<CageLevel>& levels, const Mesh& mesh,
                                const CoordinateOptions& options) {
     if (coordinate_kind(kind).with_normals)
-        fail_usage(kind + " coordinates are not defined in nested cages", "use another kind, or a cage without cages inside");
+        fail_usage(kind + " coordinates are not defined in nested cages",
+                   "use another kind of coordinates, or a cage without inner cages");
     Eigen::Index columns = 0;
     for (const CageLevel& level : levels) columns += static_cast<Eigen::Index>(level.cage.vertices.size());
     const std::vector<Point> points = points_of(mesh);
@@ -191,22 +195,23 @@ Coordinates nested_coordinates(const std::string& kind, const std::vector<CageLe
         result.vertex.col(levels[0].cage.vertices[j]) = outer.vertex.col(static_cast<Eigen::Index>(j));
     const std::vector<WeightMatrix> carrying = carrying_weights(levels);
     for (std::size_t l = 1; l < levels.size(); ++l) {
-        const SubMesh &own = levels[l].cage, &around = levels[levels[l].parent].cage;
-        const std::vector<double> holds = holds_of(own.mesh, mesh, options.fade);
-        std::vector<Point> held;
+        const SubMesh &level_cage = levels[l].cage, &parent_cage = levels[levels[l].parent].cage;
+        const std::vector<double> influence = level_influence(level_cage.mesh, mesh, options.fade);
+        std::vector<Point> influenced_points;
         std::vector<Eigen::Index> rows;
-        for (std::size_t v = 0; v < holds.size(); ++v)
-            if (holds[v] > 0) held.push_back(points[v]), rows.push_back(static_cast<Eigen::Index>(v));
-        const Coordinates inner = compute_coordinates(kind, own.mesh, held, options);
+        for (std::size_t v = 0; v < influence.size(); ++v)
+            if (influence[v] > 0) influenced_points.push_back(points[v]), rows.push_back(static_cast<Eigen::Index>(v));
+        const Coordinates inner = compute_coordinates(kind, level_cage.mesh, influenced_points, options);
         for (std::size_t k = 0; k < inner.seconds.size(); ++k) result.seconds[k].second += inner.seconds[k].second;
         const WeightMatrix& weights = inner.vertex;
         parallel_for(rows.size(), [&](std::size_t i) {
-            const Eigen::RowVectorXd part = holds[static_cast<std::size_t>(rows[i])] * weights.row(static_cast<Eigen::Index>(i));
-            const Eigen::RowVectorXd taken = part * carrying[l];
-            for (std::size_t j = 0; j < own.vertices.size(); ++j)
-                result.vertex(rows[i], own.vertices[j]) += part[static_cast<Eigen::Index>(j)];
-            for (std::size_t j = 0; j < around.vertices.size(); ++j)
-                result.vertex(rows[i], around.vertices[j]) -= taken[static_cast<Eigen::Index>(j)];
+            const Eigen::RowVectorXd weighted =
+                influence[static_cast<std::size_t>(rows[i])] * weights.row(static_cast<Eigen::Index>(i));
+            const Eigen::RowVectorXd parent_weights = weighted * carrying[l];
+            for (std::size_t j = 0; j < level_cage.vertices.size(); ++j)
+                result.vertex(rows[i], level_cage.vertices[j]) += weighted[static_cast<Eigen::Index>(j)];
+            for (std::size_t j = 0; j < parent_cage.vertices.size(); ++j)
+                result.vertex(rows[i], parent_cage.vertices[j]) -= parent_weights[static_cast<Eigen::Index>(j)];
         });
     }
     if (outer.is_sparse()) result.sparse = result.vertex.sparseView();

@@ -79,8 +79,9 @@ FaceShares face_shares(const Mesh& mesh) {
             const EdgeCurvature& edge = edges[mesh.edge(h)];
             shares.integrals.mean[f] += edge.mean / 2;
             shares.vector[f] += edge.vector / 2;
-            const double missing = deficits[mesh.target(h)], around = 2 * pi - missing;
-            if (missing != 0 && around > 0) shares.integrals.gaussian[f] += missing * angle_at(mesh, h) / around;
+            const double deficit_at_vertex = deficits[mesh.target(h)], angle_sum = 2 * pi - deficit_at_vertex;
+            if (deficit_at_vertex != 0 && angle_sum > 0)
+                shares.integrals.gaussian[f] += deficit_at_vertex * angle_at(mesh, h) / angle_sum;
         }
     });
     return shares;
@@ -139,7 +140,7 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
             Vector h(0, 0, 0), a(0, 0, 0);
             double gaussian = 0, area = 0;
             this_threads_neighbourhood().walk(mesh, Vertex(static_cast<Index>(i)), radius, [&](Vertex v, double squared) {
-                const double share = 1 - squared / squared_radius, w = share * share;
+                const double falloff = 1 - squared / squared_radius, w = falloff * falloff;
                 h += w * shares.mean_vector[v];
                 a += w * shares.area_vector[v];
                 gaussian += w * shares.gaussian[v];
@@ -156,8 +157,7 @@ Curvature curvature(const Mesh& mesh, const CurvatureOptions& options) {
 CurvatureIntegrals curvature_integrals(const Mesh& mesh) { return face_shares(mesh).integrals; }
 
 RegionCurvature region_curvature(const Mesh& mesh, const CurvatureIntegrals& integrals, const std::vector<Index>& faces) {
-    if (integrals.mean.size() != mesh.number_of_faces())
-        fail_usage("the integrals are those of another mesh", "compute them anew");
+    if (integrals.mean.size() != mesh.number_of_faces()) fail_usage("the integrals belong to another mesh", "compute them again");
     RegionCurvature result;
     check_region(mesh, faces);
     for (const Index face : faces) {

@@ -2,6 +2,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,17 +12,16 @@ namespace ostraka {
 void check_region(const Mesh& mesh, const std::vector<Index>& faces) {
     for (const Index face : faces)
         if (face >= mesh.number_of_faces())
-            fail_usage("face " + std::to_string(face) + " is not one of the " + std::to_string(mesh.number_of_faces()) + " faces",
-                       "was it selected on another mesh?");
+            fail_usage(fmt::format("there is no face {}: the mesh has {} faces, counted from 0", face, mesh.number_of_faces()),
+                       "use the mesh on which the faces were selected");
 }
 
 Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, const std::vector<Index>& faces,
                              const std::string& where) {
     if (map.size() != mesh.number_of_vertices())
-        fail_input(where,
-                   "has " + std::to_string(map.size()) + " values for " + std::to_string(mesh.number_of_vertices()) + " vertices",
+        fail_input(where, fmt::format("has {} values for {} vertices", map.size(), mesh.number_of_vertices()),
                    "give one value for each of the vertices");
-    if (faces.empty()) fail_usage("the region has no faces", "select some");
+    if (faces.empty()) fail_usage("the region has no faces", "select faces");
     check_region(mesh, faces);
     std::vector<std::pair<Index, double>> shares;
     shares.reserve(3 * faces.size());
@@ -37,7 +38,7 @@ Statistics vertex_statistics(const Mesh& mesh, const std::vector<double>& map, c
             continue;
         }
         if (!std::isfinite(map[vertex]))
-            fail_input(where, "the value of vertex " + std::to_string(vertex) + " is not a finite number",
+            fail_input(where, fmt::format("the value of vertex {} is not a finite number", vertex),
                        "correct the map or choose another region");
         values.push_back(map[vertex]);
         weights.push_back(shares[i].second);

@@ -8,6 +8,8 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +19,7 @@ namespace ostraka {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// A ray of the cone: its direction relative to the axis and its weight.
 struct ConeRay {
@@ -30,28 +32,28 @@ std::vector<ConeRay> cone_rays(int count, double opening) {
     std::vector<ConeRay> rays;
     for (int i = 0; i < count; ++i) {
         const double z = 1 - (1 - lowest) * (i + 0.5) / count, r = std::sqrt(std::max(0.0, 1 - z * z));
-        const double turn = i * pi * (3 - std::sqrt(5.0)), share = half > 0 ? std::acos(z) / half : 0;
-        rays.push_back({r * std::cos(turn), r * std::sin(turn), z, std::exp2(-2 * share * share)});
+        const double angle = i * pi * (3 - std::sqrt(5.0)), relative_angle = half > 0 ? std::acos(z) / half : 0;
+        rays.push_back({r * std::cos(angle), r * std::sin(angle), z, std::exp2(-2 * relative_angle * relative_angle)});
     }
     return rays;
 }
 
 /// Area vectors of the faces averaged over balls, so that single faces do not tilt the cone.
 std::vector<Vector> smooth_normals(const Mesh& mesh, double radius) {
-    std::vector<Vector> own(mesh.number_of_faces()), result(own.size(), Vector(0, 0, 0));
-    std::vector<Point> centroids(own.size());
-    parallel_for(own.size(), [&](std::size_t f) {
-        own[f] = area_vector(mesh, Face(static_cast<Index>(f)));
+    std::vector<Vector> area_vectors(mesh.number_of_faces()), result(area_vectors.size(), Vector(0, 0, 0));
+    std::vector<Point> centroids(area_vectors.size());
+    parallel_for(area_vectors.size(), [&](std::size_t f) {
+        area_vectors[f] = area_vector(mesh, Face(static_cast<Index>(f)));
         centroids[f] = centroid(mesh, Face(static_cast<Index>(f)));
     });
-    if (!(radius > 0)) return own;
+    if (!(radius > 0)) return area_vectors;
     parallel_for(
         result.size(),
         [&](std::size_t f) {
             check_cancelled();  // a ball may be large
             this_threads_neighbourhood().walk(
                 mesh, centroids, Face(static_cast<Index>(f)), radius,
-                [&](Face face, double squared) { result[f] += (1 - squared / (radius * radius)) * own[face]; });
+                [&](Face face, double squared) { result[f] += (1 - squared / (radius * radius)) * area_vectors[face]; });
         },
         4096);
     return result;
@@ -79,15 +81,16 @@ public:
 
     /// Distance from `origin` to the first face, other than `start`, through which the ray leaves the solid; `expected` is the
     /// length that is tested first.
-    [[nodiscard]] std::optional<double> way(const Point& origin, Index start, const Vector& direction, double expected) const {
+    [[nodiscard]] std::optional<double> exit_distance(const Point& origin, Index start, const Vector& direction,
+                                                      double expected) const {
         const double minimum = 1e-9 * diagonal_;
         for (double max_distance = std::max(expected, diagonal_ / 64);; max_distance *= 4) {
             max_distance = std::min(max_distance, 1.01 * diagonal_);
             // The query segment extends in both directions: its middle is half way along the ray.
             for (const SurfaceHit& hit :
                  search_.line_hits(origin + direction * (max_distance / 2), direction, max_distance / 2)) {
-                const double way = hit.distance + max_distance / 2;
-                if (hit.face != start && way > minimum && search_.normal(hit.face) * direction > 0) return way;
+                const double distance = hit.distance + max_distance / 2;
+                if (hit.face != start && distance > minimum && search_.normal(hit.face) * direction > 0) return distance;
             }
             if (max_distance > diagonal_) return {};
         }
@@ -102,7 +105,7 @@ private:
 
 std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options) {
     check_options(options, "thickness");
-    std::vector<double> result(mesh.number_of_faces(), none);
+    std::vector<double> result(mesh.number_of_faces(), undefined);
     if (result.empty() || !(surface_area(mesh) > 0)) return result;
     const std::vector<ConeRay> rays = cone_rays(options.rays, options.cone);
     const std::vector<Vector> normals = smooth_normals(mesh, options.scale * box_diagonal(mesh));
@@ -115,16 +118,18 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
             const double length = std::sqrt(axis.squared_length());
             if (!(length > 0)) return;
             axis = axis / length;
-            const Vector across = std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
-            const Vector u = across / std::sqrt(across.squared_length()), w = CGAL::cross_product(axis, u);
+            const Vector perpendicular =
+                std::abs(axis.x()) < 0.6 ? Vector(0, -axis.z(), axis.y()) : Vector(axis.z(), 0, -axis.x());
+            const Vector u = perpendicular / std::sqrt(perpendicular.squared_length()), w = CGAL::cross_product(axis, u);
             std::vector<double> lengths, weights;
             double expected = 0;
             const Point origin = centroid(mesh, face);
             for (const ConeRay& ray : rays) {
-                const auto way = caster.way(origin, static_cast<Index>(f), ray.x * u + ray.y * w + ray.z * axis, expected);
-                if (!way) continue;
-                expected = 1.5 * *way;
-                lengths.push_back(*way);
+                const auto distance =
+                    caster.exit_distance(origin, static_cast<Index>(f), ray.x * u + ray.y * w + ray.z * axis, expected);
+                if (!distance) continue;
+                expected = 1.5 * *distance;
+                lengths.push_back(*distance);
                 weights.push_back(ray.weight);
             }
             if (2 * lengths.size() >= rays.size()) result[f] = robust_mean(lengths, weights);
@@ -135,9 +140,9 @@ std::vector<double> thickness(const Mesh& mesh, const ThicknessOptions& options)
 
 std::vector<double> vertices_from_faces(const Mesh& mesh, const std::vector<double>& face_values) {
     if (face_values.size() != mesh.number_of_faces())
-        fail_usage(std::to_string(face_values.size()) + " values for " + std::to_string(mesh.number_of_faces()) + " faces",
-                   "give one value a face");
-    std::vector<double> result(mesh.number_of_vertices(), none);
+        fail_usage(fmt::format("there are {} values for {} faces", face_values.size(), mesh.number_of_faces()),
+                   "give one value per face");
+    std::vector<double> result(mesh.number_of_vertices(), undefined);
     parallel_for(result.size(), [&](std::size_t i) {
         const Vertex v(static_cast<Index>(i));
         if (mesh.is_isolated(v)) return;

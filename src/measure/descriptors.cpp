@@ -6,6 +6,8 @@
 #include "ostraka/geom/oriented_box.h"
 #include "ostraka/measure/solid.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,19 +35,19 @@ Quantity number(const std::string& name, double value, int power, const std::str
     return {name, {value}, false, power, unit};
 }
 
-Quantity list(const std::string& name, std::vector<double> values, int power) {
+Quantity list_quantity(const std::string& name, std::vector<double> values, int power) {
     return {name, std::move(values), true, power, {}};
 }
 
 std::vector<double> coordinates(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-void add_statistics(std::vector<Quantity>& list, const std::string& name, const Statistics& s, int power,
+void add_statistics(std::vector<Quantity>& quantities, const std::string& name, const Statistics& s, int power,
                     const std::string& unit = {}) {
-    list.push_back(number(name + " mean", s.mean, power, unit));
-    list.push_back(number(name + " deviation", s.deviation, power, unit));
-    list.push_back(number(name + " median", s.median, power, unit));
-    list.push_back(number(name + " 5 %", s.percentile_5, power, unit));
-    list.push_back(number(name + " 95 %", s.percentile_95, power, unit));
+    quantities.push_back(number(name + " mean", s.mean, power, unit));
+    quantities.push_back(number(name + " deviation", s.deviation, power, unit));
+    quantities.push_back(number(name + " median", s.median, power, unit));
+    quantities.push_back(number(name + " 5 %", s.percentile_5, power, unit));
+    quantities.push_back(number(name + " 95 %", s.percentile_95, power, unit));
 }
 
 }  // namespace
@@ -79,26 +81,28 @@ struct DescriptorSearch::Cache {
 
     /// The mesh cut along the curves of free annotations, with a search for quantities on it.
     struct Cut {
-        AnnotationSet given;
+        AnnotationSet requested_annotations;
         CutMesh object;
         std::unique_ptr<DescriptorSearch> search;
         /// The annotation along the edges of the cut mesh; null if the mesh is not cut along this annotation.
-        [[nodiscard]] const Annotation* plain(const Annotation& annotation) const {
-            const Annotation* known = given.find(annotation.id);
-            if (known == nullptr || known->curves != annotation.curves || known->faces != annotation.faces) return nullptr;
+        [[nodiscard]] const Annotation* along_edges(const Annotation& annotation) const {
+            const Annotation* requested = requested_annotations.find(annotation.id);
+            if (requested == nullptr || requested->curves != annotation.curves || requested->faces != annotation.faces)
+                return nullptr;
             return object.annotations.find(annotation.id);
         }
     };
     const Cut& cut_of(const Mesh& mesh, const Annotation& annotation) {
-        if (cut && cut->plain(annotation) != nullptr) return *cut;
-        AnnotationSet given;
-        given.annotations = std::move(expected);
+        if (cut && cut->along_edges(annotation) != nullptr) return *cut;
+        AnnotationSet requested_annotations;
+        requested_annotations.annotations = std::move(expected);
         expected.clear();
-        const Annotation* known = given.find(annotation.id);
-        if (known == nullptr || known->curves != annotation.curves || known->faces != annotation.faces)
-            given.annotations = {annotation};
-        CutMesh object = cut_along_curves(mesh, given);
-        cut = std::make_unique<Cut>(Cut{std::move(given), std::move(object), nullptr});
+        const Annotation* requested_annotation = requested_annotations.find(annotation.id);
+        if (requested_annotation == nullptr || requested_annotation->curves != annotation.curves ||
+            requested_annotation->faces != annotation.faces)
+            requested_annotations.annotations = {annotation};
+        CutMesh object = cut_along_curves(mesh, requested_annotations);
+        cut = std::make_unique<Cut>(Cut{std::move(requested_annotations), std::move(object), nullptr});
         cut->search = std::make_unique<DescriptorSearch>(cut->object.mesh);
         return *cut;
     }
@@ -142,23 +146,23 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
     if (name == "perimeter") return number(name, measure_region(mesh_, annotation).perimeter, 1);
     if (name == "circularity") return number(name, measure_region(mesh_, annotation).circularity(), 0);
     if (is_free(annotation)) {
-        const auto known = std::find(region_quantities().begin(), region_quantities().end(), name);
-        if (known == region_quantities().end()) return std::nullopt;
+        const auto quantity_name = std::find(region_quantities().begin(), region_quantities().end(), name);
+        if (quantity_name == region_quantities().end()) return std::nullopt;
         const Cache::Cut& cut = cache_->cut_of(mesh_, annotation);
-        return cut.search->find(*cut.plain(annotation), name);
+        return cut.search->find(*cut.along_edges(annotation), name);
     }
     if (faces.empty()) return std::nullopt;
     if (name == "volume") return number(name, region_solid(mesh_, faces).volume, 3);
     if (name == "volume bound") return number(name, region_solid(mesh_, faces).volume_bound, 3);
-    if (name == "solid centroid") return list(name, coordinates(region_solid(mesh_, faces).centroid), 1);
-    if (name == "centroid") return list(name, coordinates(surface_centroid(mesh_, faces)), 1);
+    if (name == "solid centroid") return list_quantity(name, coordinates(region_solid(mesh_, faces).centroid), 1);
+    if (name == "centroid") return list_quantity(name, coordinates(surface_centroid(mesh_, faces)), 1);
     if (name == "box sides" || name == "box centre" || name == "box axes") {
         const OrientedBox& box = cache_->box_of(mesh_, annotation);
-        if (name == "box sides") return list(name, {box.sides.begin(), box.sides.end()}, 1);
-        if (name == "box centre") return list(name, {box.centre.begin(), box.centre.end()}, 1);
+        if (name == "box sides") return list_quantity(name, {box.sides.begin(), box.sides.end()}, 1);
+        if (name == "box centre") return list_quantity(name, {box.centre.begin(), box.centre.end()}, 1);
         std::vector<double> axes;
         for (const auto& axis : box.axes) axes.insert(axes.end(), axis.begin(), axis.end());
-        return list(name, axes, 0);
+        return list_quantity(name, axes, 0);
     }
     if (name == "mean curvature integral" || name == "Gaussian curvature integral") {
         if (!cache_->integrals) cache_->integrals = curvature_integrals(mesh_);
@@ -170,75 +174,74 @@ std::optional<Quantity> DescriptorSearch::find(const Annotation& annotation, con
 
 std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, const std::vector<NamedMap>& maps) {
     std::vector<Quantity> result;
-    const std::string who = name_of(annotation);
+    const std::string annotation_name = name_of(annotation);
     // A free annotation is described on the mesh cut along its curves, with the values of the original mesh.
     const Cache::Cut* cut = is_free(annotation) ? &cache_->cut_of(mesh_, annotation) : nullptr;
     const Mesh& mesh = cut == nullptr ? mesh_ : cut->object.mesh;
-    const Annotation& plain = cut == nullptr ? annotation : *cut->plain(annotation);
-    const std::vector<Index> vertices = touched_vertices(mesh, plain);
-    if (vertices.empty()) fail_input(who, "has no elements to describe", "select some first");
+    const Annotation& edge_annotation = cut == nullptr ? annotation : *cut->along_edges(annotation);
+    const std::vector<Index> vertices = touched_vertices(mesh, edge_annotation);
+    if (vertices.empty()) fail_input(annotation_name, "has no elements to describe", "select elements first");
     const bool region = annotation.type == AnnotationType::region;
     if (annotation.type == AnnotationType::line) result.push_back(*find(annotation, "length"));
     if (region)
         for (const std::string& name : region_quantities()) result.push_back(*find(annotation, name));
-    const auto of_map = [&](const std::vector<double>& given, const std::string& where) {
-        if (given.size() != mesh_.number_of_vertices())
-            fail_input(
-                where,
-                "has " + std::to_string(given.size()) + " values for " + std::to_string(mesh_.number_of_vertices()) + " vertices",
-                "give one value for each of the vertices");
-        const std::vector<double> values = cut == nullptr ? given : cut->object.vertex_values(mesh_, given);
-        if (region) return vertex_statistics(mesh, values, plain.faces, where);
-        std::vector<double> here;
+    const auto map_statistics = [&](const std::vector<double>& map_values, const std::string& where) {
+        if (map_values.size() != mesh_.number_of_vertices())
+            fail_input(where, fmt::format("has {} values for {} vertices", map_values.size(), mesh_.number_of_vertices()),
+                       "give one value for each of the vertices");
+        const std::vector<double> values = cut == nullptr ? map_values : cut->object.vertex_values(mesh_, map_values);
+        if (region) return vertex_statistics(mesh, values, edge_annotation.faces, where);
+        std::vector<double> annotation_values;
         for (const Index v : vertices) {
             if (!std::isfinite(values[v]))
-                fail_input(where, "the value of vertex " + std::to_string(v) + " is not a finite number", "correct the map");
-            here.push_back(values[v]);
+                fail_input(where, fmt::format("the value of vertex {} is not a finite number", v), "correct the map");
+            annotation_values.push_back(values[v]);
         }
-        return statistics(here, std::vector<double>(here.size(), 1), where);
+        return statistics(annotation_values, std::vector<double>(annotation_values.size(), 1), where);
     };
     if (options_.curvature) {
-        add_statistics(result, "mean curvature", of_map(curvature().mean, who), -1);
-        add_statistics(result, "Gaussian curvature", of_map(curvature().gaussian, who), -2);
+        add_statistics(result, "mean curvature", map_statistics(curvature().mean, annotation_name), -1);
+        add_statistics(result, "Gaussian curvature", map_statistics(curvature().gaussian, annotation_name), -2);
     }
     if (options_.thickness && region) {
         std::vector<double> values, weights;
-        double all = 0, with = 0;
-        for (const Index face : plain.faces) {
+        double total_area = 0, measured_area = 0;
+        for (const Index face : edge_annotation.faces) {
             const double area = face_area(mesh, Face(face)),
                          value = thickness()[cut == nullptr ? face : cut->object.face_origin[face]];
-            all += area;
+            total_area += area;
             if (!std::isfinite(value)) continue;
-            with += area;
+            measured_area += area;
             values.push_back(value);
             weights.push_back(area);
         }
-        if (!values.empty()) add_statistics(result, "thickness", statistics(values, weights, who), 1);
+        if (!values.empty()) add_statistics(result, "thickness", statistics(values, weights, annotation_name), 1);
         // Share of the region with a thickness: rays may leave an open mesh without a hit.
-        result.push_back(number("thickness share", all > 0 ? with / all : 0, 0));
+        result.push_back(number("thickness share", total_area > 0 ? measured_area / total_area : 0, 0));
     }
     for (const NamedMap& map : maps)
-        add_statistics(result, map.name, of_map(map.values, who + ", map '" + map.name + "'"), 0, map.unit);
+        add_statistics(result, map.name, map_statistics(map.values, fmt::format("{}, map '{}'", annotation_name, map.name)), 0,
+                       map.unit);
     return result;
 }
 
 void store(Annotation& annotation, const std::vector<Quantity>& quantities, const std::string& unit) {
     for (const Quantity& quantity : quantities) {
-        auto place = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
+        auto attribute = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
             return a.type == AttributeType::descriptor && a.name == quantity.name;
         });
-        if (place == annotation.attributes.end()) {
+        if (attribute == annotation.attributes.end()) {
             const int id = next_free_id(annotation.attributes);
             annotation.attributes.emplace_back();
-            place = annotation.attributes.end() - 1;
-            place->id = id;
-            place->name = quantity.name;
-            place->type = AttributeType::descriptor;
+            attribute = annotation.attributes.end() - 1;
+            attribute->id = id;
+            attribute->name = quantity.name;
+            attribute->type = AttributeType::descriptor;
         }
-        place->descriptor = {};
-        place->descriptor.values = quantity.values;
-        place->descriptor.is_list = quantity.is_list;
-        place->descriptor.unit = unit_of(quantity, unit);
+        attribute->descriptor = {};
+        attribute->descriptor.values = quantity.values;
+        attribute->descriptor.is_list = quantity.is_list;
+        attribute->descriptor.unit = unit_of(quantity, unit);
     }
 }
 

@@ -5,6 +5,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,13 +20,13 @@ using std::to_string;
 
 std::size_t count_patches(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<bool> selected = face_flags(mesh, faces);
-    std::vector<bool> seen(selected.size(), false);
+    std::vector<bool> visited(selected.size(), false);
     std::size_t patches = 0;
     std::vector<Index> front;
     for (const Index first : faces) {
-        if (seen[first]) continue;
+        if (visited[first]) continue;
         ++patches;
-        seen[first] = true;
+        visited[first] = true;
         front.assign(1, first);
         CancelCheck check;
         while (!front.empty()) {
@@ -33,8 +35,8 @@ std::size_t count_patches(const Mesh& mesh, const std::vector<Index>& faces) {
             front.pop_back();
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
                 const Face next = mesh.face(mesh.opposite(h));
-                if (next == Mesh::null_face() || !selected[next] || seen[next]) continue;
-                seen[next] = true;
+                if (next == Mesh::null_face() || !selected[next] || visited[next]) continue;
+                visited[next] = true;
                 front.push_back(next);
             }
         }
@@ -47,43 +49,49 @@ public:
     explicit Examiner(const Mesh& mesh) : mesh_(mesh) {}
     std::vector<Finding> findings;
 
-    void selection(const Annotation& annotation, const std::string& at) {
-        if (annotation.tag.empty()) defect(at + "/tag", "the tag is empty");
+    void selection(const Annotation& annotation, const std::string& pointer) {
+        if (annotation.tag.empty()) defect(pointer + "/tag", "the tag is empty");
         switch (annotation.type) {
             case AnnotationType::point:
-                points(annotation, at);
+                points(annotation, pointer);
                 break;
             case AnnotationType::line:
-                line(annotation, at);
+                line(annotation, pointer);
                 break;
             case AnnotationType::region:
-                region(annotation, at);
+                region(annotation, pointer);
                 break;
         }
     }
 
     /// `measured` is the same annotation with recomputed values.
-    void values(const Annotation& annotation, const Annotation& measured, const std::string& at) {
+    void values(const Annotation& annotation, const Annotation& measured, const std::string& pointer) {
         for (std::size_t i = 0; i < annotation.attributes.size(); ++i) {
             const Attribute& attribute = annotation.attributes[i];
-            const Attribute& now = measured.attributes[i];
-            const std::string here = at + "/attributes/" + to_string(i), name = "the attribute '" + attribute.name + "'";
+            const Attribute& recomputed = measured.attributes[i];
+            const std::string attribute_pointer = pointer + "/attributes/" + to_string(i),
+                              name = fmt::format("the attribute '{}'", attribute.name);
             if (attribute.type == AttributeType::measure) {
-                if (attribute.measure.stale) defect(here, name + " is marked stale");
-                else if (now.measure.stale) defect(here, name + " cannot be measured: its pins are not joined");
-                else if (attribute.measure.value) compare(*attribute.measure.value, *now.measure.value, here, name);
-                else remark(here, name + " has no value; measured here: " + digits(*now.measure.value, 9));
-                if (now.measure.direction && now.measure.repeats.empty() && !now.measure.stale &&
-                    !is_extent(mesh_, annotation, now.measure))
-                    remark(here, name +
-                                     " is not the extent of its annotation along its direction: if it was meant to be, "
-                                     "take it again");
+                if (attribute.measure.stale) defect(attribute_pointer, name + " is marked stale");
+                else if (recomputed.measure.stale)
+                    defect(attribute_pointer, name + " cannot be measured: its pins are not connected");
+                else if (attribute.measure.value)
+                    compare(*attribute.measure.value, *recomputed.measure.value, attribute_pointer, name);
+                else
+                    remark(attribute_pointer,
+                           fmt::format("{} has no value; it measures {}", name, digits(*recomputed.measure.value, 9)));
+                if (recomputed.measure.direction && recomputed.measure.repeats.empty() && !recomputed.measure.stale &&
+                    !is_extent(mesh_, annotation, recomputed.measure))
+                    remark(attribute_pointer,
+                           name +
+                               " is not the extent of its annotation along its direction: if it is meant to be, "
+                               "measure it again");
             } else if (attribute.type == AttributeType::descriptor) {
-                if (attribute.descriptor.stale) defect(here, name + " is marked stale");
+                if (attribute.descriptor.stale) defect(attribute_pointer, name + " is marked stale");
                 else if (attribute.descriptor.values.empty() && attribute.descriptor.file.empty())
-                    defect(here, name + " has neither value nor file");
-                else if (attribute.descriptor.values.size() == 1 && now.descriptor.values.size() == 1)
-                    compare(attribute.descriptor.values.front(), now.descriptor.values.front(), here, name);
+                    defect(attribute_pointer, name + " has neither value nor file");
+                else if (attribute.descriptor.values.size() == 1 && recomputed.descriptor.values.size() == 1)
+                    compare(attribute.descriptor.values.front(), recomputed.descriptor.values.front(), attribute_pointer, name);
             }
         }
     }
@@ -94,50 +102,50 @@ public:
 private:
     void compare(double stored, double computed, const std::string& where, const std::string& name) {
         if (std::abs(stored - computed) <= 1e-6 * std::max(std::abs(stored), std::abs(computed))) return;
-        defect(where, name + " is " + digits(stored, 9) + " but measures " + digits(computed, 9));
+        defect(where, fmt::format("{} is {} but measures {}", name, digits(stored, 9), digits(computed, 9)));
     }
 
-    void points(const Annotation& annotation, const std::string& at) {
-        if (annotation.points.empty()) defect(at, "there are no points" + because(annotation));
-        std::set<Index> seen;
+    void points(const Annotation& annotation, const std::string& pointer) {
+        if (annotation.points.empty()) defect(pointer, "there are no points" + note_text(annotation));
+        std::set<Index> visited;
         for (std::size_t i = 0; i < annotation.points.size(); ++i)
-            if (!seen.insert(annotation.points[i]).second)
-                defect(at + "/points/" + to_string(i), "vertex " + to_string(annotation.points[i]) + " is repeated");
+            if (!visited.insert(annotation.points[i]).second)
+                defect(pointer + "/points/" + to_string(i), fmt::format("vertex {} is repeated", annotation.points[i]));
     }
 
-    void line(const Annotation& annotation, const std::string& at) {
+    void line(const Annotation& annotation, const std::string& pointer) {
         if (is_free(annotation)) return;  // its edges are only the nearest ones
-        if (annotation.polylines.empty()) defect(at, "there are no poly-lines" + because(annotation));
+        if (annotation.polylines.empty()) defect(pointer, "there are no poly-lines" + note_text(annotation));
         std::set<std::pair<Index, Index>> edges;
         for (std::size_t i = 0; i < annotation.polylines.size(); ++i) {
             const auto& polyline = annotation.polylines[i];
             for (std::size_t k = 0; k + 1 < polyline.size(); ++k)
                 if (!edges.insert(std::minmax(polyline[k], polyline[k + 1])).second) {
-                    defect(at + "/polylines/" + to_string(i) + '/' + to_string(k + 1), "an edge is run over twice");
+                    defect(pointer + "/polylines/" + to_string(i) + '/' + to_string(k + 1), "an edge is traversed twice");
                     break;
                 }
         }
     }
 
-    void region(const Annotation& annotation, const std::string& at) {
+    void region(const Annotation& annotation, const std::string& pointer) {
         if (is_free(annotation)) {
-            if (!(area_of(mesh_, annotation) > 0)) defect(at, "its outlines enclose nothing" + because(annotation));
+            if (!(area_of(mesh_, annotation) > 0)) defect(pointer, "its outlines enclose nothing" + note_text(annotation));
             return;
         }
-        if (annotation.faces.empty()) defect(at, "there are no faces" + because(annotation));
+        if (annotation.faces.empty()) defect(pointer, "there are no faces" + note_text(annotation));
         const std::size_t patches = count_patches(mesh_, annotation.faces);
-        if (patches > 1) remark(at, "the region has " + to_string(patches) + " separate patches");
+        if (patches > 1) remark(pointer, fmt::format("the region has {} separate patches", patches));
         std::map<Index, std::size_t> visits;
         for (const Outline& outline : extract_outlines(mesh_, annotation.faces))
             for (const Index vertex : outline) ++visits[vertex];
         const auto touches = std::count_if(visits.begin(), visits.end(), [](const auto& visit) { return visit.second > 1; });
         if (touches > 0)
-            remark(at, "the outlines touch themselves or each other at " + to_string(touches) +
-                           (touches == 1 ? " vertex" : " vertices"));
+            remark(pointer, fmt::format("the outlines touch themselves or each other at {} {}", touches,
+                                        touches == 1 ? "vertex" : "vertices"));
     }
 
-    static std::string because(const Annotation& annotation) {
-        return annotation.note.empty() ? "" : " (" + annotation.note + ")";
+    static std::string note_text(const Annotation& annotation) {
+        return annotation.note.empty() ? std::string() : fmt::format(" ({})", annotation.note);
     }
 
     const Mesh& mesh_;
@@ -181,14 +189,13 @@ std::vector<Finding> examine(const Mesh& mesh, const AnnotationSet& set) {
     std::map<std::string, std::size_t> tags;
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];
-        const std::string at = "/annotations/" + to_string(i);
-        examiner.selection(annotation, at);
-        examiner.values(annotation, measured.annotations[i], at);
+        const std::string pointer = "/annotations/" + to_string(i);
+        examiner.selection(annotation, pointer);
+        examiner.values(annotation, measured.annotations[i], pointer);
         ++tags[annotation.tag];
     }
     for (const auto& [tag, count] : tags)
-        if (count > 1 && !tag.empty())
-            examiner.remark("/annotations", "the tag '" + tag + "' is used " + to_string(count) + " times");
+        if (count > 1 && !tag.empty()) examiner.remark("/annotations", fmt::format("the tag '{}' is used {} times", tag, count));
     return std::move(examiner.findings);
 }
 

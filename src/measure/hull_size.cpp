@@ -15,18 +15,18 @@ HullSize hull_size(const std::vector<Point>& points) {
     check_cancelled();
     if (points.size() < 4) return {};
     // Relative to the first point, for precision; a planar hull has no interior.
-    std::vector<Point> near;
-    near.reserve(points.size());
-    for (const Point& p : points) near.push_back(CGAL::ORIGIN + (p - points.front()));
+    std::vector<Point> local_points;
+    local_points.reserve(points.size());
+    for (const Point& p : points) local_points.push_back(CGAL::ORIGIN + (p - points.front()));
     CGAL::Surface_mesh<Point> hull;
-    CGAL::convex_hull_3(near.begin(), near.end(), hull);
+    CGAL::convex_hull_3(local_points.begin(), local_points.end(), hull);
     if (hull.number_of_faces() < 4) return {};
     // The order of the hull's faces and their first corners depend on memory addresses; the order of summation must not.
     std::vector<double> volumes, areas;
     for (const Face face : hull.faces()) {
-        const Halfedge any = hull.halfedge(face);
-        Halfedge first = any;
-        for (Halfedge h = hull.next(any); h != any; h = hull.next(h))
+        const Halfedge start = hull.halfedge(face);
+        Halfedge first = start;
+        for (Halfedge h = hull.next(start); h != start; h = hull.next(h))
             if (hull.point(hull.target(h)) < hull.point(hull.target(first))) first = h;
         const Vector a = hull.point(hull.target(first)) - CGAL::ORIGIN;
         for (Halfedge h = hull.next(first); hull.next(h) != first; h = hull.next(h)) {

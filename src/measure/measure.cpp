@@ -10,6 +10,8 @@
 #include "ostraka/geom/surface_trace.h"
 #include "ostraka/measure/descriptors.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,12 +50,11 @@ public:
         for (const auto& points : measure.repeats) {
             if (points.size() != measure.points.size())
                 fail_input(where,
-                           "was picked again with " + std::to_string(points.size()) + " pins instead of " +
-                               std::to_string(measure.points.size()),
+                           fmt::format("was picked again with {} pins instead of {}", points.size(), measure.points.size()),
                            "pick the same pins again");
-            Measure again;
-            again.points = points;
-            pick(again);
+            Measure repetition;
+            repetition.points = points;
+            pick(repetition);
         }
         const auto count = static_cast<double>(values.size());
         for (const double v : values) result.value += (v - values.front()) / count;
@@ -69,7 +70,7 @@ public:
 private:
     std::vector<Pin> pins_at(const Measure& measure, const std::string& where) const {
         const std::size_t count = measure.locations.empty() ? measure.points.size() : measure.locations.size();
-        if (count < 2) fail_input(where, "has fewer than two pins", "add them");
+        if (count < 2) fail_input(where, "has fewer than two pins", "add pins");
         std::vector<Pin> pins;
         for (std::size_t i = 0; i < count; ++i) pins.push_back(pin(measure, i, where));
         return pins;
@@ -107,15 +108,15 @@ private:
         }
         for (std::size_t i = 0; i < pins.size(); ++i) {
             Vector derivative(0, 0, 0);
-            double alone = 0;  // coincident pins: may separate in any direction
+            double coincident = 0;  // coincident pins: may separate in any direction
             for (const std::size_t k : {i - 1, i + 1}) {
                 if (k >= pins.size()) continue;
-                const Vector way = pins[i].point - pins[k].point;
-                const double length = std::sqrt(way.squared_length());
-                if (length > 0) derivative += way / length;
-                else alone += 1;
+                const Vector difference = pins[i].point - pins[k].point;
+                const double length = std::sqrt(difference.squared_length());
+                if (length > 0) derivative += difference / length;
+                else coincident += 1;
             }
-            sum += variance(pins[i]) * (derivative.squared_length() + alone);
+            sum += variance(pins[i]) * (derivative.squared_length() + coincident);
         }
         return sum;
     }
@@ -126,9 +127,9 @@ private:
             const Index vertex = measure.points[i];
             if (vertex >= mesh_.number_of_vertices())
                 fail_input(where,
-                           "pin " + std::to_string(i) + " is vertex " + std::to_string(vertex) + " of " +
-                               std::to_string(mesh_.number_of_vertices()),
-                           "was it taken on another mesh?");
+                           fmt::format("pin {} is vertex {}, but the mesh has {} vertices, counted from 0", i, vertex,
+                                       mesh_.number_of_vertices()),
+                           "use the mesh on which the measure was taken");
             result.point = mesh_.point(Vertex(vertex));
             result.gates.emplace_back(Vertex(vertex), 0.0);
             result.node = surface_node(mesh_, Vertex(vertex));
@@ -137,9 +138,9 @@ private:
         const auto& [face, weights] = measure.locations[i];
         if (face >= mesh_.number_of_faces())
             fail_input(where,
-                       "pin " + std::to_string(i) + " lies in face " + std::to_string(face) + " of " +
-                           std::to_string(mesh_.number_of_faces()),
-                       "was it taken on another mesh?");
+                       fmt::format("pin {} lies in face {}, but the mesh has {} faces, counted from 0", i, face,
+                                   mesh_.number_of_faces()),
+                       "use the mesh on which the measure was taken");
         result.face = face;
         const auto corner = corners(mesh_, Face(face));
         double x = 0, y = 0, z = 0;
@@ -167,7 +168,7 @@ private:
     }
 
     static double bounding(const std::vector<Pin>& pins, const Measure& measure, const std::string& where) {
-        if (!measure.direction) fail_input(where, "has no direction", "add one");
+        if (!measure.direction) fail_input(where, "has no direction", "add a direction");
         const Vector direction = unit_direction(*measure.direction);
         if (direction == CGAL::NULL_VECTOR) fail_input(where, "has a direction without length", "give a vector that is not zero");
         const auto [low, high] = outermost(pins, direction);
@@ -191,7 +192,8 @@ private:
 
     static double joined(double length, const std::string& where) {
         if (!std::isfinite(length))
-            fail_input(where, "no path along the surface joins two of its pins", "they lie on separate parts: use a ruler");
+            fail_input(where, "no path along the surface connects two of its pins",
+                       "the pins lie on separate parts: use a ruler");
         return length;
     }
 
@@ -199,16 +201,16 @@ private:
         if (from.face != no_index && from.face == to.face) return distance(from.point, to.point);
         if (!search_) search_.emplace(mesh_);
         double best = std::numeric_limits<double>::infinity();
-        for (const auto& [start, way_there] : from.gates)
-            for (const auto& [end, way_on] : to.gates) {
+        for (const auto& [start, start_length] : from.gates)
+            for (const auto& [end, end_length] : to.gates) {
                 PathSearch::Query query;
                 if (std::isfinite(best)) {
-                    query.limit = best - way_there - way_on;
+                    query.limit = best - start_length - end_length;
                     if (query.limit <= 0) continue;
                 }
                 const std::vector<Index> path = search_->find(start, end, query);
                 if (path.empty()) continue;
-                double length = way_there + way_on;
+                double length = start_length + end_length;
                 for (std::size_t i = 0; i + 1 < path.size(); ++i)
                     length += distance(mesh_.point(Vertex(path[i])), mesh_.point(Vertex(path[i + 1])));
                 best = std::min(best, length);
@@ -231,28 +233,28 @@ Evaluated evaluate_with_uncertainty(const Mesh& mesh, const Annotation& annotati
 }
 
 std::size_t merge_pickings(Annotation& annotation) {
-    std::vector<Attribute> kept;
+    std::vector<Attribute> merged_attributes;
     std::size_t merged = 0;
     for (Attribute& attribute : annotation.attributes) {
         const Measure& measure = attribute.measure;
-        const auto same = std::find_if(kept.begin(), kept.end(), [&](const Attribute& other) {
+        const auto matching = std::find_if(merged_attributes.begin(), merged_attributes.end(), [&](const Attribute& other) {
             return attribute.type == AttributeType::measure && other.type == AttributeType::measure &&
                    other.name == attribute.name && other.measure.tool == measure.tool &&
                    other.measure.points.size() == measure.points.size() && other.measure.direction == measure.direction &&
                    other.measure.exact == measure.exact && other.measure.unit == measure.unit &&
                    other.measure.locations.empty() && measure.locations.empty();
         });
-        if (same == kept.end()) {
-            kept.push_back(std::move(attribute));
+        if (matching == merged_attributes.end()) {
+            merged_attributes.push_back(std::move(attribute));
             continue;
         }
-        same->measure.repeats.push_back(measure.points);
-        same->measure.repeats.insert(same->measure.repeats.end(), measure.repeats.begin(), measure.repeats.end());
-        same->measure.stale = true;
-        same->measure.uncertainty.reset();
+        matching->measure.repeats.push_back(measure.points);
+        matching->measure.repeats.insert(matching->measure.repeats.end(), measure.repeats.begin(), measure.repeats.end());
+        matching->measure.stale = true;
+        matching->measure.uncertainty.reset();
         ++merged;
     }
-    annotation.attributes = std::move(kept);
+    annotation.attributes = std::move(merged_attributes);
     return merged;
 }
 
@@ -273,7 +275,7 @@ std::string descriptor_unit(const std::string& descriptor, const std::string& un
 std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, const std::array<double, 3>& direction) {
     check_cancelled();
     const std::vector<Index> vertices = touched_vertices(mesh, annotation);
-    if (vertices.empty()) fail_input(name_of(annotation), "has no elements to measure", "select some first");
+    if (vertices.empty()) fail_input(name_of(annotation), "has no elements to measure", "select elements first");
     const Vector along = scaled_vector({direction[0], direction[1], direction[2]});
     if (along == CGAL::NULL_VECTOR)
         fail_input(name_of(annotation), "has a direction without length", "give a vector that is not zero");
@@ -290,11 +292,11 @@ std::array<Index, 2> extremes(const Mesh& mesh, const Annotation& annotation, co
 
 bool is_extent(const Mesh& mesh, const Annotation& annotation, const Measure& measure) {
     if (!measure.direction || !measure.repeats.empty() || touched_vertices(mesh, annotation).empty()) return false;
-    Measure whole = measure;
+    Measure extent_measure = measure;
     const auto pins = extremes(mesh, annotation, *measure.direction);
-    whole.points.assign(pins.begin(), pins.end());
-    whole.locations.clear();
-    const double extent = evaluate(mesh, annotation, whole);
+    extent_measure.points.assign(pins.begin(), pins.end());
+    extent_measure.locations.clear();
+    const double extent = evaluate(mesh, annotation, extent_measure);
     return std::abs(evaluate(mesh, annotation, measure) - extent) <= 1e-9 * extent;
 }
 
@@ -303,10 +305,12 @@ void move_extents(const Mesh& before, const AnnotationSet& from, const Mesh& aft
         const Annotation* source = from.find(annotation.id);
         if (source == nullptr || touched_vertices(after, annotation).empty()) continue;
         for (Attribute& attribute : annotation.attributes) {
-            const auto same = [&](const Attribute& one) { return one.id == attribute.id && one.type == AttributeType::measure; };
-            const auto was = std::find_if(source->attributes.begin(), source->attributes.end(), same);
-            if (attribute.type != AttributeType::measure || was == source->attributes.end() ||
-                !is_extent(before, *source, was->measure))
+            const auto is_same_attribute = [&](const Attribute& candidate) {
+                return candidate.id == attribute.id && candidate.type == AttributeType::measure;
+            };
+            const auto original = std::find_if(source->attributes.begin(), source->attributes.end(), is_same_attribute);
+            if (attribute.type != AttributeType::measure || original == source->attributes.end() ||
+                !is_extent(before, *source, original->measure))
                 continue;
             Measure& measure = attribute.measure;
             const auto pins = extremes(after, annotation, *measure.direction);
@@ -321,10 +325,10 @@ std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure) {
     for (std::size_t i = 0; i < measure.points.size(); ++i) {
         if (i < measure.locations.size() && measure.locations[i].face != no_index) {
             const auto& [face, weights] = measure.locations[i];
-            Vector at(0, 0, 0);
+            Vector position(0, 0, 0);
             const auto vertices = corners(mesh, Face(face));
-            for (std::size_t c = 0; c < 3; ++c) at = at + weights[c] * (mesh.point(vertices[c]) - CGAL::ORIGIN);
-            pins.push_back(CGAL::ORIGIN + at);
+            for (std::size_t c = 0; c < 3; ++c) position = position + weights[c] * (mesh.point(vertices[c]) - CGAL::ORIGIN);
+            pins.push_back(CGAL::ORIGIN + position);
         } else {
             pins.push_back(mesh.point(Vertex(measure.points[i])));
         }
@@ -339,12 +343,12 @@ std::vector<Point> pins_of(const Mesh& mesh, const Measure& measure) {
 }
 
 std::vector<Point> way_of(PathSearch& search, const Mesh& mesh, const Measure& measure) {
-    std::vector<Point> way;
-    if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return way;
+    std::vector<Point> path;
+    if (measure.tool != "tape" || measure.exact || !measure.locations.empty()) return path;
     for (std::size_t i = 1; i < measure.points.size(); ++i)
         for (const Index v : search.find(Vertex(measure.points[i - 1]), Vertex(measure.points[i]), {}))
-            way.push_back(mesh.point(Vertex(v)));
-    return way;
+            path.push_back(mesh.point(Vertex(v)));
+    return path;
 }
 
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
@@ -358,19 +362,21 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
     Evaluator evaluator(mesh);
     DescriptorSearch descriptors(mesh);
     descriptors.expect(set);
-    const auto stays_stale = [&](bool& mark, const Annotation& annotation, const Attribute& attribute, const std::string& why) {
+    const auto stays_stale = [&](bool& mark, const Annotation& annotation, const Attribute& attribute,
+                                 const std::string& reason) {
         mark = true;
         ++result.stale;
-        result.notes.push_back(name_of(annotation) + ", attribute '" + attribute.name + "': " + why);
+        result.notes.push_back(fmt::format("{}, attribute '{}': {}", name_of(annotation), attribute.name, reason));
     };
     for (Annotation& annotation : set.annotations)
         for (Attribute& attribute : annotation.attributes) {
             if (attribute.type == AttributeType::measure) {
                 try {
                     Measure& measure = attribute.measure;
-                    const Evaluated now = evaluator.evaluate(annotation, measure);
-                    measure.value = now.value;
-                    if (uncertainties || measure.uncertainty || !measure.repeats.empty()) measure.uncertainty = now.uncertainty;
+                    const Evaluated evaluated = evaluator.evaluate(annotation, measure);
+                    measure.value = evaluated.value;
+                    if (uncertainties || measure.uncertainty || !measure.repeats.empty())
+                        measure.uncertainty = evaluated.uncertainty;
                     measure.stale = false;
                     ++result.computed;
                 } catch (const Error& error) {
@@ -386,9 +392,10 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
                     ++result.computed;
                 } else if (descriptor.stale) {
                     stays_stale(descriptor.stale, annotation, attribute,
-                                descriptor.file.empty() ? "is not a descriptor that can be computed here"
-                                                        : "is in the file '" + descriptor.file +
-                                                              "' of another mesh: write it again ('measure map', 'axis')");
+                                descriptor.file.empty()
+                                    ? "is not a descriptor that can be computed"
+                                    : fmt::format("is in the file '{}' of another mesh: compute it again ('measure map', 'axis')",
+                                                  descriptor.file));
                 }
             }
         }

@@ -28,14 +28,14 @@ class CompensatedSum {
 public:
     CompensatedSum& operator+=(double x) {
         const double next = sum_ + x;
-        lost_ += std::abs(sum_) >= std::abs(x) ? (sum_ - next) + x : (x - next) + sum_;
+        compensation_ += std::abs(sum_) >= std::abs(x) ? (sum_ - next) + x : (x - next) + sum_;
         sum_ = next;
         return *this;
     }
-    [[nodiscard]] double value() const { return sum_ + lost_; }
+    [[nodiscard]] double value() const { return sum_ + compensation_; }
 
 private:
-    double sum_ = 0, lost_ = 0;
+    double sum_ = 0, compensation_ = 0;
 };
 
 /// Sums of signed tetrahedra from an origin to oriented triangles.
@@ -73,15 +73,15 @@ double closed_volume(const Mesh& mesh) {
 
 Point surface_centroid(const Mesh& mesh, const std::vector<Index>& faces) {
     check_region(mesh, faces);
-    if (faces.empty()) fail_usage("the region has no faces", "select some");
+    if (faces.empty()) fail_usage("the region has no faces", "select faces");
     const Point origin = middle_of(mesh, faces);
     CompensatedSum area, x, y, z, mean_x, mean_y, mean_z;
     for (const Index face : faces) {
-        const double part = face_area(mesh, Face(face));
+        const double weight = face_area(mesh, Face(face));
         const auto [a, b, c] = corners(mesh, Face(face));
         const Vector centre = ((mesh.point(a) - origin) + (mesh.point(b) - origin) + (mesh.point(c) - origin)) / 3;
-        area += part;
-        x += part * centre.x(), y += part * centre.y(), z += part * centre.z();
+        area += weight;
+        x += weight * centre.x(), y += weight * centre.y(), z += weight * centre.z();
         mean_x += centre.x(), mean_y += centre.y(), mean_z += centre.z();
     }
     if (area.value() > 0) return origin + Vector(x.value(), y.value(), z.value()) / area.value();

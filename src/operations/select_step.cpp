@@ -70,7 +70,7 @@ void SelectStep::describe(OptionList& visit) {
     visit(
         "camera", camera_text,
         "a camera of the recipe by its name, or a camera as JSON ('render --json' reports it), instead of the following options");
-    visit("view", view, "where the viewer stands", view_words());
+    visit("view", view, "view direction", view_words());
     visit("up", up, "upward direction, stored in a new file; otherwise that of the annotations, otherwise 0,0,1",
           direction_words("--up"));
     visit("projection", projection, "projection of the camera", Choices{"orthographic", "perspective"});

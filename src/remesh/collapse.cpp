@@ -32,7 +32,7 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
         at_u = mesh.opposite(mesh.next(at_u)), at_v = mesh.opposite(mesh.next(at_v));
         ++valence;
     } while (at_u != first_u && at_v != first_v);
-    const bool both = at_u == first_u && at_v == first_v;
+    const bool same_valence = at_u == first_u && at_v == first_v;
     const Halfedge small = at_u == first_u ? first_u : first_v, large = small == first_u ? first_v : first_u;
     const Vertex other = mesh.target(large);
     std::size_t common = 0;
@@ -44,7 +44,7 @@ bool may_collapse(const Mesh& mesh, Halfedge h) {
     });
     if (common != static_cast<std::size_t>(left) + static_cast<std::size_t>(right)) return false;
     // Both opposite corners joined by an edge that closes the link: the component is a tetrahedron.
-    return !(left && right && both && valence == 3);
+    return !(left && right && same_valence && valence == 3);
 }
 
 namespace {
@@ -66,34 +66,34 @@ void collapse(Mesh& mesh, Halfedge h, CollapseVisitor* visitor) {
     if (visitor != nullptr) visitor->merge_vertices(mesh, v, u);
     for_each_incoming(mesh, u, [&](Halfedge g) { mesh.set_target(g, v); });
     const bool left = !mesh.is_border(h), right = !mesh.is_border(o);
-    const Halfedge stays = left ? mesh.opposite(mesh.next(h)) : mesh.prev(o);  // ends in v
+    const Halfedge kept_incoming = left ? mesh.opposite(mesh.next(h)) : mesh.prev(o);  // ends in v
     if (left) {
-        const Halfedge kept = mesh.next(h), gone = mesh.prev(h), outer = mesh.opposite(gone);  // v -> w, w -> u, u -> w
+        const Halfedge kept = mesh.next(h), removed = mesh.prev(h), outer = mesh.opposite(removed);  // v -> w, w -> u, u -> w
         const Vertex w = mesh.target(kept);
-        if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(gone));
+        if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(removed));
         mesh.remove_face(mesh.face(h));
         replace(mesh, outer, kept);
         if (mesh.halfedge(w) == outer) mesh.set_halfedge(w, kept);
-        mesh.remove_edge(mesh.edge(gone));
+        mesh.remove_edge(mesh.edge(removed));
     } else {
         mesh.set_next(mesh.prev(h), mesh.next(h));
     }
     if (right) {
-        const Halfedge kept = mesh.prev(o), gone = mesh.next(o), outer = mesh.opposite(gone);  // x -> v, u -> x, x -> u
+        const Halfedge kept = mesh.prev(o), removed = mesh.next(o), outer = mesh.opposite(removed);  // x -> v, u -> x, x -> u
         const Vertex x = mesh.source(kept);
-        if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(gone));
+        if (visitor != nullptr) visitor->merge_edges(mesh, mesh.edge(kept), mesh.edge(removed));
         mesh.remove_face(mesh.face(o));
         replace(mesh, outer, kept);
-        if (mesh.halfedge(x) == gone) mesh.set_halfedge(x, mesh.opposite(kept));
-        mesh.remove_edge(mesh.edge(gone));
+        if (mesh.halfedge(x) == removed) mesh.set_halfedge(x, mesh.opposite(kept));
+        mesh.remove_edge(mesh.edge(removed));
     } else {
         mesh.set_next(mesh.prev(o), mesh.next(o));
     }
     mesh.remove_edge(mesh.edge(h));
     mesh.remove_vertex(u);
     // Surface_mesh requires a border halfedge at a border vertex.
-    Halfedge at_v = stays;
-    for_each_incoming(mesh, stays, [&](Halfedge g) {
+    Halfedge at_v = kept_incoming;
+    for_each_incoming(mesh, kept_incoming, [&](Halfedge g) {
         if (mesh.is_border(g)) at_v = g;
     });
     mesh.set_halfedge(v, at_v);

@@ -49,8 +49,8 @@ void CollapseRules::before_collapse(const Mesh& mesh, Halfedge h) {
     const Vertex u = mesh.source(h), v = mesh.target(h);
     recompute_ = !keep_ && (role_[u] != free || role_[v] != free);
     if (!keep_ && role_[u] != free && role_[v] != free) broken_ = true;
-    const auto unite = [&](Halfedge kept, Halfedge gone) {
-        if (marks_.edges[mesh.edge(gone)]) marks_.edges[mesh.edge(kept)] = true;
+    const auto unite = [&](Halfedge kept, Halfedge removed) {
+        if (marks_.edges[mesh.edge(removed)]) marks_.edges[mesh.edge(kept)] = true;
     };
     if (!mesh.is_border(h)) unite(mesh.next(h), mesh.prev(h));
     if (!mesh.is_border(o)) unite(mesh.prev(o), mesh.next(o));

@@ -36,8 +36,8 @@ Point loop_vertex_point(const Mesh& mesh, Vertex v) {
         n += 1;
     });
     const double cosine = 3.0 / 8 + std::cos(2 * pi / n) / 4;
-    const double share = 5.0 / 8 - cosine * cosine;
-    return CGAL::ORIGIN + (1 - share) * position(mesh, v) + (share / n) * sum;
+    const double weight = 5.0 / 8 - cosine * cosine;
+    return CGAL::ORIGIN + (1 - weight) * position(mesh, v) + (weight / n) * sum;
 }
 
 }  // namespace
@@ -74,10 +74,10 @@ void cut_into_four(Mesh& mesh, bool smooth, RefineResult& result) {
         std::array<Halfedge, 3> inner;  // from the midpoint of h[k] to that of h[k - 1], in their common corner
         for (Index k = 0; k < 3; ++k) inner[k] = Halfedge(2 * (2 * E + 3 * f + k));
         for (Index k = 0; k < 3; ++k) {
-            const Halfedge before = h[(k + 2) % 3];
-            mesh.set_target(inner[k], Vertex(V + before / 2));
+            const Halfedge previous = h[(k + 2) % 3];
+            mesh.set_target(inner[k], Vertex(V + previous / 2));
             mesh.set_target(mesh.opposite(inner[k]), Vertex(V + h[k] / 2));
-            link_triangle(mesh, Face(F + 3 * f + k), inner[k], second(before), first(h[k]));
+            link_triangle(mesh, Face(F + 3 * f + k), inner[k], second(previous), first(h[k]));
         }
         link_triangle(mesh, Face(f), mesh.opposite(inner[1]), mesh.opposite(inner[2]), mesh.opposite(inner[0]));
     }

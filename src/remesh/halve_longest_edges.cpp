@@ -19,32 +19,32 @@ public:
         const Vertex a = mesh_.source(h), b = mesh_.target(h);
         const Vertex m = mesh_.add_vertex(midway(mesh_.point(a), mesh_.point(b)));
         result_.parents.push_back({a, b});
-        const Halfedge rest = mesh_.add_edge(m, b), back = mesh_.opposite(rest);  // m -> b, b -> m
-        edges_.copy(e, mesh_.edge(rest));
+        const Halfedge second_half = mesh_.add_edge(m, b), second_half_back = mesh_.opposite(second_half);  // m -> b, b -> m
+        edges_.copy(e, mesh_.edge(second_half));
         result_.edge_origin.push_back(result_.edge_origin[e]);
         mesh_.set_target(h, m);
-        if (mesh_.halfedge(b) == h) mesh_.set_halfedge(b, rest);
+        if (mesh_.halfedge(b) == h) mesh_.set_halfedge(b, second_half);
         mesh_.set_halfedge(m, h);
         if (mesh_.is_border(h)) {
-            mesh_.set_face(rest, Mesh::null_face());
-            mesh_.set_next(rest, mesh_.next(h));
-            mesh_.set_next(h, rest);
+            mesh_.set_face(second_half, Mesh::null_face());
+            mesh_.set_next(second_half, mesh_.next(h));
+            mesh_.set_next(h, second_half);
         } else {
             const Halfedge next = mesh_.next(h), last = mesh_.prev(h);  // b -> c, c -> a
             const Halfedge cut = add_cut(m, mesh_.target(next));        // m -> c
             link_triangle(mesh_, mesh_.face(h), h, cut, last);
-            link_triangle(mesh_, add_face(mesh_.face(h)), rest, next, mesh_.opposite(cut));
+            link_triangle(mesh_, add_face(mesh_.face(h)), second_half, next, mesh_.opposite(cut));
         }
         if (mesh_.is_border(o)) {
-            mesh_.set_face(back, Mesh::null_face());
-            mesh_.set_next(mesh_.prev(o), back);
-            mesh_.set_next(back, o);
-            mesh_.set_halfedge(m, back);
+            mesh_.set_face(second_half_back, Mesh::null_face());
+            mesh_.set_next(mesh_.prev(o), second_half_back);
+            mesh_.set_next(second_half_back, o);
+            mesh_.set_halfedge(m, second_half_back);
         } else {
             const Halfedge next = mesh_.next(o), last = mesh_.prev(o);  // a -> d, d -> b
             const Halfedge cut = add_cut(m, mesh_.target(next));        // m -> d
             link_triangle(mesh_, mesh_.face(o), o, next, mesh_.opposite(cut));
-            link_triangle(mesh_, add_face(mesh_.face(o)), back, cut, last);
+            link_triangle(mesh_, add_face(mesh_.face(o)), second_half_back, cut, last);
         }
         ++result_.bisections;
     }
@@ -72,9 +72,9 @@ private:
 void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result) {
     if (mesh.number_of_vertices() >= vertices) return;
     const std::size_t cuts = vertices - mesh.number_of_vertices();
-    const auto more = static_cast<Index>(cuts);
-    mesh.reserve(static_cast<Index>(vertices), static_cast<Index>(mesh.number_of_edges()) + 3 * more,
-                 static_cast<Index>(mesh.number_of_faces()) + 2 * more);
+    const auto added_vertices = static_cast<Index>(cuts);
+    mesh.reserve(static_cast<Index>(vertices), static_cast<Index>(mesh.number_of_edges()) + 3 * added_vertices,
+                 static_cast<Index>(mesh.number_of_faces()) + 2 * added_vertices);
     result.parents.reserve(result.parents.size() + cuts);
     result.edge_origin.reserve(mesh.number_of_edges() + 3 * cuts);
     result.face_origin.reserve(mesh.number_of_faces() + 2 * cuts);
@@ -85,7 +85,7 @@ void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result)
     // Halving a longest edge of length L creates edges of at most sqrt(3)/2 L: half of L, or the line from the midpoint to a
     // corner whose edges are not longer than L. So all edges longer than 0.867 L can be sorted once and halved in this order,
     // which is that of a priority queue.
-    constexpr double share = 0.867 * 0.867;
+    constexpr double min_ratio = 0.867 * 0.867;
     Halver halver(mesh, result);
     Progress progress("refine", cuts);
     std::vector<std::pair<double, Index>> longest;
@@ -93,14 +93,14 @@ void halve_longest_edges(Mesh& mesh, std::size_t vertices, RefineResult& result)
     while (mesh.number_of_vertices() < vertices) {
         double greatest = 0;
         for (const Edge e : mesh.edges()) greatest = std::max(greatest, squared_length(e));
-        if (!(greatest > 0)) fail_input("mesh", "has no edge with a length left to halve");
+        if (!(greatest > 0)) fail_input("mesh", "has no edge of positive length to halve", "choose a mesh whose vertices differ");
         longest.clear();
         for (const Edge e : mesh.edges())
-            if (const double length = squared_length(e); length >= share * greatest) longest.emplace_back(-length, e);
-        const std::size_t open = vertices - mesh.number_of_vertices();
-        if (longest.size() > open) {
-            std::nth_element(longest.begin(), longest.begin() + static_cast<std::ptrdiff_t>(open), longest.end());
-            longest.resize(open);
+            if (const double length = squared_length(e); length >= min_ratio * greatest) longest.emplace_back(-length, e);
+        const std::size_t remaining = vertices - mesh.number_of_vertices();
+        if (longest.size() > remaining) {
+            std::nth_element(longest.begin(), longest.begin() + static_cast<std::ptrdiff_t>(remaining), longest.end());
+            longest.resize(remaining);
         }
         std::sort(longest.begin(), longest.end());
         for (const auto& [length, e] : longest) {

@@ -13,8 +13,8 @@ double component(const Vector& v, int i) { return i == 0 ? v.x() : i == 1 ? v.y(
 /// A unit vector perpendicular to a non-zero vector.
 Vector perpendicular(const Vector& n) {
     const double x = std::abs(n.x()), y = std::abs(n.y()), z = std::abs(n.z());
-    const Vector across = CGAL::cross_product(n, x <= y && x <= z ? Vector(1, 0, 0) : y <= z ? Vector(0, 1, 0) : Vector(0, 0, 1));
-    return across / std::sqrt(across.squared_length());
+    const Vector normal = CGAL::cross_product(n, x <= y && x <= z ? Vector(1, 0, 0) : y <= z ? Vector(0, 1, 0) : Vector(0, 0, 1));
+    return normal / std::sqrt(normal.squared_length());
 }
 
 /// Up to three linear conditions n . x = d that determine a point. A condition nearly parallel to the span of the earlier ones
@@ -29,8 +29,8 @@ public:
         const Vector unit = n / length;
         if (count_ == 1 && std::abs(unit * row_[0]) > cosine) return;
         if (count_ == 2) {
-            const Vector across = CGAL::cross_product(row_[0], row_[1]);
-            if (std::abs(unit * across) < sine * std::sqrt(across.squared_length())) return;
+            const Vector normal = CGAL::cross_product(row_[0], row_[1]);
+            if (std::abs(unit * normal) < sine * std::sqrt(normal.squared_length())) return;
         }
         row_[count_] = unit;
         right_[count_++] = d / length;
@@ -72,7 +72,7 @@ public:
     explicit LindstromTurkMetric(const Frame& frame) : frame_(frame) {}
 
     [[nodiscard]] std::optional<CollapsePlace> best(const Mesh& mesh, Halfedge h) const override {
-        const Surroundings s = look_around(mesh, h);
+        const Surroundings s = gather_surroundings(mesh, h);
         Conditions conditions;
         conditions.add(s.normal_sum, s.volume_sum);  // volume preservation
         if (s.has_border) {                          // boundary preservation
@@ -100,7 +100,7 @@ public:
         return CollapsePlace{s.origin + x, cost(s, x)};
     }
     [[nodiscard]] double cost(const Mesh& mesh, Halfedge h, const Vector& position) const override {
-        const Surroundings s = look_around(mesh, h);
+        const Surroundings s = gather_surroundings(mesh, h);
         return cost(s, position - s.origin);
     }
     void merged(Vertex, Vertex) override {}
@@ -127,15 +127,15 @@ private:
         double edge_length_squared = 0;
     };
 
-    [[nodiscard]] Surroundings look_around(const Mesh& mesh, Halfedge h) const {
+    [[nodiscard]] Surroundings gather_surroundings(const Mesh& mesh, Halfedge h) const {
         Surroundings s;
         const Vertex u = mesh.source(h), v = mesh.target(h);
         const Vector pu = frame_.local(mesh.point(u)), pv = frame_.local(mesh.point(v));
         s.origin = pu + (pv - pu) / 2;
         s.edge_length_squared = (pv - pu).squared_length();
-        const auto at = [&](Vertex w) { return frame_.local(mesh.point(w)) - s.origin; };
+        const auto position = [&](Vertex w) { return frame_.local(mesh.point(w)) - s.origin; };
         const auto add_face = [&](Halfedge g) {
-            const Vector a = at(mesh.source(g)), b = at(mesh.target(g)), c = at(mesh.target(mesh.next(g)));
+            const Vector a = position(mesh.source(g)), b = position(mesh.target(g)), c = position(mesh.target(mesh.next(g)));
             const Vector n = CGAL::cross_product(b - a, c - a);
             const double d = CGAL::cross_product(a, b) * c;
             s.normal_sum += n;
@@ -145,7 +145,7 @@ private:
             s.volume_k += d * d;
         };
         const auto add_border = [&](Halfedge g) {
-            const Vector a = at(mesh.source(g)), b = at(mesh.target(g));
+            const Vector a = position(mesh.source(g)), b = position(mesh.target(g));
             const Vector e = b - a, m = CGAL::cross_product(a, b);
             s.has_border = true;
             s.e1 += e;
@@ -162,7 +162,7 @@ private:
             for_each_incoming(mesh, centre, [&](Halfedge g) {
                 const Vertex w = mesh.source(g);
                 if (w != u && w != v) {
-                    const Vector p = at(w);
+                    const Vector p = position(w);
                     s.link_sum += p;
                     s.link_squares += p.squared_length();
                     s.link_count += 1;

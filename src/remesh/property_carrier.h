@@ -26,8 +26,8 @@ public:
 private:
     template <class Value>
     void add(Mesh& mesh, const std::string& name) {
-        const auto [map, found] = mesh.property_map<Key, Value>(name);
-        if (found) steps_.push_back([values = map](Key from, Key to) { values[to] = Value(values[from]); });
+        const auto [map, exists] = mesh.property_map<Key, Value>(name);
+        if (exists) steps_.push_back([values = map](Key from, Key to) { values[to] = Value(values[from]); });
     }
     std::vector<std::function<void(Key, Key)>> steps_;
 };

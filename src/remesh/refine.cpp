@@ -4,6 +4,8 @@
 #include "ostraka/core/memory.h"
 #include "subdivide.h"
 
+#include <fmt/core.h>
+
 #include <numeric>
 
 namespace ostraka {
@@ -13,17 +15,17 @@ namespace {
 /// Memory for a vertex of a fine mesh, including its edges, faces and origins.
 void require_for(double vertices) {
     constexpr double bytes_of_vertex = 600;
-    require_memory(bytes_of_vertex * vertices, "a mesh of " + std::to_string(static_cast<long long>(vertices)) + " vertices",
-                   "ask for fewer vertices or levels");
+    require_memory(bytes_of_vertex * vertices, fmt::format("a mesh of {} vertices", static_cast<long long>(vertices)),
+                   "request fewer vertices or levels");
 }
 
 constexpr std::uint64_t max_edges = (std::uint64_t{1} << 31) - 2;  ///< two halfedges per edge must fit 32 bits
 
 void check_size(std::uint64_t edges) {
     if (edges > max_edges)
-        fail_usage("the refined mesh would have " + std::to_string(edges) + " edges, more than the " + std::to_string(max_edges) +
-                       " that 32-bit indices allow",
-                   "ask for fewer vertices or levels");
+        fail_usage(
+            fmt::format("the refined mesh would have {} edges, more than the {} that 32-bit indices allow", edges, max_edges),
+            "request fewer vertices or levels");
 }
 
 void check_request(const Mesh& mesh, const RefineOptions& options) {
@@ -31,13 +33,13 @@ void check_request(const Mesh& mesh, const RefineOptions& options) {
     if (mesh.has_garbage()) throw std::logic_error("refine: collect the garbage first");
     if ((options.vertices > 0) == (options.levels > 0))
         fail_usage("refine needs either a number of vertices or a number of levels", "give one of --vertices and --levels");
-    if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to refine");
+    if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to refine", "choose a mesh with faces");
     for (const Face f : mesh.faces())
         if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
             fail_input("face " + std::to_string(Index(f)), "is not a triangle");
     if (options.levels > 0) {
         if (options.scheme == RefineOptions::Scheme::longest_edge)
-            fail_usage("levels mean nothing to the scheme longest-edge", "give --vertices, or the scheme midpoint or loop");
+            fail_usage("the scheme longest-edge does not support levels", "give --vertices, or use the scheme midpoint or loop");
         std::uint64_t edges = mesh.number_of_edges(), faces = mesh.number_of_faces();
         for (int level = 0; level < options.levels; ++level) {
             edges = 2 * edges + 3 * faces;
@@ -47,9 +49,9 @@ void check_request(const Mesh& mesh, const RefineOptions& options) {
         require_for(static_cast<double>(edges) / 3);
     } else {
         if (options.vertices < mesh.number_of_vertices())
-            fail_usage("the mesh has " + std::to_string(mesh.number_of_vertices()) + " vertices, more than the " +
-                           std::to_string(options.vertices) + " asked for",
-                       "use: ostraka mesh simplify");
+            fail_usage(
+                fmt::format("the mesh has {} vertices, more than the {} requested", mesh.number_of_vertices(), options.vertices),
+                "use: ostraka mesh simplify");
         check_size(mesh.number_of_edges() + 3 * (options.vertices - mesh.number_of_vertices()));
         require_for(static_cast<double>(options.vertices - mesh.number_of_vertices()));
     }
@@ -79,9 +81,9 @@ void RefineOptions::describe(OptionList& visit) {
     visit("vertices", vertices, "target number of vertices (met exactly)", Range{0, 5e8});
     visit("levels", levels, "number of times each triangle is cut into four", Range{0, 12});
     visit("scheme", scheme,
-          "midpoint (each triangle into four, the shape stays; the last part of a wanted number by longest edges), loop (the "
-          "same with Loop's "
-          "smoothing) or longest-edge (edges halved in the order of their length, the shape stays)",
+          "midpoint (each triangle is cut into four, the shape stays; the rest of the target number comes from halving the "
+          "longest edges), loop (the same with Loop's smoothing) or longest-edge (edges are halved in the order of their "
+          "length, the shape stays)",
           Choices{"midpoint", "loop", "longest-edge"});
 }
 

@@ -14,6 +14,7 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
+#include <fmt/core.h>
 
 #include <cmath>
 
@@ -26,9 +27,9 @@ double edge_length_for(double area, double vertices) { return std::sqrt(2 * area
 
 /// Edges are first cut into pieces of the wanted length. With thin triangles (a single outlier vertex is enough), the edges are
 /// long but the area, which determines the length, is almost zero: the pieces would fill the memory before they are merged.
-bool too_many_pieces(const Mesh& mesh, double length, double wanted) {
+bool too_many_pieces(const Mesh& mesh, double length, double target_vertices) {
     const auto edges = static_cast<double>(mesh.number_of_edges());
-    return !(mean_edge_length(mesh) * edges / length <= 1e6 + 10 * (edges + 3 * wanted));
+    return !(mean_edge_length(mesh) * edges / length <= 1e6 + 10 * (edges + 3 * target_vertices));
 }
 
 void mark_features(const Mesh& mesh, double degrees, Mesh::Property_map<Edge, bool>& constrained) {
@@ -66,10 +67,10 @@ struct WatchedKernel : Kernel {
         }
     };
     [[nodiscard]] static Construct_cross_product_vector_3 construct_cross_product_vector_3_object() { return {}; }
-    [[nodiscard]] Less_x_3 less_x_3_object() const { return ask(), Kernel::less_x_3_object(); }
-    [[nodiscard]] Less_y_3 less_y_3_object() const { return ask(), Kernel::less_y_3_object(); }
-    [[nodiscard]] Less_z_3 less_z_3_object() const { return ask(), Kernel::less_z_3_object(); }
-    static void ask() {
+    [[nodiscard]] Less_x_3 less_x_3_object() const { return check_cancellation(), Kernel::less_x_3_object(); }
+    [[nodiscard]] Less_y_3 less_y_3_object() const { return check_cancellation(), Kernel::less_y_3_object(); }
+    [[nodiscard]] Less_z_3 less_z_3_object() const { return check_cancellation(), Kernel::less_z_3_object(); }
+    static void check_cancellation() {
         thread_local CancelCheck check;
         check();
     }
@@ -104,9 +105,9 @@ double project(Mesh& mesh, const Tree& tree, double size) {
         if (mesh.is_border(v)) distance[i] = std::sqrt(CGAL::squared_distance(mesh.point(v), nearest));
         else mesh.point(v) = nearest;
     });
-    double largest = 0;
-    for (const double d : distance) largest = std::max(largest, d);
-    return largest < 1e-12 * size ? 0 : largest;
+    double max_distance = 0;
+    for (const double d : distance) max_distance = std::max(max_distance, d);
+    return max_distance < 1e-12 * size ? 0 : max_distance;
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     constexpr double bytes_of_vertex = 1500;  // including the AABB tree for the projection
     require_memory(
         bytes_of_vertex * (static_cast<double>(options.vertices) + 0.5 * static_cast<double>(mesh.number_of_vertices())),
-        "remeshing to " + std::to_string(options.vertices) + " vertices", "ask for fewer vertices");
+        fmt::format("remeshing to {} vertices", options.vertices), "request fewer vertices");
     // Works on a centred copy of size one, so that tolerances inside the library have the same meaning for every object.
     const Frame frame = make_frame(mesh);
     TriangleSoup soup = to_soup(mesh);
@@ -128,36 +129,36 @@ RemeshResult remesh(const Mesh& mesh, const RemeshOptions& options) {
     const Mesh old = build_mesh(soup);
     soup = {};
     const double area = surface_area(old);
-    if (!(area > 0) || !std::isfinite(area)) fail_input("mesh", "has no area to remesh");
+    if (!(area > 0) || !std::isfinite(area)) fail_input("mesh", "has no area to remesh", "choose a mesh with a surface");
 
     RemeshResult result;
-    const auto wanted = static_cast<double>(options.vertices);
-    double length = edge_length_for(area, wanted);
+    const auto target_vertices = static_cast<double>(options.vertices);
+    double length = edge_length_for(area, target_vertices);
     // Borders, features and curvature change the number of vertices: it is measured and corrected.
     constexpr double accepted = 0.03;
     for (int attempt = 0; attempt < 3; ++attempt) {
-        if (too_many_pieces(old, length, wanted)) {
+        if (too_many_pieces(old, length, target_vertices)) {
             if (attempt > 0) break;
-            fail_input("mesh", "has triangles too long and thin to be cut into equal ones",
-                       "remove points that lie far away, or repair it");
+            fail_input("mesh", "has triangles that are too long and thin to be cut into equal triangles",
+                       "remove vertices that lie far away, or repair the mesh");
         }
         result.mesh = old;
         run_rounds(result.mesh, length, options);
         result.remeshed = result.mesh.number_of_vertices();
         result.target_edge_length = length * frame.size;
-        const double ratio = static_cast<double>(result.remeshed) / wanted;
+        const double ratio = static_cast<double>(result.remeshed) / target_vertices;
         if (std::abs(ratio - 1) <= accepted) break;
         length *= std::sqrt(ratio);
     }
     if (result.remeshed > options.vertices) {
-        SimplifyOptions fewer;
-        fewer.vertices = options.vertices;
-        simplify(result.mesh, fewer);
+        SimplifyOptions simplification;
+        simplification.vertices = options.vertices;
+        simplify(result.mesh, simplification);
     } else if (result.remeshed < options.vertices) {
-        RefineOptions more;
-        more.vertices = options.vertices;
-        more.scheme = RefineOptions::Scheme::longest_edge;
-        refine(result.mesh, more);
+        RefineOptions refinement;
+        refinement.vertices = options.vertices;
+        refinement.scheme = RefineOptions::Scheme::longest_edge;
+        refine(result.mesh, refinement);
     }
     result.reached = result.mesh.number_of_vertices() == options.vertices;
     Tree tree(faces(old).first, faces(old).second, old);

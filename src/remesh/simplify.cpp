@@ -9,6 +9,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/progress.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 namespace ostraka {
@@ -37,40 +39,40 @@ public:
           merged_(mesh.number_of_vertices()),
           remaining_(mesh.number_of_vertices()) {}
 
-    void run(std::size_t wanted, SimplifyResult& result) {
+    void run(std::size_t target, SimplifyResult& result) {
         const bool can_break = options_.outlines == SimplifyOptions::Outlines::follow && rules_.any_marks();
         std::vector<Stage> stages{{options_.max_normal_change, true, true}, {90, false, true}};
         if (can_break) stages.insert(stages.end(), {{options_.max_normal_change, true, false}, {90, false, false}});
-        Progress progress("simplify", remaining_ - std::min(remaining_, wanted));
+        Progress progress("simplify", remaining_ - std::min(remaining_, target));
         for (const Stage& stage : stages) {
             stage_ = stage;
             rules_.keep_outlines(stage.keep_outlines);
             // Refused collapses may be possible after the neighbourhood has changed: repeat as long as that helps.
-            std::size_t before;
+            std::size_t previous;
             do {
-                before = remaining_;
-                sweep(wanted, progress);
-            } while (remaining_ > wanted && before > remaining_ + remaining_ / 100);
-            if (remaining_ <= wanted) break;
+                previous = remaining_;
+                sweep(target, progress);
+            } while (remaining_ > target && previous > remaining_ + remaining_ / 100);
+            if (remaining_ <= target) break;
         }
         result.collapses = collapses_;
         result.outlines_broken = rules_.broken();
-        result.reached = remaining_ == wanted;
-        result.stop_reason = result.reached ? "the wanted number of vertices was reached" : explain(wanted);
+        result.reached = remaining_ == target;
+        result.stop_reason = result.reached ? "the requested number of vertices was reached" : explain(target);
         result.vertex_map.resize(merged_.size());
         for (std::size_t v = 0; v < merged_.size(); ++v) result.vertex_map[v] = merged_.find(v);
     }
 
 private:
     /// Collapses in the order of cost until the number is reached or no edge may be collapsed.
-    void sweep(std::size_t wanted, Progress& progress) {
+    void sweep(std::size_t target, Progress& progress) {
         refused_topology_ = refused_shape_ = 0;
         CancelCheck check;
         for (const Edge e : mesh_.edges()) {
             check();
             evaluate(e);
         }
-        while (remaining_ > wanted && !heap_.empty()) {
+        while (remaining_ > target && !heap_.empty()) {
             check();
             const Edge e(heap_.top());
             heap_.remove(e);
@@ -87,10 +89,10 @@ private:
 
     /// The candidate positions, the best first.
     struct Places {
-        std::array<CollapsePlace, 4> list;
+        std::array<CollapsePlace, 4> positions;
         std::size_t count = 0;
-        [[nodiscard]] const CollapsePlace& front() const { return list[0]; }
-        void add(const CollapsePlace& p) { list[count++] = p; }
+        [[nodiscard]] const CollapsePlace& front() const { return positions[0]; }
+        void add(const CollapsePlace& p) { positions[count++] = p; }
     };
     [[nodiscard]] Places places(const CollapsePlan& plan) const {
         Places result;
@@ -108,7 +110,7 @@ private:
             return result;
         }
         for (const Vector& x : {middle, u, v}) result.add({x, metric_->cost(mesh_, plan.halfedge, x)});
-        std::stable_sort(result.list.begin(), result.list.begin() + 3,
+        std::stable_sort(result.positions.begin(), result.positions.begin() + 3,
                          [](const CollapsePlace& a, const CollapsePlace& b) { return a.cost < b.cost; });
         return result;
     }
@@ -126,7 +128,7 @@ private:
         }
         const CollapsePlace* chosen = nullptr;
         for (std::size_t i = 0; i < candidates.count && chosen == nullptr; ++i)
-            if (keeps_shape(h, candidates.list[i].position, plan->pinned)) chosen = &candidates.list[i];
+            if (keeps_shape(h, candidates.positions[i].position, plan->pinned)) chosen = &candidates.positions[i];
         if (chosen == nullptr) return ++refused_shape_, false;
         if (!plan->pinned) mesh_.point(v) = frame_.world(chosen->position);
         merge(h);
@@ -159,7 +161,7 @@ private:
         constexpr double thinnest = 0.02;  // area over sum of squared edge lengths, twice; 0.29 for an equilateral triangle
         constexpr double flat = 1e-9;
         const double min_cosine = std::max(1e-3, std::cos(stage_.max_normal_change * pi / 180));
-        bool fine = true;
+        bool acceptable = true;
         const auto check = [&](Halfedge g) {  // g ends in the moved vertex
             if (mesh_.is_border(g) || mesh_.face(g) == mesh_.face(h) || mesh_.face(g) == mesh_.face(mesh_.opposite(h))) return;
             const Vector old = frame_.local(mesh_.point(mesh_.target(g)));
@@ -170,33 +172,32 @@ private:
             const double sides_old = (q - old).squared_length() + (p - old).squared_length() + side;
             const double sides_new = (q - x).squared_length() + (p - x).squared_length() + side;
             const double length_old = std::sqrt(n_old.squared_length()), length_new = std::sqrt(n_new.squared_length());
-            fine = length_new > flat * sides_new;
-            if (!fine || !(length_old > flat * sides_old)) return;  // a face that was flat has no orientation to preserve
-            fine = n_old * n_new >= min_cosine * length_old * length_new;
-            if (fine && stage_.good_shapes)
-                fine = length_new >= thinnest * sides_new || length_new * sides_old >= length_old * sides_new;
+            acceptable = length_new > flat * sides_new;
+            if (!acceptable || !(length_old > flat * sides_old)) return;  // a face that was flat has no orientation to preserve
+            acceptable = n_old * n_new >= min_cosine * length_old * length_new;
+            if (acceptable && stage_.good_shapes)
+                acceptable = length_new >= thinnest * sides_new || length_new * sides_old >= length_old * sides_new;
         };
         const auto check_ring = [&](Halfedge first) {
             Halfedge g = first;
             do {
                 check(g);
                 g = mesh_.opposite(mesh_.next(g));
-            } while (fine && g != first);
+            } while (acceptable && g != first);
         };
         check_ring(mesh_.opposite(h));
-        if (fine && !target_stays) check_ring(h);
-        return fine;
+        if (acceptable && !target_stays) check_ring(h);
+        return acceptable;
     }
 
-    [[nodiscard]] std::string explain(std::size_t wanted) const {
-        std::string text = "stopped at " + std::to_string(remaining_) + " vertices instead of " + std::to_string(wanted) +
-                           ": of the remaining " + std::to_string(mesh_.number_of_edges()) + " edges ";
+    [[nodiscard]] std::string explain(std::size_t target) const {
         const std::size_t bound =
             mesh_.number_of_edges() - std::min<std::size_t>(mesh_.number_of_edges(), refused_topology_ + refused_shape_);
-        text += std::to_string(refused_topology_) + " would change the topology, " + std::to_string(refused_shape_) +
-                " would turn a face over or flatten it";
-        if (bound > 0) text += ", " + std::to_string(bound) + " belong to protected parts or to the border";
-        return text;
+        return fmt::format(
+            "stopped at {} vertices instead of {}: of the remaining {} edges {} would change the topology, {} would flip or "
+            "flatten a face{}",
+            remaining_, target, mesh_.number_of_edges(), refused_topology_, refused_shape_,
+            bound > 0 ? fmt::format(", {} belong to protected parts or to the border", bound) : std::string());
     }
 
     Mesh& mesh_;
@@ -232,11 +233,12 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
     check_options(options, "simplify");
     if (mesh.has_garbage()) throw std::logic_error("simplify: collect the garbage first");
     if (!marked.edges.empty() && marked.edges.size() != mesh.number_of_edges())
-        fail_usage("simplify: " + std::to_string(marked.edges.size()) + " edge flags for " +
-                   std::to_string(mesh.number_of_edges()) + " edges");
+        fail_usage(fmt::format("simplify: there are {} edge flags for {} edges", marked.edges.size(), mesh.number_of_edges()),
+                   "give one flag for each edge");
     if (!marked.vertices.empty() && marked.vertices.size() != mesh.number_of_vertices())
-        fail_usage("simplify: " + std::to_string(marked.vertices.size()) + " vertex flags for " +
-                   std::to_string(mesh.number_of_vertices()) + " vertices");
+        fail_usage(
+            fmt::format("simplify: there are {} vertex flags for {} vertices", marked.vertices.size(), mesh.number_of_vertices()),
+            "give one flag for each vertex");
     for (const Face f : mesh.faces())
         if (mesh.next(mesh.next(mesh.next(mesh.halfedge(f)))) != mesh.halfedge(f))
             fail_input("face " + std::to_string(Index(f)), "is not a triangle");
@@ -250,8 +252,7 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
         if (mesh.is_isolated(v)) isolated.push_back(v);
     const std::size_t count = mesh.number_of_vertices() - isolated.size();
     if (options.vertices > count)
-        fail_usage("the mesh has " + std::to_string(count) + " vertices, fewer than the " + std::to_string(options.vertices) +
-                       " asked for",
+        fail_usage(fmt::format("the mesh has {} vertices, fewer than the {} requested", count, options.vertices),
                    "use: ostraka mesh refine");
     Marks marks{marked.edges, marked.vertices};
     if (marks.edges.empty() || options.outlines == SimplifyOptions::Outlines::ignore)
@@ -279,12 +280,11 @@ SimplifyResult simplify(Mesh& mesh, const SimplifyOptions& options, const Marked
 void SimplifyOptions::describe(OptionList& visit) {
     visit("vertices", vertices, "target number of vertices", Range{1, 5e8});
     visit("method", method,
-          "cost and place of a collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, without memory)",
+          "cost and position of a collapse: qem (Garland and Heckbert 1997) or lindstrom-turk (1998, without memory)",
           Choices{"qem", "lindstrom-turk"});
     visit("outlines", outlines,
-          "annotated outlines, lines and points: follow (they move and lose vertices, but keep their topology while that can "
-          "be), protect "
-          "(they stay exactly as they are) or ignore",
+          "annotated outlines, lines and points: follow (they move and lose vertices, but keep their topology as long as "
+          "possible), protect (they stay exactly as they are) or ignore",
           Choices{"follow", "protect", "ignore"});
     visit(
         "max-normal-change", max_normal_change,

@@ -97,11 +97,11 @@ std::optional<Point> PictureCamera::eye() const {
 }
 
 PictureCamera fit_camera(const Mesh& mesh, const CameraPlan& plan) {
-    if (mesh.number_of_vertices() == 0) fail_input("mesh", "has no vertices to look at", "give another mesh");
-    const bool all = mesh.number_of_faces() == 0;
+    if (mesh.number_of_vertices() == 0) fail_input("mesh", "has no vertices to show", "give another mesh");
+    const bool keep_isolated = mesh.number_of_faces() == 0;
     std::vector<Point> points;
     for (const Vertex v : mesh.vertices())
-        if (all || !mesh.is_isolated(v)) points.push_back(mesh.point(v));
+        if (keep_isolated || !mesh.is_isolated(v)) points.push_back(mesh.point(v));
     const CGAL::Bbox_3 box = bounding_box(mesh);
     std::array<double, 3> middle{};
     double half = 0;

@@ -29,11 +29,11 @@ bool invisible(char32_t code) {
 std::string clean_text(const std::string& text) {
     std::string clean;
     for (std::size_t i = 0; i < text.size();) {
-        const Character here = character_at(text, i);
-        if (here.code == 0xFFFD) clean += "\xEF\xBF\xBD";
-        else if (here.code == '\t' || here.code == '\n') clean += ' ';
-        else if (!invisible(here.code)) clean.append(text, i, here.length);
-        i += here.length;
+        const Character character = character_at(text, i);
+        if (character.code == 0xFFFD) clean += "\xEF\xBF\xBD";
+        else if (character.code == '\t' || character.code == '\n') clean += ' ';
+        else if (!invisible(character.code)) clean.append(text, i, character.length);
+        i += character.length;
     }
     return clean;
 }

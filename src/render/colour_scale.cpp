@@ -35,7 +35,7 @@ constexpr std::array<Rgb, 9> diverging{{{33, 62, 148},
 
 constexpr Rgb no_value{160, 160, 160};
 
-double share(const ColourScale& scale, double value) {
+double relative_position(const ColourScale& scale, double value) {
     // Halved to avoid overflow for very wide ranges.
     const double width = scale.maximum / 2 - scale.minimum / 2;
     if (!(width > 0)) return 0.5;
@@ -47,13 +47,14 @@ ColourScale scale_of(const std::vector<const std::vector<double>*>& values, cons
     ColourScale scale;
     scale.minimum = std::numeric_limits<double>::infinity();
     scale.maximum = -scale.minimum;
-    for (const auto* list : values)
-        for (const double value : *list) {
+    for (const auto* map_values : values)
+        for (const double value : *map_values) {
             if (!std::isfinite(value)) continue;
             scale.minimum = std::min(scale.minimum, value);
             scale.maximum = std::max(scale.maximum, value);
         }
-    if (scale.minimum > scale.maximum) fail_input(where, "the map holds no finite value");
+    if (scale.minimum > scale.maximum)
+        fail_input(where, "the map contains no finite value", "give a map with at least one finite value");
     scale.diverging = scale.minimum < 0 && scale.maximum > 0;
     if (scale.diverging) {
         scale.maximum = std::max(scale.maximum, -scale.minimum);
@@ -65,9 +66,9 @@ ColourScale scale_of(const std::vector<const std::vector<double>*>& values, cons
 Rgb colour_of(const ColourScale& scale, double value) {
     if (std::isnan(value)) return no_value;
     const auto& table = scale.diverging ? diverging : sequential;
-    const double place = share(scale, value) * static_cast<double>(table.size() - 1);
-    const auto low = std::min(static_cast<std::size_t>(place), table.size() - 2);
-    const double weight = place - static_cast<double>(low);
+    const double position = relative_position(scale, value) * static_cast<double>(table.size() - 1);
+    const auto low = std::min(static_cast<std::size_t>(position), table.size() - 2);
+    const double weight = position - static_cast<double>(low);
     const auto mix = [&](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(std::lround(a + weight * (b - a))); };
     const Rgb &a = table[low], &b = table[low + 1];
     return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
@@ -107,7 +108,7 @@ double round_length(double length) {
 }
 
 std::vector<double> ticks(const ColourScale& scale, int count) {
-    std::vector<double> list;
+    std::vector<double> positions;
     const double half = scale.maximum / 2 - scale.minimum / 2;
     if (!(half > 0) || count < 2) return {scale.minimum};
     const double smallest = half / (count / 2.0);
@@ -118,9 +119,9 @@ std::vector<double> ticks(const ColourScale& scale, int count) {
     for (int i = 0; i <= 4 * count; ++i) {
         const double value = (first + i) * step;
         if (!(value <= scale.maximum + 1e-9 * step)) break;
-        list.push_back(value == 0 ? 0.0 : value);
+        positions.push_back(value == 0 ? 0.0 : value);
     }
-    return list;
+    return positions;
 }
 
 std::string tick_text(double value, double step) {

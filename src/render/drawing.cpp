@@ -71,10 +71,10 @@ std::vector<Line> contour_lines(const Surface& surface, const Camera& camera, do
         }
         ++edges;
     });
-    struct Place {
+    struct Crossing {
         Eigen::Vector3d point, sight;
     };
-    std::unordered_map<std::size_t, Place> places;
+    std::unordered_map<std::size_t, Crossing> crossings;
     segments.clear();
     for (Index t = 0; t < surface.triangle_count(); ++t) {
         const Eigen::Vector3d flat = surface.face_normal(t);
@@ -92,21 +92,21 @@ std::vector<Line> contour_lines(const Surface& surface, const Camera& camera, do
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t next = (k + 1) % 3;
             if ((facing[k] < 0) == (facing[next] < 0)) continue;
-            const double share = facing[k] / (facing[k] - facing[next]);
-            const Eigen::Vector3d at = point[k] + share * (point[next] - point[k]);
-            const Eigen::Vector3d outward = ((1 - share) * normal[k] + share * normal[next]).normalized();
+            const double weight = facing[k] / (facing[k] - facing[next]);
+            const Eigen::Vector3d crossing_point = point[k] + weight * (point[next] - point[k]);
+            const Eigen::Vector3d outward = ((1 - weight) * normal[k] + weight * normal[next]).normalized();
             // Lifted, because facets bulge beyond the smooth contour by a fraction of their size.
             const double lift = std::max(2e-3, 0.5 * (point[next] - point[k]).norm());
             crossed[count++] = edge_of_side[3 * t + k];
-            places.try_emplace(crossed[count - 1], Place{at, at + lift * outward});
+            crossings.try_emplace(crossed[count - 1], Crossing{crossing_point, crossing_point + lift * outward});
         }
         if (count == 2 && crossed[0] != crossed[1]) segments.push_back({crossed[0], crossed[1]});
     }
     for (const auto& chain : chains_of(segments)) {
         Line& line = lines.emplace_back(Line{{}, colour, width});
         for (const std::size_t edge : chain) {
-            line.points.push_back(places.at(edge).point);
-            line.sight.push_back(places.at(edge).sight);
+            line.points.push_back(crossings.at(edge).point);
+            line.sight.push_back(crossings.at(edge).sight);
         }
     }
     return lines;
@@ -122,12 +122,12 @@ std::vector<Line> edge_lines(const Surface& surface, const Rgb& colour, double w
 
 void draw_points(Canvas& canvas, const Surface& surface, const Camera& camera, const std::vector<Rgb>& colours, double radius) {
     const std::vector<Index>& points = surface.used_points();
-    std::vector<char> shown(points.size(), 0);
+    std::vector<char> visible(points.size(), 0);
     parallel_for(
-        points.size(), [&](std::size_t i) { shown[i] = in_sight(surface, camera, surface.point(points[i])) ? 1 : 0; }, 1024);
+        points.size(), [&](std::size_t i) { visible[i] = in_sight(surface, camera, surface.point(points[i])) ? 1 : 0; }, 1024);
     for (std::size_t i = 0; i < points.size(); ++i) {
         Canvas::Place place{};
-        if (shown[i] != 0 && camera.project(surface.point(points[i]), place.x, place.y))
+        if (visible[i] != 0 && camera.project(surface.point(points[i]), place.x, place.y))
             canvas.disc(place, radius, colours[points[i]]);
     }
 }

@@ -14,7 +14,7 @@ constexpr double font = 14;   // nominal pixels
 constexpr double row = 1.45;  // line height, relative to the font
 constexpr double gap = 14;    // between names and the pane: space for the first segment of the lines
 constexpr int cell = 4;       // pixels
-constexpr int nobody = -1;
+constexpr int no_label = -1;
 
 using Place = Canvas::Place;
 
@@ -24,22 +24,22 @@ public:
     Grid(const Scene& scene, const Surface& surface, const Camera& camera, const PixelBox& pane) : pane_(pane) {
         columns_ = std::max(1, static_cast<int>(pane.width / cell));
         rows_ = std::max(1, static_cast<int>(pane.height / cell));
-        std::vector<int> of_face(scene.mesh.triangles.size(), nobody);
+        std::vector<int> label_of_face(scene.mesh.triangles.size(), no_label);
         std::vector<std::size_t> order;
         for (std::size_t i = 0; i < scene.labels.size(); ++i) order.push_back(i);
         std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
             return scene.labels[a].faces.size() > scene.labels[b].faces.size();
         });
         for (const std::size_t i : order)
-            for (const Index face : scene.labels[i].faces) of_face[face] = static_cast<int>(i);
-        label_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), nobody);
+            for (const Index face : scene.labels[i].faces) label_of_face[face] = static_cast<int>(i);
+        label_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), no_label);
         parallel_for(static_cast<std::size_t>(rows_), [&](std::size_t y) {
             for (int x = 0; x < columns_; ++x) {
-                const Place at = middle(x, static_cast<int>(y));
-                const Camera::Ray ray = camera.ray(at.x, at.y);
+                const Place centre = middle(x, static_cast<int>(y));
+                const Camera::Ray ray = camera.ray(centre.x, centre.y);
                 Surface::Hit hit;
                 if (surface.first_hit(ray.origin, ray.direction, hit))
-                    label_[place(x, static_cast<int>(y))] = of_face[hit.triangle];
+                    label_[index_of(x, static_cast<int>(y))] = label_of_face[hit.triangle];
             }
         });
     }
@@ -47,25 +47,29 @@ public:
     /// The centre of the cell farthest from cells without the label (chessboard distance); ties: the first.
     [[nodiscard]] std::optional<Place> deepest(int label) const {
         std::vector<int> depth(label_.size(), 0);
-        const auto at = [&](int x, int y) { return x < 0 || y < 0 || x >= columns_ || y >= rows_ ? 0 : depth[place(x, y)]; };
+        const auto depth_at = [&](int x, int y) {
+            return x < 0 || y < 0 || x >= columns_ || y >= rows_ ? 0 : depth[index_of(x, y)];
+        };
         for (int y = 0; y < rows_; ++y)
             for (int x = 0; x < columns_; ++x)
-                if (label_[place(x, y)] == label)
-                    depth[place(x, y)] = 1 + std::min({at(x - 1, y), at(x, y - 1), at(x - 1, y - 1), at(x + 1, y - 1)});
-        int most = 0;
-        std::optional<Place> found;
+                if (label_[index_of(x, y)] == label)
+                    depth[index_of(x, y)] =
+                        1 + std::min({depth_at(x - 1, y), depth_at(x, y - 1), depth_at(x - 1, y - 1), depth_at(x + 1, y - 1)});
+        int max_depth = 0;
+        std::optional<Place> deepest_cell;
         for (int y = rows_ - 1; y >= 0; --y)
             for (int x = columns_ - 1; x >= 0; --x) {
-                if (label_[place(x, y)] != label) continue;
-                int& here = depth[place(x, y)];
-                here = std::min(here, 1 + std::min({at(x + 1, y), at(x, y + 1), at(x + 1, y + 1), at(x - 1, y + 1)}));
-                if (here >= most) most = here, found = middle(x, y);
+                if (label_[index_of(x, y)] != label) continue;
+                int& cell_depth = depth[index_of(x, y)];
+                cell_depth = std::min(cell_depth, 1 + std::min({depth_at(x + 1, y), depth_at(x, y + 1), depth_at(x + 1, y + 1),
+                                                                depth_at(x - 1, y + 1)}));
+                if (cell_depth >= max_depth) max_depth = cell_depth, deepest_cell = middle(x, y);
             }
-        return found;
+        return deepest_cell;
     }
 
 private:
-    [[nodiscard]] std::size_t place(int x, int y) const {
+    [[nodiscard]] std::size_t index_of(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
     }
     [[nodiscard]] Place middle(int x, int y) const { return {pane_.left + (x + 0.5) * cell, pane_.top + (y + 0.5) * cell}; }
@@ -75,28 +79,30 @@ private:
     std::vector<int> label_;
 };
 
-bool within(const PixelBox& pane, const Place& at) {
-    return at.x >= pane.left && at.x < pane.left + pane.width && at.y >= pane.top && at.y < pane.top + pane.height;
+bool within(const PixelBox& pane, const Place& point) {
+    return point.x >= pane.left && point.x < pane.left + pane.width && point.y >= pane.top && point.y < pane.top + pane.height;
 }
 
 /// The middle of the longest visible interval.
 std::optional<Place> middle_in_sight(const SceneLabel& label, const Surface& surface, const Camera& camera,
                                      const PixelBox& pane) {
-    struct Seen {
-        Place at;
-        double along;  // from the first point
+    struct VisibleSample {
+        Place pixel;
+        double arc_length;  // from the first point
     };
-    std::vector<Seen> stretch, longest;
-    const auto length = [](const std::vector<Seen>& list) { return list.empty() ? -1 : list.back().along - list.front().along; };
-    double along = 0;
+    std::vector<VisibleSample> stretch, longest;
+    const auto length = [](const std::vector<VisibleSample>& samples) {
+        return samples.empty() ? -1 : samples.back().arc_length - samples.front().arc_length;
+    };
+    double arc_length = 0;
     const auto add = [&](const Eigen::Vector3d& point) {
-        Place at{};
-        const bool seen =
-            camera.project(point, at.x, at.y) && within(pane, at) && (label.through || in_sight(surface, camera, point));
-        if (seen) stretch.push_back({at, along});
-        if (!seen || length(stretch) > length(longest)) {
+        Place pixel{};
+        const bool visible =
+            camera.project(point, pixel.x, pixel.y) && within(pane, pixel) && (label.through || in_sight(surface, camera, point));
+        if (visible) stretch.push_back({pixel, arc_length});
+        if (!visible || length(stretch) > length(longest)) {
             if (length(stretch) > length(longest)) longest = stretch;
-            if (!seen) stretch.clear();
+            if (!visible) stretch.clear();
         }
     };
     for (std::size_t i = 0; i < label.points.size(); ++i) {
@@ -106,7 +112,7 @@ std::optional<Place> middle_in_sight(const SceneLabel& label, const Surface& sur
             constexpr int steps = 24;
             const double segment = (to - from).norm();
             for (int k = 1; k <= steps; ++k) {
-                along += segment / steps;
+                arc_length += segment / steps;
                 add(from + k * (to - from) / steps);
             }
         } else {
@@ -114,10 +120,12 @@ std::optional<Place> middle_in_sight(const SceneLabel& label, const Surface& sur
         }
     }
     if (longest.empty()) return std::nullopt;
-    const double half = (longest.front().along + longest.back().along) / 2;
+    const double half = (longest.front().arc_length + longest.back().arc_length) / 2;
     return std::min_element(longest.begin(), longest.end(),
-                            [&](const Seen& a, const Seen& b) { return std::abs(a.along - half) < std::abs(b.along - half); })
-        ->at;
+                            [&](const VisibleSample& a, const VisibleSample& b) {
+                                return std::abs(a.arc_length - half) < std::abs(b.arc_length - half);
+                            })
+        ->pixel;
 }
 
 /// Moves labels to ascending positions as close as possible to the wanted ones (least squares), at least a row apart and within
@@ -184,16 +192,17 @@ std::vector<PaneLabel> place_labels(Canvas& canvas, const Scene& scene, const Su
     const double height = row * font * style.size, room = column - (gap + 8) * style.size;
     std::vector<PaneLabel> labels;
     for (std::size_t i = 0; i < scene.labels.size(); ++i) {
-        const SceneLabel& from = scene.labels[i];
-        const auto at = from.faces.empty() ? middle_in_sight(from, surface, camera, pane) : grid.deepest(static_cast<int>(i));
-        if (!at) continue;
+        const SceneLabel& scene_label = scene.labels[i];
+        const auto anchor =
+            scene_label.faces.empty() ? middle_in_sight(scene_label, surface, camera, pane) : grid.deepest(static_cast<int>(i));
+        if (!anchor) continue;
         PaneLabel& label = labels.emplace_back();
-        label.text = canvas.elide(clean_text(from.text), font * style.size, room);
-        label.colour = from.colour;
+        label.text = canvas.elide(clean_text(scene_label.text), font * style.size, room);
+        label.colour = scene_label.colour;
         label.width = canvas.text_width(label.text, font * style.size);
         label.height = height;
-        label.place_x = at->x;
-        label.place_y = at->y;
+        label.place_x = anchor->x;
+        label.place_y = anchor->y;
     }
     // Labels in the left half go to the left, as long as there are free rows.
     std::stable_sort(labels.begin(), labels.end(), [](const PaneLabel& a, const PaneLabel& b) { return a.place_x < b.place_x; });

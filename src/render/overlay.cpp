@@ -3,6 +3,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
+#include <fmt/core.h>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -18,8 +19,8 @@ namespace {
 constexpr double sight_tolerance = 4e-3;
 
 Rgb darker(const Rgb& colour) {
-    const auto part = [](std::uint8_t c) { return static_cast<std::uint8_t>(c * 2 / 5); };
-    return {part(colour.red), part(colour.green), part(colour.blue)};
+    const auto darken = [](std::uint8_t c) { return static_cast<std::uint8_t>(c * 2 / 5); };
+    return {darken(colour.red), darken(colour.green), darken(colour.blue)};
 }
 
 struct Stroke {
@@ -87,12 +88,12 @@ double length_of(const std::vector<Canvas::Place>& places) {
 std::vector<Canvas::Place> thinned(const std::vector<Canvas::Place>& places, double tolerance) {
     namespace bg = boost::geometry;
     using Corner = bg::model::d2::point_xy<double>;
-    bg::model::linestring<Corner> line, kept;
+    bg::model::linestring<Corner> line, simplified;
     for (const Canvas::Place& place : places) line.push_back({place.x, place.y});
-    bg::simplify(line, kept, tolerance);
-    std::vector<Canvas::Place> list;
-    for (const Corner& corner : kept) list.push_back({corner.x(), corner.y()});
-    return list;
+    bg::simplify(line, simplified, tolerance);
+    std::vector<Canvas::Place> points;
+    for (const Corner& corner : simplified) points.push_back({corner.x(), corner.y()});
+    return points;
 }
 }  // namespace
 
@@ -102,32 +103,33 @@ bool in_sight(const Surface& surface, const Camera& camera, const Eigen::Vector3
 
 std::vector<Line> lines_of(const Scene& scene, const Surface& surface) {
     std::vector<Line> lines;
-    for (const SceneLine& from : scene.lines) {
+    for (const SceneLine& scene_line : scene.lines) {
         Line& line = lines.emplace_back();
-        for (const auto& point : from.points) {
+        for (const auto& point : scene_line.points) {
             for (const double c : point)
-                if (!std::isfinite(c)) fail_input("picture", "a line has a coordinate that is not finite");
+                if (!std::isfinite(c))
+                    fail_input("picture", "a line has a coordinate that is not finite", "give finite coordinates");
             line.points.push_back(surface.to_local(point));
         }
-        line.colour = from.colour;
-        line.width = from.width;
-        line.cased = from.cased;
-        line.through = from.through;
+        line.colour = scene_line.colour;
+        line.width = scene_line.width;
+        line.cased = scene_line.cased;
+        line.through = scene_line.through;
     }
     return lines;
 }
 
 void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& surface, const Camera& camera,
-                const LineDrawing& how) {
+                const LineDrawing& drawing) {
     std::vector<std::vector<Step>> steps(lines.size());
     parallel_for(lines.size(), [&](std::size_t i) { steps[i] = steps_along(lines[i], camera); });
-    std::vector<Step*> all;
-    for (auto& list : steps)
-        for (Step& step : list) all.push_back(&step);
+    std::vector<Step*> all_steps;
+    for (auto& line_steps : steps)
+        for (Step& step : line_steps) all_steps.push_back(&step);
     parallel_for(
-        all.size(), [&](std::size_t i) { all[i]->shown = in_sight(surface, camera, all[i]->sight); }, 256);
-    if (how.bridged > 0)
-        for (auto& list : steps) bridge(list, how.bridged);
+        all_steps.size(), [&](std::size_t i) { all_steps[i]->shown = in_sight(surface, camera, all_steps[i]->sight); }, 256);
+    if (drawing.bridged > 0)
+        for (auto& line_steps : steps) bridge(line_steps, drawing.bridged);
     std::vector<Stroke> strokes;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const Line& line = lines[i];
@@ -144,16 +146,17 @@ void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& s
             if (open) strokes.back().places.push_back(step.place);
         }
     }
-    if (how.shortest > 0) std::erase_if(strokes, [&](const Stroke& stroke) { return length_of(stroke.places) < how.shortest; });
-    if (how.thinning > 0)
+    if (drawing.shortest > 0)
+        std::erase_if(strokes, [&](const Stroke& stroke) { return length_of(stroke.places) < drawing.shortest; });
+    if (drawing.thinning > 0)
         for (Stroke& stroke : strokes)
-            if (stroke.places.size() > 2) stroke.places = thinned(stroke.places, how.thinning);
+            if (stroke.places.size() > 2) stroke.places = thinned(stroke.places, drawing.thinning);
     for (const Stroke& stroke : strokes)
         if (stroke.line->cased && !stroke.hidden)
-            canvas.polyline(stroke.places, darker(stroke.line->colour), (stroke.line->width + 2) * how.size);
+            canvas.polyline(stroke.places, darker(stroke.line->colour), (stroke.line->width + 2) * drawing.size);
     for (const Stroke& stroke : strokes) {
-        if (stroke.hidden) canvas.dashed(stroke.places, stroke.line->colour, 0.7 * stroke.line->width * how.size);
-        else canvas.polyline(stroke.places, stroke.line->colour, stroke.line->width * how.size);
+        if (stroke.hidden) canvas.dashed(stroke.places, stroke.line->colour, 0.7 * stroke.line->width * drawing.size);
+        else canvas.polyline(stroke.places, stroke.line->colour, stroke.line->width * drawing.size);
     }
 }
 
@@ -161,7 +164,8 @@ std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surf
     std::size_t shown = 0;
     for (const SceneMarker& marker : scene.markers) {
         for (const double c : marker.point)
-            if (!std::isfinite(c)) fail_input("picture", "a marker has a coordinate that is not finite");
+            if (!std::isfinite(c))
+                fail_input("picture", "a marker has a coordinate that is not finite", "give finite coordinates");
         const Eigen::Vector3d point = surface.to_local(marker.point);
         Canvas::Place place{};
         if (!camera.project(point, place.x, place.y) || !(marker.through || in_sight(surface, camera, point))) continue;
@@ -191,12 +195,14 @@ void draw_axes(Canvas& canvas, const PixelBox& pane, const Camera& camera, const
     const double length = 34 * style.size, head = 8 * style.size;
     const Canvas::Place origin{pane.left + pane.width - 58 * style.size, pane.top + pane.height - 50 * style.size};
     for (const Axis& axis : axes) {
-        const double x = axis.direction.dot(camera.right), y = -axis.direction.dot(camera.up), seen = std::hypot(x, y);
-        if (seen < 0.1) {
+        const double x = axis.direction.dot(camera.right), y = -axis.direction.dot(camera.up),
+                     projected_length = std::hypot(x, y);
+        if (projected_length < 0.1) {
             canvas.disc(origin, 4 * style.size, axis.colour);
         } else {
             const Canvas::Place tip{origin.x + x * length, origin.y + y * length};
-            const double along_x = x / seen * std::min(head, seen * length), along_y = y / seen * std::min(head, seen * length);
+            const double along_x = x / projected_length * std::min(head, projected_length * length),
+                         along_y = y / projected_length * std::min(head, projected_length * length);
             canvas.polyline({origin, {tip.x - along_x, tip.y - along_y}}, axis.colour, 2.2 * style.size);
             canvas.polygon({tip,
                             {tip.x - along_x - 0.45 * along_y, tip.y - along_y + 0.45 * along_x},
@@ -204,7 +210,8 @@ void draw_axes(Canvas& canvas, const PixelBox& pane, const Camera& camera, const
                            axis.colour);
         }
         // The name of an axis that points to the viewer is below its dot.
-        const double name_x = seen < 0.1 ? 0 : x / seen, name_y = seen < 0.1 ? 1 : y / seen;
+        const double name_x = projected_length < 0.1 ? 0 : x / projected_length,
+                     name_y = projected_length < 0.1 ? 1 : y / projected_length;
         canvas.text(axis.name, origin.x + x * length + name_x * 10 * style.size,
                     origin.y + y * length + name_y * 10 * style.size + 5 * style.size, 14 * style.size, style.ink,
                     Canvas::Align::centre, &style.background);
@@ -225,12 +232,12 @@ SideColumn::SideColumn(Canvas& canvas, std::vector<LegendEntry> legend, std::opt
     const double size = style.size;
     font_ = 15 * size;
     if (!legend_.empty()) {
-        const double room = scale_ ? height * 0.45 : height;
-        const double wanted = 1.65 * font_ * static_cast<double>(legend_.size());
-        if (wanted > room) font_ = std::max(0.62 * font_, font_ * room / wanted);
-        const auto rows = static_cast<std::size_t>(std::max(1.0, room / (1.65 * font_)));
+        const double available_height = scale_ ? height * 0.45 : height;
+        const double needed_height = 1.65 * font_ * static_cast<double>(legend_.size());
+        if (needed_height > available_height) font_ = std::max(0.62 * font_, font_ * available_height / needed_height);
+        const auto rows = static_cast<std::size_t>(std::max(1.0, available_height / (1.65 * font_)));
         if (legend_.size() > rows) {
-            left_out_ = legend_.size() - rows + 1;
+            omitted_ = legend_.size() - rows + 1;
             legend_.resize(rows - 1);
         }
         for (LegendEntry& entry : legend_) {
@@ -238,7 +245,7 @@ SideColumn::SideColumn(Canvas& canvas, std::vector<LegendEntry> legend, std::opt
             width_ = std::max(width_, canvas.text_width(entry.text, font_) + 3.2 * font_);
         }
         width_ = std::max(width_, 9 * font_);
-        legend_height_ = 1.65 * font_ * static_cast<double>(legend_.size() + (left_out_ > 0 ? 1 : 0));
+        legend_height_ = 1.65 * font_ * static_cast<double>(legend_.size() + (omitted_ > 0 ? 1 : 0));
     }
     if (scale_) {
         ticks_ = ticks(*scale_, 7);
@@ -252,7 +259,7 @@ SideColumn::SideColumn(Canvas& canvas, std::vector<LegendEntry> legend, std::opt
 }
 
 void SideColumn::draw(double left, double top) const {
-    if (!legend_.empty() || left_out_ > 0) draw_legend(left, top);
+    if (!legend_.empty() || omitted_ > 0) draw_legend(left, top);
     if (scale_) draw_colour_bar(left, top + legend_height_);
 }
 
@@ -279,30 +286,29 @@ void SideColumn::draw_legend(double left, double top) const {
         canvas_.text(entry.text, left + 1.6 * font_, middle + 0.36 * font_, font_, style_.ink);
         y += row;
     }
-    if (left_out_ > 0)
-        canvas_.text("and " + std::to_string(left_out_) + " more", left + 1.6 * font_, y + row / 2 + 0.36 * font_, font_,
-                     style_.ink);
+    if (omitted_ > 0)
+        canvas_.text(fmt::format("and {} more", omitted_), left + 1.6 * font_, y + row / 2 + 0.36 * font_, font_, style_.ink);
 }
 
 void SideColumn::draw_colour_bar(double left, double top) const {
-    const double size = style_.size, room = height_ - legend_height_;
-    const double bar_height = std::max(40 * size, std::min(0.62 * room, 460 * size)), bar_width = 20 * size;
-    const double bar_top = top + std::max(0.0, (room - bar_height) / 2);
+    const double size = style_.size, available_height = height_ - legend_height_;
+    const double bar_height = std::max(40 * size, std::min(0.62 * available_height, 460 * size)), bar_width = 20 * size;
+    const double bar_top = top + std::max(0.0, (available_height - bar_height) / 2);
     const int bands = static_cast<int>(bar_height);
     for (int i = 0; i < bands; ++i) {
-        const double share = 1 - (i + 0.5) / bands;
-        const double value = scale_->minimum * (1 - share) + scale_->maximum * share;
+        const double fraction = 1 - (i + 0.5) / bands;
+        const double value = scale_->minimum * (1 - fraction) + scale_->maximum * fraction;
         canvas_.rectangle(left, bar_top + i, bar_width, 1.5, colour_of(*scale_, value));
     }
     const double width = scale_->maximum / 2 - scale_->minimum / 2;
     for (std::size_t i = 0; i < ticks_.size(); ++i) {
-        const double share = width > 0 ? (ticks_[i] / 2 - scale_->minimum / 2) / width : 0.5;
-        const double y = bar_top + (1 - share) * bar_height;
+        const double fraction = width > 0 ? (ticks_[i] / 2 - scale_->minimum / 2) / width : 0.5;
+        const double y = bar_top + (1 - fraction) * bar_height;
         canvas_.rectangle(left + bar_width, y - 0.5, 5 * size, std::max(1.0, size), style_.ink);
         canvas_.text(tick_texts_[i], left + bar_width + 10 * size + tick_width_, y + 5 * size, 14 * size, style_.ink,
                      Canvas::Align::right);
     }
-    const std::string label = canvas_.elide(clean_text(scale_->label), 15 * size, std::max(60.0, room - 20 * size));
+    const std::string label = canvas_.elide(clean_text(scale_->label), 15 * size, std::max(60.0, available_height - 20 * size));
     canvas_.upward_text(label, left + bar_width + 10 * size + tick_width_ + 24 * size, bar_top + bar_height / 2, 15 * size,
                         style_.ink);
 }

@@ -41,7 +41,7 @@ struct LineDrawing {
 };
 /// Draws the visible intervals of the lines, and, for lines with `through`, the hidden intervals dashed.
 void draw_lines(Canvas& canvas, const std::vector<Line>& lines, const Surface& surface, const Camera& camera,
-                const LineDrawing& how);
+                const LineDrawing& drawing);
 /// Draws the visible markers and returns their number.
 std::size_t draw_markers(Canvas& canvas, const Scene& scene, const Surface& surface, const Camera& camera, const Style& style);
 
@@ -65,7 +65,7 @@ private:
 
     Canvas& canvas_;
     std::vector<LegendEntry> legend_;
-    std::size_t left_out_ = 0;  ///< number of entries without room
+    std::size_t omitted_ = 0;  ///< number of entries without room
     std::optional<ColourScale> scale_;
     std::vector<double> ticks_;
     std::vector<std::string> tick_texts_;

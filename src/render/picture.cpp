@@ -4,6 +4,7 @@
 #include "ostraka/core/error.h"
 
 #include <cairo.h>
+#include <fmt/core.h>
 #include <png.h>
 
 #include <algorithm>
@@ -22,29 +23,29 @@ using CairoSurface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_de
 std::string stable_svg(const std::string& svg) {
     static constexpr std::string_view kinds[] = {"surface", "image", "mask", "clip", "linear", "radial", "pattern", "source"};
     std::map<std::string, std::string> names;
-    std::string made;
-    made.reserve(svg.size());
+    std::string result;
+    result.reserve(svg.size());
     for (std::size_t i = 0; i < svg.size();) {
-        const char before = i > 0 ? svg[i - 1] : ' ';
-        if (before == '"' || before == '#') {
-            const std::string_view rest = std::string_view(svg).substr(i, 24);
+        const char previous = i > 0 ? svg[i - 1] : ' ';
+        if (previous == '"' || previous == '#') {
+            const std::string_view remainder = std::string_view(svg).substr(i, 24);
             const auto* kind =
-                std::find_if(std::begin(kinds), std::end(kinds), [&](std::string_view k) { return rest.starts_with(k); });
+                std::find_if(std::begin(kinds), std::end(kinds), [&](std::string_view k) { return remainder.starts_with(k); });
             if (kind != std::end(kinds)) {
                 std::size_t end = kind->size();
-                while (end < rest.size() && rest[end] >= '0' && rest[end] <= '9') ++end;
+                while (end < remainder.size() && remainder[end] >= '0' && remainder[end] <= '9') ++end;
                 if (end > kind->size()) {
-                    const auto [name, fresh] = names.try_emplace(std::string(rest.substr(0, end)));
-                    if (fresh) name->second = std::string(*kind) + std::to_string(names.size());
-                    made += name->second;
+                    const auto [name, inserted] = names.try_emplace(std::string(remainder.substr(0, end)));
+                    if (inserted) name->second = std::string(*kind) + std::to_string(names.size());
+                    result += name->second;
                     i += end;
                     continue;
                 }
             }
         }
-        made += svg[i++];
+        result += svg[i++];
     }
-    return made;
+    return result;
 }
 
 PictureKind picture_kind(const std::string& file) {
@@ -52,7 +53,7 @@ PictureKind picture_kind(const std::string& file) {
     if (kind == ".png") return PictureKind::pixels;
     if (kind == ".svg") return PictureKind::svg;
     if (kind == ".pdf") return PictureKind::pdf;
-    fail_usage("picture '" + file + "' does not end in .png, .svg or .pdf", "name the picture last");
+    fail_usage(fmt::format("the picture '{}' does not end in .png, .svg or .pdf", file), "give the picture as the last argument");
 }
 
 Rgb parse_colour(const std::string& text) {
@@ -62,7 +63,7 @@ Rgb parse_colour(const std::string& text) {
     std::uint32_t value = 0;
     const char* end = text.data() + text.size();
     if (text.size() != 7 || text[0] != '#' || std::from_chars(text.data() + 1, end, value, 16).ptr != end)
-        fail_usage("'" + text + "' is not a colour", "use #rrggbb, white, black or grey");
+        fail_usage(fmt::format("'{}' is not a colour", text), "use #rrggbb, white, black or grey");
     const auto channel = [&](int shift) { return static_cast<std::uint8_t>(value >> shift & 0xFFU); };
     return {channel(16), channel(8), channel(0)};
 }
@@ -96,9 +97,9 @@ void write_png(const Path& file, const DeepPicture& picture) {
     };
     const auto ignore = [](png_structp, png_const_charp) {};
     const auto write = [](png_structp png, png_bytep data, png_size_t length) {
-        auto* to = static_cast<std::string*>(png_get_io_ptr(png));
-        if (to->capacity() - to->size() < length) png_error(png, "memory runs out");
-        to->append(reinterpret_cast<const char*>(data), length);
+        auto* output = static_cast<std::string*>(png_get_io_ptr(png));
+        if (output->capacity() - output->size() < length) png_error(png, "memory runs out");
+        output->append(reinterpret_cast<const char*>(data), length);
     };
     const auto flush = [](png_structp) {};
     // The format stores the more significant byte first.

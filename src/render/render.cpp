@@ -9,6 +9,8 @@
 #include "overlay.h"
 #include "shading.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -31,12 +33,12 @@ Size parse_size(const std::string& text) {
     constexpr int minimum = 16, maximum = 16384;
     constexpr double max_pixels = 1 << 25;
     Size size{};
-    char cross = 0, rest = 0;
-    const bool good =
-        text.size() < 16 && std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &cross, &size.height, &rest) == 3 && cross == 'x';
-    if (!good || size.width < minimum || size.height < minimum || size.width > maximum || size.height > maximum ||
+    char cross = 0, trailing = 0;
+    const bool valid = text.size() < 16 &&
+                       std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &cross, &size.height, &trailing) == 3 && cross == 'x';
+    if (!valid || size.width < minimum || size.height < minimum || size.width > maximum || size.height > maximum ||
         double(size.width) * size.height > max_pixels)
-        fail_usage("size '" + text + "' is not possible",
+        fail_usage(fmt::format("the size '{}' is invalid", text),
                    "use WIDTHxHEIGHT such as 1200x900, each 16 to 16384, at most 33 million pixels");
     return size;
 }
@@ -51,14 +53,14 @@ struct Plan {
 };
 
 /// Sets one scale for the panes of each scene, or of all scenes.
-void share_scale(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Surface>>& surfaces, bool all) {
+void equalise_scales(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Surface>>& surfaces, bool across_scenes) {
     double largest = 0;
     for (const auto& surface : surfaces) largest = std::max(largest, surface->unit_length());
     const auto relative = [&](const Plan& plan) { return surfaces[plan.pane.scene]->unit_length() / largest; };
     for (std::size_t scene = 0; scene < surfaces.size(); ++scene) {
         double minimum = std::numeric_limits<double>::infinity();
         for (const Plan& plan : plans)
-            if (all || plan.pane.scene == scene) minimum = std::min(minimum, plan.camera.scale / relative(plan));
+            if (across_scenes || plan.pane.scene == scene) minimum = std::min(minimum, plan.camera.scale / relative(plan));
         for (Plan& plan : plans) {
             if (plan.pane.scene != scene) continue;
             const double scale = minimum * relative(plan);
@@ -69,15 +71,15 @@ void share_scale(std::vector<Plan>& plans, const std::vector<std::unique_ptr<Sur
 }
 
 std::vector<LegendEntry> merged_legend(const std::vector<Scene>& scenes) {
-    std::vector<LegendEntry> list;
+    std::vector<LegendEntry> entries;
     for (const Scene& scene : scenes)
         for (const LegendEntry& entry : scene.legend) {
-            const auto same = [&](const LegendEntry& other) {
+            const auto is_equal = [&](const LegendEntry& other) {
                 return other.text == entry.text && other.colour == entry.colour && other.mark == entry.mark;
             };
-            if (std::none_of(list.begin(), list.end(), same)) list.push_back(entry);
+            if (std::none_of(entries.begin(), entries.end(), is_equal)) entries.push_back(entry);
         }
-    return list;
+    return entries;
 }
 
 /// Available size for the panes of a sheet.
@@ -90,7 +92,7 @@ struct PaneSize {
 /// side by side. Otherwise the number of columns maximises the size of the objects: of the smallest one if they share a scale,
 /// else the mean of the logarithms. `extents` holds width and height of each pane's object in its view.
 std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool six, std::size_t scenes, bool one_scale,
-                         const PaneSize& room) {
+                         const PaneSize& available) {
     const std::size_t panes = extents.size();
     if (six) return scenes == 1 ? 3 : 6;
     if (panes <= 3) return panes;
@@ -98,10 +100,11 @@ std::size_t column_count(const std::vector<std::array<double, 2>>& extents, bool
     double maximum = -std::numeric_limits<double>::infinity();
     for (std::size_t columns = panes; columns >= 1; --columns) {
         const std::size_t rows = (panes + columns - 1) / columns;
-        const double width = room.width / double(columns), height = std::max(1.0, room.height / double(rows) - room.strip);
+        const double width = available.width / double(columns),
+                     height = std::max(1.0, available.height / double(rows) - available.strip);
         double minimum = std::numeric_limits<double>::infinity(), sum = 0;
-        for (const auto& [wide, high] : extents) {
-            const double scale = std::min(width / wide, height / high);
+        for (const auto& [object_width, object_height] : extents) {
+            const double scale = std::min(width / object_width, height / object_height);
             minimum = std::min(minimum, scale);
             sum += std::log(scale);
         }
@@ -130,16 +133,16 @@ private:
 std::array<double, 2> extent_of(const Scene& scene, const Surface& surface, const View& view, const std::array<double, 3>& up) {
     // The scale of a pane limited only by its width, and only by its height.
     const Framed framed(scene, surface);
-    const double narrow = detail::fit_camera(framed.count(), framed, view, up, 1, 1e9, false).scale;
-    const double low = detail::fit_camera(framed.count(), framed, view, up, 1e9, 1, false).scale;
-    return {surface.unit_length() / narrow, surface.unit_length() / low};
+    const double scale_by_width = detail::fit_camera(framed.count(), framed, view, up, 1, 1e9, false).scale;
+    const double scale_by_height = detail::fit_camera(framed.count(), framed, view, up, 1e9, 1, false).scale;
+    return {surface.unit_length() / scale_by_width, surface.unit_length() / scale_by_height};
 }
 
 std::vector<View> views_of(const RenderOptions& options) {
     if (options.views == "six") return standard_views();
     std::vector<View> views;
-    std::istringstream list(options.views);
-    for (std::string view; std::getline(list, view, ';');) views.push_back(parse_view(view));
+    std::istringstream stream(options.views);
+    for (std::string view; std::getline(stream, view, ';');) views.push_back(parse_view(view));
     if (views.empty()) views.push_back(parse_view(options.view));
     return views;
 }
@@ -167,8 +170,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_length, double strip, const detail::Style& style) {
     Pane& pane = plan.pane;
-    const double room = std::min(170 * style.size, 0.5 * pane.width);
-    pane.bar_length = round_length(room / plan.camera.scale * unit_length);
+    const double available_width = std::min(170 * style.size, 0.5 * pane.width);
+    pane.bar_length = round_length(available_width / plan.camera.scale * unit_length);
     pane.bar_pixels = pane.bar_length / unit_length * plan.camera.scale;
     if (!(pane.bar_length > 0) || !(pane.bar_pixels >= 1)) {
         pane.bar_length = pane.bar_pixels = 0;
@@ -181,33 +184,33 @@ void add_scale_bar(Canvas& canvas, Plan& plan, const Scene& scene, double unit_l
                            text, style);
 }
 /// Copies the light of a pane into the whole picture.
-void copy_into(std::vector<detail::Light>& whole, int width, const std::vector<detail::Light>& light, const Pane& pane) {
+void copy_into(std::vector<detail::Light>& target, int width, const std::vector<detail::Light>& light, const Pane& pane) {
     const auto columns = static_cast<std::size_t>(pane.width);
     for (std::size_t row = 0; row < static_cast<std::size_t>(pane.height); ++row)
         std::copy_n(light.begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
-                    whole.begin() +
+                    target.begin() +
                         static_cast<std::ptrdiff_t>((static_cast<std::size_t>(pane.top) + row) * static_cast<std::size_t>(width) +
                                                     static_cast<std::size_t>(pane.left)));
 }
 
 /// The picture `over` composited over the surface, and this over the background, with gamma-coded colours as in cairo.
-DeepPicture composed(const std::vector<detail::Light>& under, const Picture& over, std::optional<Rgb> background) {
+DeepPicture composed(const std::vector<detail::Light>& surface_light, const Picture& over, std::optional<Rgb> background) {
     DeepPicture picture{over.width, over.height, {}};
-    picture.rgba.resize(under.size());
+    picture.rgba.resize(surface_light.size());
     parallel_for(
-        under.size(),
+        surface_light.size(),
         [&](std::size_t i) {
             std::array<double, 4> sum{0, 0, 0, 0};  // premultiplied, 0 to 1
             if (background) sum = {background->red / 255.0, background->green / 255.0, background->blue / 255.0, 1};
-            const auto lay = [&](const std::array<double, 4>& top) {
+            const auto composite = [&](const std::array<double, 4>& top) {
                 for (std::size_t k = 0; k < 4; ++k) sum[k] = top[k] + (1 - top[3]) * sum[k];
             };
-            const auto surface = detail::to_deep(under[i]);
+            const auto surface = detail::to_deep(surface_light[i]);
             const double alpha = surface[3] / 65535.0;
-            lay({alpha * surface[0] / 65535.0, alpha * surface[1] / 65535.0, alpha * surface[2] / 65535.0, alpha});
+            composite({alpha * surface[0] / 65535.0, alpha * surface[1] / 65535.0, alpha * surface[2] / 65535.0, alpha});
             const std::uint32_t pixel = over.argb[i];
             const auto byte = [&](unsigned shift) { return (pixel >> shift & 255U) / 255.0; };
-            lay({byte(16), byte(8), byte(0), byte(24)});
+            composite({byte(16), byte(8), byte(0), byte(24)});
             for (std::size_t k = 0; k < 4; ++k) {
                 const double value = k == 3 ? sum[3] : sum[3] > 0 ? sum[k] / sum[3] : 0;
                 picture.rgba[i][k] = static_cast<std::uint16_t>(std::lround(65535 * std::clamp(value, 0.0, 1.0)));
@@ -261,7 +264,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
                        : dark                       ? Rgb{23, 25, 28}
                                                     : Rgb{255, 255, 255};
     std::vector<Plan> plans = plan_panes(scenes, options);
-    if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "make several pictures");
+    if (scenes.empty() || scenes.size() > 64) fail_usage("a picture shows 1 to 64 objects", "render several pictures");
     style.size = detail::mark_size(size.width, size.height);
     const bool on_dark = style.background.red * 0.3 + style.background.green * 0.59 + style.background.blue * 0.11 < 110;
     if (dark || (!options.transparent && on_dark)) style.ink = {235, 235, 235};
@@ -281,8 +284,8 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
     const auto drawing_start = std::chrono::steady_clock::now();
     Canvas canvas(size.width, size.height, kind);
     if (!options.transparent && !deep) canvas.fill(style.background);
-    std::vector<detail::Light> under(deep ? static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) : 0,
-                                     detail::Light::Zero());
+    std::vector<detail::Light> surface_light(
+        deep ? static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) : 0, detail::Light::Zero());
     const double edge = 18 * style.size;
     bool any_values = false, any_caption = false;
     for (const Scene& scene : scenes) any_values = any_values || !scene.vertex_values.empty() || !scene.face_values.empty();
@@ -315,7 +318,7 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
         plans[i].camera = detail::fit_camera(framed.count(), framed, plans[i].view, up, pane.width, pane.height,
                                              options.projection == RenderOptions::Projection::perspective);
     }
-    share_scale(plans, surfaces, options.fit == RenderOptions::Fit::all);
+    equalise_scales(plans, surfaces, options.fit == RenderOptions::Fit::all);
 
     detail::Shading shading;
     shading.smooth = options.shading == RenderOptions::Shading::smooth;
@@ -326,8 +329,8 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
     shading.edge_width = std::max(0.6, 0.9 * style.size);
     if (options.scale) shading.scale = *options.scale;
     const double drawn_size = plans.size() > 2 ? 0.75 * style.size : style.size;
-    detail::Style small = style;
-    small.size = drawn_size;
+    detail::Style overlay_style = style;
+    overlay_style.size = drawn_size;
     const bool every_bar = options.fit == RenderOptions::Fit::each && scenes.size() > 1;
     for (Plan& plan : plans) {
         Pane& pane = plan.pane;
@@ -337,20 +340,20 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
         pane.pixels_per_unit = plan.camera.scale / surface.unit_length();
         if (options.drawing == RenderOptions::Drawing::surface) {
             // Supersampling: averaged for pixel output, kept for documents.
-            const int wanted = options.supersample > 0 ? options.supersample : kind == PictureKind::pixels ? 1 : 2;
-            const int share = std::clamp(16384 / std::max(pane.width, pane.height), 1, wanted);
+            const int requested_factor = options.supersample > 0 ? options.supersample : kind == PictureKind::pixels ? 1 : 2;
+            const int factor = std::clamp(16384 / std::max(pane.width, pane.height), 1, requested_factor);
             detail::Shading finer = shading;
-            finer.edge_width *= share;
+            finer.edge_width *= factor;
             Camera fine_camera = plan.camera;
-            for (double* value : {&fine_camera.scale, &fine_camera.middle_x, &fine_camera.middle_y}) *value *= share;
-            auto light = detail::shade(scene, surface, fine_camera, pane.width * share, pane.height * share, finer);
-            const bool average = kind == PictureKind::pixels && share > 1;
-            if (average) light = detail::averaged(light, pane.width, pane.height, share);
-            const int samples_wide = average ? pane.width : pane.width * share,
-                      samples_high = average ? pane.height : pane.height * share;
+            for (double* value : {&fine_camera.scale, &fine_camera.middle_x, &fine_camera.middle_y}) *value *= factor;
+            auto light = detail::shade(scene, surface, fine_camera, pane.width * factor, pane.height * factor, finer);
+            const bool average = kind == PictureKind::pixels && factor > 1;
+            if (average) light = detail::averaged(light, pane.width, pane.height, factor);
+            const int samples_wide = average ? pane.width : pane.width * factor,
+                      samples_high = average ? pane.height : pane.height * factor;
             if (!deep)
                 canvas.paint(detail::to_pixels(light), samples_wide, samples_high, pane.left, pane.top, pane.width, pane.height);
-            else copy_into(under, size.width, light, pane);
+            else copy_into(surface_light, size.width, light, pane);
         }
         Camera sheet_camera = plan.camera;
         sheet_camera.middle_x += pane.left;
@@ -358,9 +361,9 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
         pane.camera = detail::in_mesh_coordinates(sheet_camera, surface.middle(), surface.unit_length());
         canvas.clip(pane.left, pane.top, pane.width, pane.height);
         draw_over(canvas, scene, surface, sheet_camera, options, style, drawn_size, kind);
-        pane.markers_shown = detail::draw_markers(canvas, scene, surface, sheet_camera, small);
+        pane.markers_shown = detail::draw_markers(canvas, scene, surface, sheet_camera, overlay_style);
         const PixelBox box{double(pane.left), double(pane.top), double(pane.width), double(pane.height)};
-        if (options.axes) detail::draw_axes(canvas, box, plan.camera, small);
+        if (options.axes) detail::draw_axes(canvas, box, plan.camera, overlay_style);
         canvas.unclip();
         if (plan.label_column > 0) {
             pane.labels = detail::place_labels(canvas, scene, surface, sheet_camera, box, plan.label_column, style);
@@ -378,7 +381,8 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
     if (kind == PictureKind::pixels) rendering.picture = canvas.picture();
     else rendering.document = canvas.document();
     if (deep) {
-        rendering.deep = composed(under, rendering.picture, options.transparent ? std::nullopt : std::optional(style.background));
+        rendering.deep =
+            composed(surface_light, rendering.picture, options.transparent ? std::nullopt : std::optional(style.background));
         rendering.picture = {};
     }
     for (const Plan& plan : plans) rendering.panes.push_back(plan.pane);
@@ -388,12 +392,12 @@ Rendering render(const std::vector<Scene>& scenes, const RenderOptions& options,
 
 void RenderOptions::describe(OptionList& visit) {
     visit("size", size, "width and height of the picture in pixels");
-    visit("view", view, "where the viewer stands", view_words());
+    visit("view", view, "view direction", view_words());
     visit("views", views, "several views on one sheet",
           Words{{"", "six"}, "views like 'front;iso;120,10'", [](const std::string& text) {
-                    RenderOptions list;
-                    list.views = text;
-                    static_cast<void>(views_of(list));
+                    RenderOptions candidate;
+                    candidate.views = text;
+                    static_cast<void>(views_of(candidate));
                 }});
     visit("up", up, "upward axis of the object; auto: that of the annotations, otherwise z",
           Words{{"auto", "x", "y", "z", "-x", "-y", "-z"}, "three numbers like 0,0,1", [](const std::string& text) {

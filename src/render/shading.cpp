@@ -66,14 +66,14 @@ float lit(float channel, float strength) {
 
 /// Directions distributed evenly on the sphere (a spherical Fibonacci lattice).
 std::vector<Eigen::Vector3d> sphere_directions(int count) {
-    std::vector<Eigen::Vector3d> list;
+    std::vector<Eigen::Vector3d> directions;
     for (int i = 0; i < count; ++i) {
         const double z = 1 - (2 * i + 1.0) / count;
         const double radius = std::sqrt(std::max(0.0, 1 - z * z));
         const double angle = 2 * pi * std::fmod(i * 0.6180339887498949, 1.0);
-        list.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+        directions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
     }
-    return list;
+    return directions;
 }
 
 class Shader {
@@ -106,7 +106,7 @@ public:
         double strength = brightness(normal, viewer);
         if (!sky_.empty()) strength *= 0.25 + 0.75 * openness(hit.point, flat);
         light.head<3>() = light.head<3>().unaryExpr([&](float c) { return lit(c, static_cast<float>(strength)); });
-        if (shading_.edges) light.head<3>() *= static_cast<float>(1 - 0.75 * edge_share(hit, x, y));
+        if (shading_.edges) light.head<3>() *= static_cast<float>(1 - 0.75 * edge_coverage(hit, x, y));
         return light;
     }
 
@@ -144,7 +144,7 @@ private:
             return colour_of(shading_.scale, value);
         }
         if (!patches_.empty())
-            if (const auto found = patches_.find(hit.triangle); found != patches_.end()) return patch_colour(found->second, hit);
+            if (const auto patch = patches_.find(hit.triangle); patch != patches_.end()) return patch_colour(patch->second, hit);
         if (!scene_.face_values.empty()) return colour_of(shading_.scale, scene_.face_values[hit.triangle]);
         if (!scene_.face_colours.empty()) return scene_.face_colours[hit.triangle];
         if (scene_.vertex_colours.empty()) return clay;
@@ -160,22 +160,22 @@ private:
     /// Colour of the patches of a triangle, which start at index `first`.
     [[nodiscard]] Rgb patch_colour(std::size_t first, const Surface::Hit& hit) const {
         Rgb colour;
-        double most = -1;
+        double max_weight = -1;
         for (std::size_t i = first; i < scene_.patches.size() && scene_.patches[i].triangle == hit.triangle; ++i) {
             double weight = 0;
             for (std::size_t k = 0; k < 3; ++k) weight += hit.weights[static_cast<int>(k)] * double(scene_.patches[i].weights[k]);
-            if (weight > most) most = weight, colour = scene_.patches[i].colour;
+            if (weight > max_weight) max_weight = weight, colour = scene_.patches[i].colour;
         }
         return colour;
     }
 
     /// Coverage of the pixel by an edge line: 1 on the edge, 0 beyond its width.
-    [[nodiscard]] double edge_share(const Surface::Hit& hit, double x, double y) const {
+    [[nodiscard]] double edge_coverage(const Surface::Hit& hit, double x, double y) const {
         std::array<Eigen::Vector2d, 3> screen;
         for (std::size_t k = 0; k < 3; ++k)
             if (!camera_.project(surface_.point(surface_.corners(hit.triangle)[k]), screen[k].x(), screen[k].y())) return 0;
-        const Eigen::Vector2d across = screen[1] - screen[0], down = screen[2] - screen[0];
-        const double twice_area = std::abs(across.x() * down.y() - across.y() * down.x());
+        const Eigen::Vector2d first_side = screen[1] - screen[0], second_side = screen[2] - screen[0];
+        const double twice_area = std::abs(first_side.x() * second_side.y() - first_side.y() * second_side.x());
         double nearest = std::numeric_limits<double>::infinity(), longest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const Eigen::Vector2d side = screen[(k + 1) % 3] - screen[k], offset = Eigen::Vector2d(x, y) - screen[k];
@@ -216,13 +216,13 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
         rows,
         [&](std::size_t row) {
             for (std::size_t column = 0; column < columns; ++column) {
-                const std::size_t here = row * columns + column;
-                Light sum = light[here];
-                const bool busy =
-                    shading.samples > 1 &&
-                    ((column > 0 && differs(sum, light[here - 1])) || (column + 1 < columns && differs(sum, light[here + 1])) ||
-                     (row > 0 && differs(sum, light[here - columns])) || (row + 1 < rows && differs(sum, light[here + columns])));
-                if (busy) {
+                const std::size_t index = row * columns + column;
+                Light sum = light[index];
+                const bool refine = shading.samples > 1 && ((column > 0 && differs(sum, light[index - 1])) ||
+                                                            (column + 1 < columns && differs(sum, light[index + 1])) ||
+                                                            (row > 0 && differs(sum, light[index - columns])) ||
+                                                            (row + 1 < rows && differs(sum, light[index + columns])));
+                if (refine) {
                     // The plastic-number sequence (Roberts 2018): any number of its points is distributed evenly over the
                     // pixel.
                     for (int i = 1; i < shading.samples; ++i)
@@ -230,16 +230,16 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
                                              static_cast<double>(row) + std::fmod(0.5 + i * 0.5698402909980532, 1.0));
                     sum /= static_cast<float>(shading.samples);
                 }
-                finer[here] = sum;
+                finer[index] = sum;
             }
         },
         4);
     return finer;
 }
 
-std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int share) {
+std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int block_size) {
     const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height),
-               n = static_cast<std::size_t>(share);
+               n = static_cast<std::size_t>(block_size);
     std::vector<Light> means(columns * rows, Light::Zero());
     parallel_for(rows, [&](std::size_t row) {
         for (std::size_t column = 0; column < columns; ++column) {
@@ -262,7 +262,9 @@ std::vector<std::uint32_t> to_pixels(const std::vector<Light>& light) {
 std::array<std::uint16_t, 4> to_deep(const Light& light) {
     const float coverage = std::min(light[3], 1.0F);
     if (!(coverage > 0)) return {0, 0, 0, 0};
-    const auto step = [](double share) { return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))); };
+    const auto step = [](double fraction) {
+        return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(fraction, 0.0, 1.0)));
+    };
     const auto channel = [&](int i) { return step(coded(std::clamp(static_cast<double>(light[i]) / light[3], 0.0, 1.0))); };
     return {channel(0), channel(1), channel(2), step(coverage)};
 }

@@ -28,7 +28,7 @@ std::vector<Light> shade(const Scene& scene, const Surface& surface, const Camer
                          const Shading& shading);
 
 /// The means of blocks of `share` by `share` pixels.
-std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int share);
+std::vector<Light> averaged(const std::vector<Light>& light, int width, int height, int block_size);
 
 /// Pixels 0xAARRGGBB, premultiplied.
 std::vector<std::uint32_t> to_pixels(const std::vector<Light>& light);

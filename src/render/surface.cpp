@@ -4,6 +4,7 @@
 #include "ostraka/core/parallel.h"
 
 #include <embree3/rtcore.h>
+#include <fmt/core.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -19,29 +20,34 @@ void check(const Scene& scene) {
     const auto& mesh = scene.mesh;
     const std::string where = scene.title.empty() ? "picture" : scene.title;
     if (mesh.points.size() >= no_index || mesh.triangles.size() >= no_index)
-        fail_input(where, "has too many elements for a picture");
+        fail_input(where, "has too many elements for a picture", "simplify the mesh");
     for (std::size_t i = 0; i < mesh.points.size(); ++i)
         for (const double c : mesh.points[i])
-            if (!std::isfinite(c)) fail_input(where + ", vertex " + std::to_string(i), "has a coordinate that is not finite");
+            if (!std::isfinite(c))
+                fail_input(fmt::format("{}, vertex {}", where, i), "has a coordinate that is not finite",
+                           "give finite coordinates");
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (const Index v : mesh.triangles[t])
             if (v >= mesh.points.size())
-                fail_input(where + ", triangle " + std::to_string(t),
-                           "names vertex " + std::to_string(v) + " of " + std::to_string(mesh.points.size()));
-    const auto length = [&](const char* name, std::size_t count, std::size_t wanted, const char* element) {
-        if (count != 0 && count != wanted)
-            fail_input(where, std::string("has ") + std::to_string(count) + " " + name + " for " + std::to_string(wanted) + " " +
-                                  element);
+                fail_input(fmt::format("{}, triangle {}", where, t),
+                           fmt::format("refers to vertex {}, but there are {} vertices, counted from 0", v, mesh.points.size()),
+                           "correct the triangle");
+    const auto length = [&](const char* name, std::size_t count, std::size_t expected, const char* element) {
+        if (count != 0 && count != expected)
+            fail_input(where, fmt::format("has {} {} for {} {}", count, name, expected, element),
+                       "give one value for each element");
     };
     length("values", scene.vertex_values.size(), mesh.points.size(), "vertices");
     length("values", scene.face_values.size(), mesh.triangles.size(), "faces");
     length("colours", scene.vertex_colours.size(), mesh.points.size(), "vertices");
     length("colours", scene.face_colours.size(), mesh.triangles.size(), "faces");
     for (const ScenePatch& patch : scene.patches)
-        if (patch.triangle >= mesh.triangles.size()) fail_input(where, "colours a triangle that it does not have");
+        if (patch.triangle >= mesh.triangles.size())
+            fail_input(where, "assigns a colour to a triangle that does not exist", "use triangles of the mesh");
     for (const SceneLabel& label : scene.labels)
         for (const Index face : label.faces)
-            if (face >= mesh.triangles.size()) fail_input(where, "names a triangle that it does not have");
+            if (face >= mesh.triangles.size())
+                fail_input(where, "labels a triangle that does not exist", "use triangles of the mesh");
 }
 
 /// Keeps the nearest hit; ties: the smallest index. The ray extends slightly beyond the nearest hit, so that no equal hit is
@@ -102,9 +108,9 @@ Surface::~Surface() = default;
 
 void Surface::measure_box(const Scene& scene) {
     const auto& points = scene.mesh.points;
-    std::vector<bool> named(points.size(), triangles_.empty());
+    std::vector<bool> used(points.size(), triangles_.empty());
     for (const auto& corners : triangles_)
-        for (const Index v : corners) named[v] = true;
+        for (const Index v : corners) used[v] = true;
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
     const auto enclose = [&](const std::array<double, 3>& point) {
@@ -114,7 +120,7 @@ void Surface::measure_box(const Scene& scene) {
         }
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!named[i]) continue;
+        if (!used[i]) continue;
         used_.push_back(static_cast<Index>(i));
         enclose(points[i]);
     }
@@ -155,7 +161,7 @@ void Surface::build_tree() {
     const RTCError error = rtcGetDeviceError(device_.get());
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE)
-        throw Error(ErrorKind::failure, "picture", "the ray tracer failed with code " + std::to_string(static_cast<int>(error)));
+        throw Error(ErrorKind::failure, "picture", fmt::format("the ray tracer failed with code {}", static_cast<int>(error)));
 }
 
 void Surface::gather_faces_around_points() {

@@ -4,6 +4,8 @@
 #include "ostraka/core/npy.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -14,8 +16,8 @@ namespace {
 std::vector<double> parse_npy(std::string_view bytes, const std::string& where) {
     const NpyView view = view_npy(bytes, where);
     if (view.columns() != 1)
-        fail_input(where, "holds an array of " + std::to_string(view.columns()) + " columns",
-                   "save an array of one dimension, one number an element");
+        fail_input(where, fmt::format("contains an array of {} columns", view.columns()),
+                   "save a one-dimensional array with one number per element");
     std::vector<double> values(view.count());
     view.copy_to(values.data());
     return values;
@@ -32,10 +34,10 @@ std::vector<double> parse_lines(std::string_view text, const std::string& where)
         if (words.empty() || words.front() == '#') continue;
         if (words.front() == '+') words.remove_prefix(1);
         double value = 0;
-        const auto [rest, code] = std::from_chars(words.data(), words.data() + words.size(), value);
-        if (rest != words.data() + words.size() || (code != std::errc() && code != std::errc::result_out_of_range))
-            fail_input(where + ", line " + std::to_string(line), "is not one number",
-                       "write one number a line, nan where there is none");
+        const auto [parse_end, code] = std::from_chars(words.data(), words.data() + words.size(), value);
+        if (parse_end != words.data() + words.size() || (code != std::errc() && code != std::errc::result_out_of_range))
+            fail_input(fmt::format("{}, line {}", where, line), "is not a single number",
+                       "write one number per line, nan where there is no value");
         if (code == std::errc::result_out_of_range) value = std::numeric_limits<double>::quiet_NaN();
         values.push_back(value);
     }

@@ -4,6 +4,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -29,27 +31,27 @@ Triple unit(const Triple& a) {
 
 /// Numbers separated by commas; empty for any other text.
 std::vector<double> numbers(const std::string& text) {
-    std::vector<double> list;
-    const char* place = text.c_str();
+    std::vector<double> values;
+    const char* position = text.c_str();
     for (;;) {
         char* end = nullptr;
-        if (std::isspace(static_cast<unsigned char>(*place)) != 0) return {};
-        const double value = std::strtod(place, &end);
-        if (end == place || !std::isfinite(value)) return {};
-        list.push_back(value);
-        if (*end == '\0') return list;
+        if (std::isspace(static_cast<unsigned char>(*position)) != 0) return {};
+        const double value = std::strtod(position, &end);
+        if (end == position || !std::isfinite(value)) return {};
+        values.push_back(value);
+        if (*end == '\0') return values;
         if (*end != ',') return {};
-        place = end + 1;
+        position = end + 1;
     }
 }
 
 /// Sine that is exact at multiples of a right angle, so that the standard views have exact axes.
 double sine(double degrees) {
-    const double turn = std::remainder(degrees, 360.0);
-    if (turn == 0 || std::abs(turn) == 180) return 0;
-    if (turn == 90) return 1;
-    if (turn == -90) return -1;
-    return std::sin(turn * pi / 180);
+    const double angle = std::remainder(degrees, 360.0);
+    if (angle == 0 || std::abs(angle) == 180) return 0;
+    if (angle == 90) return 1;
+    if (angle == -90) return -1;
+    return std::sin(angle * pi / 180);
 }
 double cosine(double degrees) { return sine(degrees + 90); }
 }  // namespace
@@ -60,9 +62,9 @@ View parse_view(const std::string& text) {
     if (text == "iso") return {"iso", 45, std::atan(1 / std::numbers::sqrt2) * 180 / pi};
     const auto angles = numbers(text);
     if (angles.size() != 2 || std::abs(angles[1]) > 90 || std::abs(angles[0]) > 3600) {
-        const Words known = view_words();
-        fail_usage("view '" + text + "' is not known",
-                   "use " + joined(known.names) + " or " + known.others + " with an elevation of -90 to 90");
+        const Words words = view_words();
+        fail_usage(fmt::format("the view '{}' is unknown", text),
+                   fmt::format("use {} or {} with an elevation of -90 to 90", joined(words.names), words.others));
     }
     return {text, angles[0], angles[1]};
 }
@@ -84,11 +86,13 @@ std::array<double, 3> parse_up(const std::string& text) {
     if (text == "-x") return {-1, 0, 0};
     if (text == "-y") return {0, -1, 0};
     if (text == "-z") return {0, 0, -1};
-    const auto list = numbers(text);
-    const double largest = list.size() == 3 ? std::max({std::abs(list[0]), std::abs(list[1]), std::abs(list[2])}) : 0;
+    const auto components = numbers(text);
+    const double largest =
+        components.size() == 3 ? std::max({std::abs(components[0]), std::abs(components[1]), std::abs(components[2])}) : 0;
     if (!(largest > 0))
-        fail_usage("up axis '" + text + "' is not known", "use x, y, z, -x, -y, -z or three numbers such as 0,0.6,0.8");
-    return unit({list[0] / largest, list[1] / largest, list[2] / largest});
+        fail_usage(fmt::format("the up axis '{}' is unknown", text),
+                   "use x, y, z, -x, -y, -z or three numbers such as 0,0.6,0.8");
+    return unit({components[0] / largest, components[1] / largest, components[2] / largest});
 }
 
 ViewAxes view_axes(const View& view, const std::array<double, 3>& up) {

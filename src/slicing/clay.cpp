@@ -23,7 +23,7 @@ struct Layer {
 
 /// Upper bound of the area that intersecting contours enclose together: the smaller of the sum of their areas and the area of
 /// their convex hull.
-double max_of(const Slice& slice) {
+double max_clay_area(const Slice& slice) {
     double sum = 0;
     std::vector<Eigen::Vector2d> points;
     for (const Contour& contour : slice.contours) {
@@ -41,7 +41,7 @@ Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
     layer.crossing = !slice.completeness.has_areas();
     if (layer.crossing) {
         layer.outlined = true;
-        layer.material = max_of(slice), layer.outline = ClayVolume::unknown;
+        layer.material = max_clay_area(slice), layer.outline = ClayVolume::unknown;
         return layer;
     }
     if (std::isnan(descriptors.area)) return layer;
@@ -57,7 +57,7 @@ Layer layer_of(const Slice& slice, const SliceDescriptors& descriptors) {
 }
 
 /// Lower bound of the clay of a slice: contours with a hole are taken as they are, others as hollow except for a wall.
-double min_of(const Slice& slice, double wall) {
+double min_clay_area(const Slice& slice, double wall) {
     double sum = 0;
     std::vector<bool> holed(slice.contours.size(), false);
     for (const Contour& contour : slice.contours)
@@ -80,22 +80,22 @@ double min_of(const Slice& slice, double wall) {
 
 /// Interpolates layers that the object crosses without an outline from the nearest layers above and below.
 void fill_between(std::vector<Layer>& layers) {
-    const auto next = [&](std::size_t i, int step) {
+    const auto nearest_outlined = [&](std::size_t i, int step) {
         auto k = static_cast<long long>(i);
         while (k >= 0 && k < static_cast<long long>(layers.size()) && !layers[static_cast<std::size_t>(k)].outlined) k += step;
         return k;
     };
-    const std::vector<Layer> before = layers;
+    const std::vector<Layer> original = layers;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (!layers[i].met || layers[i].outlined) continue;
-        const long long below = next(i, -1), above = next(i, 1);
+        const long long below = nearest_outlined(i, -1), above = nearest_outlined(i, 1);
         const bool has_below = below >= 0, has_above = above < static_cast<long long>(layers.size());
         if (!has_below && !has_above) continue;
-        const double share = !has_below ? 1 : !has_above ? 0 : (double(i) - double(below)) / double(above - below);
-        const Layer& a = before[static_cast<std::size_t>(has_below ? below : above)];
-        const Layer& b = before[static_cast<std::size_t>(has_above ? above : below)];
-        layers[i].material = (1 - share) * a.material + share * b.material;
-        layers[i].outline = (1 - share) * a.outline + share * b.outline;
+        const double weight = !has_below ? 1 : !has_above ? 0 : (double(i) - double(below)) / double(above - below);
+        const Layer& a = original[static_cast<std::size_t>(has_below ? below : above)];
+        const Layer& b = original[static_cast<std::size_t>(has_above ? above : below)];
+        layers[i].material = (1 - weight) * a.material + weight * b.material;
+        layers[i].outline = (1 - weight) * a.outline + weight * b.outline;
     }
 }
 
@@ -140,7 +140,7 @@ ClayVolume clay_volume(const Mesh& mesh, const SliceFrame& frame, const ClayOpti
     for (const Slice& slice : stack.slices) {
         if (!slice.completeness.has_areas()) continue;
         const bool at_end = std::min(slice.height - lowest, highest - slice.height) < result.wall;
-        result.minimum += height * min_of(slice, at_end ? std::numeric_limits<double>::infinity() : result.wall);
+        result.minimum += height * min_clay_area(slice, at_end ? std::numeric_limits<double>::infinity() : result.wall);
     }
     result.minimum = std::min(result.minimum, result.maximum);
     return result;

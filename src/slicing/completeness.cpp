@@ -20,12 +20,12 @@ void add_pieces(PlaneSegments& segments, const Contour& contour) {
 }
 
 /// Lower bound of the length that joins the ends of open contours: from each end to the nearest start.
-double least_gap(const std::vector<Contour>& contours) {
-    std::vector<Point> beginnings;
+double min_gap_length(const std::vector<Contour>& contours) {
+    std::vector<Point> starts;
     for (const Contour& contour : contours)
-        if (!contour.closed) beginnings.emplace_back(contour.points.front().x(), contour.points.front().y(), 0);
-    if (beginnings.empty()) return 0;
-    const PointTree tree(beginnings);
+        if (!contour.closed) starts.emplace_back(contour.points.front().x(), contour.points.front().y(), 0);
+    if (starts.empty()) return 0;
+    const PointTree tree(starts);
     double sum = 0;
     for (const Contour& contour : contours)
         if (!contour.closed) sum += std::sqrt(tree.nearest({contour.points.back().x(), contour.points.back().y(), 0}).squared);
@@ -46,13 +46,13 @@ OpenArc open_arc(const std::vector<Contour>& contours) {
         add_pieces(pieces, contour);
         const Circle circle = fit_circle(pieces);
         if (!(circle.radius > 0)) continue;
-        double turned = 0;
+        double winding = 0;
         for (const auto& [a, b] : pieces) {
             const Vector2d p = a - circle.centre, q = b - circle.centre;
-            turned += p.x() * q.y() - p.y() * q.x();
+            winding += p.x() * q.y() - p.y() * q.x();
         }
-        PlaneSegments& side = turned > 0 ? outer : inner;
-        (turned > 0 ? length_outer : length_inner) += contour.length;
+        PlaneSegments& side = winding > 0 ? outer : inner;
+        (winding > 0 ? length_outer : length_inner) += contour.length;
         side.insert(side.end(), pieces.begin(), pieces.end());
     }
     const bool outside = !outer.empty();
@@ -70,7 +70,7 @@ Completeness completeness(const std::vector<Contour>& contours) {
     }
     if (contours.empty() || contours.back().closed) return result;
     result.closed_share = closed / length;
-    result.share_at_most = length / (length + least_gap(contours));
+    result.share_at_most = length / (length + min_gap_length(contours));
     result.share = result.share_low = result.share_high = std::numeric_limits<double>::quiet_NaN();
     const ArcFit arc = open_arc(contours).fit;
     if (!arc.is_round()) return result;

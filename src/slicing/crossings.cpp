@@ -36,13 +36,13 @@ Meeting meeting(const std::pair<double, double>& d, const std::pair<double, doub
 }
 
 /// The maximum area that a curve of this length can enclose.
-double disc_of(double length) { return length * length / (4 * pi); }
+double disc_area(double length) { return length * length / (4 * pi); }
 
 /// A curve cut at these (evenly many) positions lies alternately on two sides: the length on the shorter side.
-double lesser_side(std::vector<double> places, double length) {
-    std::sort(places.begin(), places.end());
+double shorter_side(std::vector<double> positions, double length) {
+    std::sort(positions.begin(), positions.end());
     double sum = 0;
-    for (std::size_t i = 0; i + 1 < places.size(); i += 2) sum += places[i + 1] - places[i];
+    for (std::size_t i = 0; i + 1 < positions.size(); i += 2) sum += positions[i + 1] - positions[i];
     return std::min(sum, length - sum);
 }
 
@@ -56,19 +56,19 @@ public:
     Crossings result() {
         Crossings result;
         result.cancelled.assign(contours_.size(), false);
-        double doubtful = 0, whole = 0;
+        double doubtful = 0, outer_area = 0;
         for (const auto& [pair, places] : crossings_) {
             mark(pair);
-            const Contour &one = contour(pair.first), &other = contour(pair.second);
+            const Contour &first = contour(pair.first), &second = contour(pair.second);
             if (places.first.size() % 2 == 0)
-                doubtful += std::min(min_area(pair),
-                                     disc_of(lesser_side(places.first, one.length) + lesser_side(places.second, other.length)));
+                doubtful += std::min(min_area(pair), disc_area(shorter_side(places.first, first.length) +
+                                                               shorter_side(places.second, second.length)));
             else doubtful += min_area(pair);
         }
-        for (const auto& [c, length] : loops_) mark({c, c}), doubtful += std::min(length, disc_of(contour(c).length));
+        for (const auto& [c, length] : loops_) mark({c, c}), doubtful += std::min(length, disc_area(contour(c).length));
         judge_touching(result, doubtful);
-        for (std::size_t c = 0; c < closed_; ++c) whole += contours_[c].hole ? 0 : contours_[c].area;
-        if (doubtful > 0) result.doubtful = whole > doubtful ? doubtful / whole : 1;
+        for (std::size_t c = 0; c < closed_; ++c) outer_area += contours_[c].hole ? 0 : contours_[c].area;
+        if (doubtful > 0) result.doubtful = outer_area > doubtful ? doubtful / outer_area : 1;
         return result;
     }
 
@@ -92,9 +92,9 @@ private:
 
     void compare(const Strips::Edge& e, const Strips::Edge& f) {
         const auto d = distances(e, f), g = distances(f, e);
-        const Meeting found = meeting(d, g, tolerance_);
-        if (found == Meeting::apart) return;
-        if (found == Meeting::touching) {
+        const Meeting relation = meeting(d, g, tolerance_);
+        if (relation == Meeting::apart) return;
+        if (relation == Meeting::touching) {
             if (e.contour != f.contour) touching_[std::minmax(e.contour, f.contour)] = true;
             return;
         }
@@ -102,7 +102,7 @@ private:
         const double t = length_up_to(f.contour, f.place) + d.first / (d.first - d.second) * (f.b - f.a).norm();
         if (e.contour == f.contour) {
             const double length = std::abs(s - t);
-            loops_[e.contour] += disc_of(std::min(length, contour(e.contour).length - length));
+            loops_[e.contour] += disc_area(std::min(length, contour(e.contour).length - length));
             return;
         }
         auto& [first, second] = crossings_[std::minmax(e.contour, f.contour)];
@@ -117,18 +117,18 @@ private:
         PlaneSegments pieces;
         for (std::size_t i = 0; i < others.size(); ++i) pieces.emplace_back(others[i], others[(i + 1) % others.size()]);
         const SegmentTree tree(std::move(pieces));
-        std::vector<int> in, on;
+        std::vector<int> containing, passing_through;
         std::size_t hint = 0;
         bool inside = false, outside = false;
-        const auto look = [&](const Vector2d& p) {
-            strips_.locate(p, in, on);
-            if (std::binary_search(on.begin(), on.end(), outer)) return;
-            bool& side = std::binary_search(in.begin(), in.end(), outer) ? inside : outside;
+        const auto classify_point = [&](const Vector2d& p) {
+            strips_.locate(p, containing, passing_through);
+            if (std::binary_search(passing_through.begin(), passing_through.end(), outer)) return;
+            bool& side = std::binary_search(containing.begin(), containing.end(), outer) ? inside : outside;
             if (!side && tree.distance(p, hint) > tolerance_) side = true;
         };
-        for (std::size_t i = 0; i < points.size() && !(inside && outside); ++i) look(points[i]);
+        for (std::size_t i = 0; i < points.size() && !(inside && outside); ++i) classify_point(points[i]);
         for (std::size_t i = 0; i < points.size() && !(inside && outside); ++i)
-            look((points[i] + points[(i + 1) % points.size()]) / 2);
+            classify_point((points[i] + points[(i + 1) % points.size()]) / 2);
         return {inside, outside};
     }
 
@@ -136,11 +136,11 @@ private:
         for (const auto& [pair, _] : touching_) {
             if (crossings_.contains(pair)) continue;
             const auto [inside, outside] = sides(pair.second, pair.first);
-            const bool same = !inside && !outside;
-            if (same && contour(pair.first).hole != contour(pair.second).hole) {
+            const bool coincident = !inside && !outside;
+            if (coincident && contour(pair.first).hole != contour(pair.second).hole) {
                 result.cancelled[static_cast<std::size_t>(pair.first)] = true;
                 result.cancelled[static_cast<std::size_t>(pair.second)] = true;
-            } else if (same || (inside && outside)) {
+            } else if (coincident || (inside && outside)) {
                 mark(pair);
                 doubtful += min_area(pair);
             }

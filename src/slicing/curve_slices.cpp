@@ -9,6 +9,8 @@
 #include "ostraka/core/limits.h"
 #include "ostraka/core/parallel.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -54,17 +56,17 @@ double distance_from(const Contour& contour) {
 
 Slice nearest_part(const Slice& slice) {
     double minimum = std::numeric_limits<double>::infinity();
-    Slice kept{slice.height, {}, {}};
-    for (const Slice& part : components(slice))
+    Slice nearest{slice.height, {}, {}};
+    for (const Slice& component : components(slice))
         // Components are sorted by decreasing size.
-        if (const double d = distance_from(part.contours[0]); d <= minimum) minimum = d, kept = part;
+        if (const double d = distance_from(component.contours[0]); d <= minimum) minimum = d, nearest = component;
     for (const auto& contour : slice.contours) {
         if (contour.closed) continue;
-        if (const double d = distance_from(contour); d < minimum) minimum = d, kept.contours = {contour};
+        if (const double d = distance_from(contour); d < minimum) minimum = d, nearest.contours = {contour};
     }
-    kept.completeness = detail::completeness(kept.contours);
-    if (kept.completeness.crossing > 0) kept.completeness.doubtful = slice.completeness.doubtful;
-    return kept;
+    nearest.completeness = detail::completeness(nearest.contours);
+    if (nearest.completeness.crossing > 0) nearest.completeness.doubtful = slice.completeness.doubtful;
+    return nearest;
 }
 
 /// Like `slice_mesh` at height 0.
@@ -92,34 +94,36 @@ std::vector<Contour> cut(const Mesh& mesh, const detail::PlaneSearch& search, co
 CurveSlices slice_along(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces) {
     detail::check_faces(mesh, faces);
     for (const Point& p : curve)
-        if (!is_place(p)) fail_usage("the curve to cut across has a point that is not a place", "give finite coordinates");
-    if (count < 1 || count > 1000000) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
-    if (curve.size() < 2) fail_usage("the curve to cut across has fewer than two points", "give a longer one");
+        if (!is_place(p)) fail_usage("a point of the curve to slice along is not finite or too large", "give finite coordinates");
+    if (count < 1 || count > 1000000) fail_usage(fmt::format("the number of slices is {}", count), "use 1 to a million");
+    if (curve.size() < 2) fail_usage("the curve to slice along has fewer than two points", "give a longer curve");
     const Walk walk(curve);
     CurveSlices result;
     result.length = walk.length();
-    if (!(result.length > 0)) fail_usage("the curve to cut across has no length", "give a longer one");
+    if (!(result.length > 0)) fail_usage("the curve to slice along has no length", "give a longer curve");
     const double piece = result.length / count;
     for (int i = 0; i < count; ++i) {
-        const double at = (i + 0.5) * piece;
-        const Vector tangent = walk.at(at + piece) - walk.at(at - piece);
-        SliceFrame frame = slice_frame(walk.at(at), tangent == CGAL::NULL_VECTOR ? curve.back() - curve.front() : tangent);
+        const double arc_length = (i + 0.5) * piece;
+        const Vector tangent = walk.at(arc_length + piece) - walk.at(arc_length - piece);
+        SliceFrame frame =
+            slice_frame(walk.at(arc_length), tangent == CGAL::NULL_VECTOR ? curve.back() - curve.front() : tangent);
         if (!result.frames.empty()) {
-            const Vector before = result.frames.back().u, turned = before - (before * frame.normal) * frame.normal;
-            if (turned.squared_length() > 1e-6) {
-                frame.u = unit_vector(turned);
+            const Vector previous_u = result.frames.back().u,
+                         projected_u = previous_u - (previous_u * frame.normal) * frame.normal;
+            if (projected_u.squared_length() > 1e-6) {
+                frame.u = unit_vector(projected_u);
                 frame.v = CGAL::cross_product(frame.normal, frame.u);
             }
         }
         result.frames.push_back(frame);
-        result.slices.push_back({at, {}, {}});
+        result.slices.push_back({arc_length, {}, {}});
     }
     const detail::PlaneSearch search(mesh, faces);
     const double tolerance = on_plane_share * box_diagonal(mesh);
     parallel_for(
         result.slices.size(), [&](std::size_t i) { result.slices[i].contours = cut(mesh, search, result.frames[i], tolerance); },
         1);
-    result.reversed = detail::settle(result.slices, mesh, faces.empty());
+    result.reversed = detail::classify_contours(result.slices, mesh, faces.empty());
     parallel_for(
         result.slices.size(), [&](std::size_t i) { result.slices[i] = nearest_part(result.slices[i]); }, 1);
     return result;

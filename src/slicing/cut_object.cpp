@@ -5,16 +5,18 @@
 #include "ostraka/slicing/curve_slices.h"
 #include "ostraka/stats/summary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
 
 std::vector<Point> CutObject::centres() const {
-    std::vector<Point> list;
+    std::vector<Point> points;
     for (std::size_t i = 0; i < slices.size(); ++i)
         if (descriptors[i].barycentre.allFinite())
-            list.push_back(frames[i].point(descriptors[i].barycentre, parallel ? slices[i].height : 0));
-    return list;
+            points.push_back(frames[i].point(descriptors[i].barycentre, parallel ? slices[i].height : 0));
+    return points;
 }
 
 bool CutObject::met() const {
@@ -39,7 +41,7 @@ void require_surface(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::size_t count = faces.empty() ? mesh.number_of_faces() : faces.size();
     for (Index i = 0; i < count; ++i)
         if (has_area(faces.empty() ? i : faces[i])) return;
-    fail_input("mesh", "nothing to slice: all its " + std::to_string(count) + " triangles are lines or points",
+    fail_input("mesh", fmt::format("has no surface to slice: all of its {} triangles are lines or points", count),
                "use a mesh with a surface");
 }
 
@@ -58,13 +60,13 @@ CutObject cut_parallel(const Mesh& mesh, const SliceFrame& frame, const std::vec
 
 CutObject cut_across(const Mesh& mesh, const std::vector<Point>& curve, int count, const std::vector<Index>& faces) {
     require_surface(mesh, faces);
-    CurveSlices found = slice_along(mesh, curve, count, faces);
+    CurveSlices across = slice_along(mesh, curve, count, faces);
     CutObject cut{.parallel = false,
-                  .reversed = found.reversed,
-                  .frames = std::move(found.frames),
-                  .slices = std::move(found.slices),
+                  .reversed = across.reversed,
+                  .frames = std::move(across.frames),
+                  .slices = std::move(across.slices),
                   .curve = curve,
-                  .highest = found.length};
+                  .highest = across.length};
     cut.descriptors = describe_slices(cut.slices);
     return cut;
 }

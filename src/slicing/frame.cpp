@@ -5,6 +5,8 @@
 #include "ostraka/core/limits.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
@@ -13,7 +15,7 @@ constexpr double max_planes = 1e6;
 
 void check_range(double lowest, double highest) {
     if (!(lowest <= highest) || !std::isfinite(highest - lowest))
-        fail_usage("there is no range of heights from " + digits(lowest, 4) + " to " + digits(highest, 4),
+        fail_usage(fmt::format("there is no range of heights from {} to {}", digits(lowest, 4), digits(highest, 4)),
                    "give the lower height first");
 }
 
@@ -24,7 +26,7 @@ SliceFrame slice_frame(const Point& origin, const Vector& direction) {
     frame.origin = origin;
     frame.normal = unit_vector(direction);
     if (frame.normal == CGAL::NULL_VECTOR)
-        fail_usage("the direction of the slices has no length", "give one that is not 0, 0, 0");
+        fail_usage("the direction of the slices has no length", "give a direction other than 0, 0, 0");
     const Vector side = std::abs(frame.normal.x()) < 0.9 ? Vector(1, 0, 0) : Vector(0, 1, 0);
     frame.u = unit_vector(side - (side * frame.normal) * frame.normal);
     frame.v = CGAL::cross_product(frame.normal, frame.u);
@@ -48,7 +50,7 @@ std::pair<double, double> height_range(const Mesh& mesh, const SliceFrame& frame
 
 std::vector<double> slice_heights(double lowest, double highest, int count) {
     check_range(lowest, highest);
-    if (count < 1 || count > max_planes) fail_usage("the number of slices is " + std::to_string(count), "use 1 to a million");
+    if (count < 1 || count > max_planes) fail_usage(fmt::format("the number of slices is {}", count), "use 1 to a million");
     std::vector<double> heights;
     for (int i = 0; i < count; ++i) heights.push_back(lowest + (highest - lowest) * ((i + 0.5) / count));
     return heights;
@@ -59,10 +61,10 @@ std::vector<double> slice_heights_spaced(double lowest, double highest, double s
     if (!(spacing > 0 && spacing <= largest_coordinate))
         fail_usage("the spacing of the slices is " + digits(spacing, 4), "use a length above 0");
     if (const double height = highest - lowest; !(height / spacing < max_planes))
-        fail_usage("a spacing of " + digits(spacing, 4) + " gives " + digits(height / spacing, 4) + " slices over a height of " +
-                       digits(height, 4),
-                   "use at least " + digits(1.001 * height / max_planes, 4) + " for the most there may be, a million; " +
-                       digits(height / 200, 4) + " gives two hundred");
+        fail_usage(fmt::format("a spacing of {} gives {} slices over a height of {}", digits(spacing, 4),
+                               digits(height / spacing, 4), digits(height, 4)),
+                   fmt::format("use at least {} for the maximum number of slices, a million; {} gives two hundred",
+                               digits(1.001 * height / max_planes, 4), digits(height / 200, 4)));
     // Includes the last height if only rounding misses it.
     const double steps = std::floor((highest - lowest) / spacing * (1 + 1e-12));
     std::vector<double> heights;

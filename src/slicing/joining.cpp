@@ -14,15 +14,15 @@ bool clean(Contour& contour) {
     const std::vector<Vector2d> raw = std::move(contour.points);
     const std::vector<Index> faces = std::move(contour.faces);
     std::vector<Vector2d> points{raw.front()};
-    std::vector<Index> kept;
+    std::vector<Index> kept_faces;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Vector2d& next = raw[(i + 1) % raw.size()];
         if (next == points.back()) continue;
         if (points.size() >= 2 && points[points.size() - 2] == next) {
-            points.pop_back(), kept.pop_back();
+            points.pop_back(), kept_faces.pop_back();
             continue;
         }
-        points.push_back(next), kept.push_back(faces[i]);
+        points.push_back(next), kept_faces.push_back(faces[i]);
     }
     std::size_t begin = 0, end = points.size();
     if (contour.closed) {
@@ -33,8 +33,8 @@ bool clean(Contour& contour) {
     }
     if (end - begin < 2) return false;
     contour.points.assign(points.begin() + static_cast<long>(begin), points.begin() + static_cast<long>(end));
-    contour.faces.assign(kept.begin() + static_cast<long>(begin),
-                         kept.begin() + static_cast<long>(contour.closed ? end : end - 1));
+    contour.faces.assign(kept_faces.begin() + static_cast<long>(begin),
+                         kept_faces.begin() + static_cast<long>(contour.closed ? end : end - 1));
     return true;
 }
 

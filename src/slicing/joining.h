@@ -45,9 +45,9 @@ std::vector<Contour> join(const Mesh& mesh, Faces begin, Faces end, const Above&
         }
         const Face other = mesh.face(mesh.opposite(up[i]));
         if (!other.is_valid()) continue;
-        const auto at = std::lower_bound(begin, end, other.idx());
-        if (at == end || *at != other.idx()) continue;  // not in the selected part
-        next[i] = static_cast<Index>(at - begin);
+        const auto neighbour = std::lower_bound(begin, end, other.idx());
+        if (neighbour == end || *neighbour != other.idx()) continue;  // not in the selected part
+        next[i] = static_cast<Index>(neighbour - begin);
         follows[next[i]] = true;
     }
     std::vector<Contour> contours;

@@ -9,6 +9,7 @@
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -31,7 +32,7 @@ using Number = CGAL::Triangulation_face_base_with_info_2<int, Kernel>;
 using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Info, Number>>;
 
 std::vector<Sample> sample(const std::vector<Contour>& contours, int samples) {
-    std::vector<Sample> list;
+    std::vector<Sample> sampled;
     for (std::size_t c = 0; c < contours.size() && contours[c].closed; ++c) {
         const auto& points = contours[c].points;
         double along = 0;
@@ -40,11 +41,11 @@ std::vector<Sample> sample(const std::vector<Contour>& contours, int samples) {
             const double piece = (b - a).norm();
             const int parts = std::max(1, static_cast<int>(std::ceil(piece * samples / contours[c].length)));
             for (int k = 0; k < parts; ++k)
-                list.push_back({a + double(k) / parts * (b - a), static_cast<int>(c), along + piece * k / parts});
+                sampled.push_back({a + double(k) / parts * (b - a), static_cast<int>(c), along + piece * k / parts});
             along += piece;
         }
     }
-    return list;
+    return sampled;
 }
 
 /// A Voronoi edge between two nodes.
@@ -60,12 +61,12 @@ struct Graph {
 };
 
 Graph voronoi(const std::vector<Contour>& contours, int samples) {
-    const auto list = sample(contours, samples);
+    const auto sampled = sample(contours, samples);
     Delaunay delaunay;
     Delaunay::Face_handle hint;
-    for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t i = 0; i < sampled.size(); ++i) {
         const std::size_t before = delaunay.number_of_vertices();
-        const auto vertex = delaunay.insert({list[i].place.x(), list[i].place.y()}, hint);
+        const auto vertex = delaunay.insert({sampled[i].place.x(), sampled[i].place.y()}, hint);
         if (delaunay.number_of_vertices() > before) vertex->info() = i;
         hint = vertex->face();
     }
@@ -82,9 +83,9 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
     }
     std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [corners, f] : triangles) {
-        const Sample& first = list[corners[0]];
+        const Sample& first = sampled[corners[0]];
         // Relative to the first corner, to avoid cancellation far from the origin.
-        const Vector2d b = list[corners[1]].place - first.place, c = list[corners[2]].place - first.place;
+        const Vector2d b = sampled[corners[1]].place - first.place, c = sampled[corners[2]].place - first.place;
         const double twice = 2 * (b.x() * c.y() - b.y() * c.x());
         const Vector2d centre(c.y() * b.squaredNorm() - b.y() * c.squaredNorm(),
                               b.x() * c.squaredNorm() - c.x() * b.squaredNorm());
@@ -92,9 +93,9 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
         if (!place.allFinite()) continue;
         strips.locate(place, inside, on);
         // Number of outer contours around the point minus that of holes: positive within the material.
-        int around = 0;
-        for (const int k : inside) around += contours[static_cast<std::size_t>(k)].hole ? -1 : 1;
-        if (around <= 0 || !on.empty()) continue;
+        int nesting = 0;
+        for (const int k : inside) nesting += contours[static_cast<std::size_t>(k)].hole ? -1 : 1;
+        if (nesting <= 0 || !on.empty()) continue;
         f->info() = static_cast<int>(graph.places.size());
         graph.places.push_back(place);
         graph.radii.push_back((centre / twice).norm());
@@ -104,11 +105,12 @@ Graph voronoi(const std::vector<Contour>& contours, int samples) {
         for (int k = 0; k < 3; ++k) {
             const auto g = f->neighbor(k);
             if (f->info() < 0 || g->info() <= f->info()) continue;
-            const Sample &a = list[f->vertex(Delaunay::cw(k))->info()], &b = list[f->vertex(Delaunay::ccw(k))->info()];
+            const Sample &a = sampled[f->vertex(Delaunay::cw(k))->info()], &b = sampled[f->vertex(Delaunay::ccw(k))->info()];
             double residue = 1;
             if (a.contour == b.contour) {
-                const double whole = contours[static_cast<std::size_t>(a.contour)].length, way = std::abs(a.along - b.along);
-                residue = (std::min(way, whole - way) - (a.place - b.place).norm()) / whole;
+                const double contour_length = contours[static_cast<std::size_t>(a.contour)].length,
+                             arc = std::abs(a.along - b.along);
+                residue = (std::min(arc, contour_length - arc) - (a.place - b.place).norm()) / contour_length;
             }
             graph.links.push_back({f->info(), g->info(), residue});
         }
@@ -135,18 +137,18 @@ void contract(Graph& graph, double minimum, double floor) {
 MedialAxis::Level prune(const Graph& graph, double residue) {
     MedialAxis::Level level;
     level.residue = residue;
-    std::vector<std::vector<std::pair<int, int>>> around(graph.places.size());  // link, node at the other end
-    int alone = -1;
+    std::vector<std::vector<std::pair<int, int>>> incident_links(graph.places.size());  // link, node at the other end
+    int single_node = -1;
     double strongest = -1;
     for (std::size_t k = 0; k < graph.links.size(); ++k) {
         const Link& link = graph.links[k];
         if (link.residue < residue) continue;
         if (link.from == link.to) {
-            if (link.residue > strongest) strongest = link.residue, alone = link.from;
+            if (link.residue > strongest) strongest = link.residue, single_node = link.from;
             continue;
         }
-        around[static_cast<std::size_t>(link.from)].emplace_back(static_cast<int>(k), link.to);
-        around[static_cast<std::size_t>(link.to)].emplace_back(static_cast<int>(k), link.from);
+        incident_links[static_cast<std::size_t>(link.from)].emplace_back(static_cast<int>(k), link.to);
+        incident_links[static_cast<std::size_t>(link.to)].emplace_back(static_cast<int>(k), link.from);
     }
     std::vector<bool> used(graph.links.size(), false);
     const auto follow = [&](int node, std::pair<int, int> step) {
@@ -160,23 +162,23 @@ MedialAxis::Level prune(const Graph& graph, double residue) {
             used[static_cast<std::size_t>(step.first)] = true;
             add(step.second);
             level.length += (branch.points.back() - branch.points[branch.points.size() - 2]).norm();
-            const auto& next = around[static_cast<std::size_t>(step.second)];
+            const auto& next = incident_links[static_cast<std::size_t>(step.second)];
             if (next.size() != 2 || step.second == node) break;
-            const auto on = next[0].first == step.first ? next[1] : next[0];
-            if (used[static_cast<std::size_t>(on.first)]) break;
-            step = on;
+            const auto following = next[0].first == step.first ? next[1] : next[0];
+            if (used[static_cast<std::size_t>(following.first)]) break;
+            step = following;
         }
         level.branches.push_back(std::move(branch));
     };
     for (const bool loops : {false, true})
-        for (std::size_t n = 0; n < around.size(); ++n) {
-            if (!loops && around[n].size() == 2) continue;
-            for (const auto& step : around[n])
+        for (std::size_t n = 0; n < incident_links.size(); ++n) {
+            if (!loops && incident_links[n].size() == 2) continue;
+            for (const auto& step : incident_links[n])
                 if (!used[static_cast<std::size_t>(step.first)]) follow(static_cast<int>(n), step);
         }
-    if (level.branches.empty() && alone >= 0)
+    if (level.branches.empty() && single_node >= 0)
         level.branches.push_back(
-            {{graph.places[static_cast<std::size_t>(alone)]}, {graph.radii[static_cast<std::size_t>(alone)]}});
+            {{graph.places[static_cast<std::size_t>(single_node)]}, {graph.radii[static_cast<std::size_t>(single_node)]}});
     return level;
 }
 
@@ -184,13 +186,14 @@ MedialAxis::Level prune(const Graph& graph, double residue) {
 
 MedialAxis medial_axis(const Slice& slice, const std::vector<double>& residues, int samples) {
     for (const double residue : residues)
-        if (!(residue >= 0.001 && residue <= 1)) fail_usage("a residue is " + std::to_string(residue), "use 0.001 to 1");
-    if (samples < 20 || samples > 1000000) fail_usage("there are " + std::to_string(samples) + " samples", "use 20 to a million");
+        if (!(residue >= 0.001 && residue <= 1))
+            fail_usage(fmt::format("the residue {} is out of range", std::to_string(residue)), "use 0.001 to 1");
+    if (samples < 20 || samples > 1000000) fail_usage(fmt::format("the number of samples is {}", samples), "use 20 to a million");
     MedialAxis axis;
     std::vector<Contour> contours;
     double size = 0;
-    for (const Slice& part : components(slice))
-        for (const auto& contour : part.contours) contours.push_back(contour), size = std::max(size, contour.length);
+    for (const Slice& component : components(slice))
+        for (const auto& contour : component.contours) contours.push_back(contour), size = std::max(size, contour.length);
     if (contours.empty() || !slice.completeness.has_areas()) {
         for (const double residue : residues) axis.levels.push_back({residue, 0, {}});
         return axis;

@@ -20,8 +20,8 @@ struct Votes {
 bool inside_by_all_points(const Strips& strips, const std::vector<Contour>& contours, std::size_t inner, std::size_t outer) {
     const auto& points = contours[inner].points;
     std::vector<int> inside, on;
-    const auto has = [](const std::vector<int>& list, std::size_t c) {
-        return std::binary_search(list.begin(), list.end(), static_cast<int>(c));
+    const auto has = [](const std::vector<int>& indices, std::size_t c) {
+        return std::binary_search(indices.begin(), indices.end(), static_cast<int>(c));
     };
     for (const auto& p : points) {
         strips.locate(p, inside, on);
@@ -54,14 +54,14 @@ void nest(std::vector<Contour>& contours) {
     for (std::size_t c = 0; c < closed; ++c) {
         auto& contour = contours[c];
         std::vector<Votes> votes;
-        const auto vote = [&](int other, int in, int decided) {
+        const auto vote = [&](int other, int inside_votes, int decided) {
             if (static_cast<std::size_t>(other) >= c) return;  // no larger than this contour: cannot contain it
             for (auto& entry : votes)
                 if (entry.contour == other) {
-                    entry.inside += in, entry.decided += decided;
+                    entry.inside += inside_votes, entry.decided += decided;
                     return;
                 }
-            votes.push_back({other, in, decided});
+            votes.push_back({other, inside_votes, decided});
         };
         constexpr int samples = 5;
         for (int k = 0; k < samples; ++k) {

@@ -40,14 +40,14 @@ PlaneSearch::PlaneSearch(const Mesh& mesh, const std::vector<Index>& faces) : me
     faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
     if (faces.empty())
         for (const Face f : mesh.faces()) faces_.push_back(f.idx());
-    Box whole;
-    for (const Index f : faces_) whole.extend(box_of(mesh, f));
-    const double scale = 2097151 / std::max(whole.sizes().maxCoeff(), std::numeric_limits<double>::min());
+    Box mesh_box;
+    for (const Index f : faces_) mesh_box.extend(box_of(mesh, f));
+    const double scale = 2097151 / std::max(mesh_box.sizes().maxCoeff(), std::numeric_limits<double>::min());
     std::vector<std::pair<std::uint64_t, Index>> order;  // in Morton order
     for (const Index f : faces_) {
-        const Vector3d at = scale * (box_of(mesh, f).center() - whole.min());
+        const Vector3d cell = scale * (box_of(mesh, f).center() - mesh_box.min());
         std::uint64_t code = 0;
-        for (int k = 0; k < 3; ++k) code |= spread(static_cast<std::uint64_t>(std::clamp(at[k], 0.0, 2097151.0))) << k;
+        for (int k = 0; k < 3; ++k) code |= spread(static_cast<std::uint64_t>(std::clamp(cell[k], 0.0, 2097151.0))) << k;
         order.emplace_back(code, f);
     }
     std::sort(order.begin(), order.end());
@@ -75,16 +75,16 @@ void PlaneSearch::each_face(const Enter& enter, const Visit& visit) const {
 }
 
 std::vector<Index> PlaneSearch::near(const SliceFrame& frame, double search_radius) const {
-    std::vector<Index> found;
+    std::vector<Index> near_faces;
     const auto meets = [&](const Box& box) {
         const auto [low, high] = heights(box, frame);
         return low <= search_radius && high >= -search_radius;
     };
     each_face(meets, [&](Index face) {
-        if (meets(box_of(mesh_, face))) found.push_back(face);
+        if (meets(box_of(mesh_, face))) near_faces.push_back(face);
     });
-    std::sort(found.begin(), found.end());
-    return found;
+    std::sort(near_faces.begin(), near_faces.end());
+    return near_faces;
 }
 
 double PlaneSearch::lowest(const SliceFrame& frame) const {

@@ -30,18 +30,18 @@ struct Half {
 Half half_of(const Slice& section, double angle) {
     Half half{angle};
     for (const auto& contour : section.contours) {
-        std::vector<Vector2d> kept;
+        std::vector<Vector2d> half_outline;
         for (std::size_t i = 0; i < contour.faces.size(); ++i) {
             const Vector2d &a = contour.points[i], &b = contour.points[(i + 1) % contour.points.size()];
-            if (a.x() <= 0) kept.push_back(a);
-            if ((a.x() <= 0) != (b.x() <= 0)) kept.push_back(a + a.x() / (a.x() - b.x()) * (b - a));
+            if (a.x() <= 0) half_outline.push_back(a);
+            if ((a.x() <= 0) != (b.x() <= 0)) half_outline.push_back(a + a.x() / (a.x() - b.x()) * (b - a));
         }
         if (!contour.closed) {
-            for (std::size_t i = 0; i + 1 < kept.size(); ++i) half.open += (kept[i + 1] - kept[i]).norm();
+            for (std::size_t i = 0; i + 1 < half_outline.size(); ++i) half.open += (half_outline[i + 1] - half_outline[i]).norm();
             continue;
         }
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            const Vector2d &a = kept[i], &b = kept[(i + 1) % kept.size()];
+        for (std::size_t i = 0; i < half_outline.size(); ++i) {
+            const Vector2d &a = half_outline[i], &b = half_outline[(i + 1) % half_outline.size()];
             half.area += (a.x() * b.y() - a.y() * b.x()) / 2;
         }
     }
@@ -130,8 +130,8 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     if (std::isnan(angle)) {
         std::vector<Half> halves;
         for (int k = 0; k < 36; ++k) {
-            const double at = k * pi / 18;
-            halves.push_back(half_of(slice_mesh(mesh, section_frame(axis, at), {0}).slices[0], at));
+            const double half_angle = k * pi / 18;
+            halves.push_back(half_of(slice_mesh(mesh, section_frame(axis, half_angle), {0}).slices[0], half_angle));
         }
         const auto complete = [](const Half& half) { return half.open == 0 && half.area > 0; };
         if (std::any_of(halves.begin(), halves.end(), complete)) {
@@ -151,7 +151,7 @@ Profile find_profile(const Mesh& mesh, const SliceFrame& axis, double angle) {
     const double size = profile.high - profile.low;
     for (int i = 0; i < steps; ++i) profile.extent.push_back(extent(profile.section, profile.low + size * (i + 0.5) / steps));
     auto heights = slice_heights(profile.low, profile.high, 24);
-    for (const double share : {0.002, 0.005, 0.01, 0.015, 0.02, 0.03}) heights.push_back(profile.high - share * size);
+    for (const double fraction : {0.002, 0.005, 0.01, 0.015, 0.02, 0.03}) heights.push_back(profile.high - fraction * size);
     const auto stack = slice_mesh(mesh, axis, heights);
     const auto descriptors = describe_slices(stack.slices);
     std::size_t round = 0;

@@ -6,6 +6,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/parallel.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -13,13 +15,13 @@ namespace ostraka::detail {
 
 namespace {
 
-struct Sense {
+struct MeshOrientation {
     bool closed = true;
     bool inside_out = false;  ///< closed, with negative volume
 };
 
-Sense sense_of(const Mesh& mesh) {
-    Sense sense;
+MeshOrientation mesh_orientation(const Mesh& mesh) {
+    MeshOrientation orientation;
     for (const Edge e : mesh.edges())
         if (mesh.is_border(e)) return {false, false};
     const Point o = mesh.point(*mesh.vertices().begin());
@@ -28,8 +30,8 @@ Sense sense_of(const Mesh& mesh) {
         const auto [a, b, c] = corners(mesh, f);
         volume += CGAL::cross_product(mesh.point(a) - o, mesh.point(b) - o) * (mesh.point(c) - o);
     }
-    sense.inside_out = volume < 0;
-    return sense;
+    orientation.inside_out = volume < 0;
+    return orientation;
 }
 
 void sort_and_nest(std::vector<Contour>& contours) {
@@ -94,7 +96,7 @@ public:
                 if (wrong[i][c] < 2) balance_[shell_[contour.faces[0]]] += wrong[i][c] == 1 ? contour.length : -contour.length;
             }
     }
-    [[nodiscard]] bool holds(const Contour& contour) const { return balance_[shell_[contour.faces[0]]] > 0; }
+    [[nodiscard]] bool contains(const Contour& contour) const { return balance_[shell_[contour.faces[0]]] > 0; }
 
 private:
     std::vector<Index> shell_;  ///< shell of each face
@@ -106,16 +108,16 @@ private:
 void check_faces(const Mesh& mesh, const std::vector<Index>& faces) {
     if (mesh.number_of_faces() == 0) fail_input("mesh", "has no faces to cut", "choose another mesh");
     for (const Index f : faces)
-        if (f >= mesh.num_faces()) fail_usage("face " + std::to_string(f) + " is not in the mesh", "give faces of this mesh");
+        if (f >= mesh.num_faces()) fail_usage(fmt::format("face {} is not in the mesh", f), "give faces of this mesh");
 }
 
-bool settle(std::vector<Slice>& slices, const Mesh& mesh, bool whole) {
-    std::optional<Sense> known;
-    const auto sense = [&] {
-        if (!known) known = sense_of(mesh);
-        return *known;
+bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_whole_mesh) {
+    std::optional<MeshOrientation> cached_orientation;
+    const auto orientation = [&] {
+        if (!cached_orientation) cached_orientation = mesh_orientation(mesh);
+        return *cached_orientation;
     };
-    const bool reversed = std::any_of(slices.begin(), slices.end(), has_negative_area) && sense().inside_out;
+    const bool reversed = std::any_of(slices.begin(), slices.end(), has_negative_area) && orientation().inside_out;
     parallel_for(
         slices.size(),
         [&](std::size_t i) {
@@ -124,7 +126,7 @@ bool settle(std::vector<Slice>& slices, const Mesh& mesh, bool whole) {
             sort_and_nest(contours);
         },
         1);
-    const bool closed = whole && std::any_of(slices.begin(), slices.end(), has_outermost_hole) && sense().closed;
+    const bool closed = is_whole_mesh && std::any_of(slices.begin(), slices.end(), has_outermost_hole) && orientation().closed;
     const double tolerance = on_plane_share * box_diagonal(mesh);
     std::vector<std::vector<char>> wrong(slices.size());
     parallel_for(
@@ -135,14 +137,16 @@ bool settle(std::vector<Slice>& slices, const Mesh& mesh, bool whole) {
             slices[i].completeness.doubtful = crossings.doubtful;
         },
         1);
-    const auto has_wrong = [](const std::vector<char>& list) { return std::find(list.begin(), list.end(), 1) != list.end(); };
+    const auto has_wrong = [](const std::vector<char>& verdicts) {
+        return std::find(verdicts.begin(), verdicts.end(), 1) != verdicts.end();
+    };
     std::optional<WrongShells> shells;
     if (std::any_of(wrong.begin(), wrong.end(), has_wrong)) shells.emplace(mesh, slices, wrong);
     parallel_for(
         slices.size(),
         [&](std::size_t i) {
             for (Contour& contour : slices[i].contours)
-                if (shells && shells->holds(contour)) turn_around(contour), contour.turned = true;
+                if (shells && shells->contains(contour)) turn_around(contour), contour.turned = true;
             const double doubtful = slices[i].completeness.doubtful;
             slices[i].completeness = completeness(slices[i].contours);
             slices[i].completeness.doubtful = doubtful;

@@ -7,10 +7,10 @@
 namespace ostraka::detail {
 
 /// Sorts and nests the contours of each slice, finds intersections, reverses contours whose orientation contradicts their
-/// nesting, and sets the completeness of each slice. `whole`: no part of the mesh was left out. Returns whether all contours
-/// were reversed because the mesh is closed and inside out. O(n log n), except for sorting the edges with overlapping boxes; in
-/// parallel.
-bool settle(std::vector<Slice>& slices, const Mesh& mesh, bool whole);
+/// nesting, and sets the completeness of each slice. `is_whole_mesh`: no part of the mesh was left out. Returns whether all
+/// contours were reversed because the mesh is closed and inside out. O(n log n), except for sorting the edges with overlapping
+/// boxes; in parallel.
+bool classify_contours(std::vector<Slice>& slices, const Mesh& mesh, bool is_whole_mesh);
 
 /// Sets parent and depth of the closed contours, which come first, sorted by decreasing absolute area (nesting.cpp). Exact for
 /// the given points, also where contours touch. O(n log n) for contours of similar size: a horizontal line through a point is

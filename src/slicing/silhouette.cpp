@@ -3,6 +3,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,8 +42,8 @@ public:
             for (int k = 0; k < 3; ++k) {
                 const Vector2d &p = corner[k], &q = corner[(k + 1) % 3];
                 if (std::min(p.y(), q.y()) > y || std::max(p.y(), q.y()) < y) continue;
-                const double at = p.y() == q.y() ? p.x() : p.x() + (y - p.y()) / (q.y() - p.y()) * (q.x() - p.x());
-                left = std::min(left, at), right = std::max(right, at);
+                const double x = p.y() == q.y() ? p.x() : p.x() + (y - p.y()) / (q.y() - p.y()) * (q.x() - p.x());
+                left = std::min(left, x), right = std::max(right, x);
                 if (p.y() == q.y()) left = std::min(left, q.x()), right = std::max(right, q.x());
             }
             // Slightly enlarged, so that no gap appears between neighbours.
@@ -103,21 +105,22 @@ std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
                 next[starts.back()] = sides[piece[k + 1] - '0'];
             }
         }
-    const auto place = [&](std::int64_t key) {
+    const auto point_on = [&](std::int64_t key) {
         const auto r = static_cast<int>(key / 2 / columns), c = static_cast<int>(key / 2 % columns);
-        const double from = value(c, r), to = key % 2 == 0 ? value(c + 1, r) : value(c, r + 1), t = (0.5 - from) / (to - from);
+        const double value_from = value(c, r), value_to = key % 2 == 0 ? value(c + 1, r) : value(c, r + 1),
+                     t = (0.5 - value_from) / (value_to - value_from);
         return mask.place(Vector2d(c + 0.5 + (key % 2 == 0 ? t : 0), r + 0.5 + (key % 2 == 0 ? 0 : t)));
     };
     std::vector<std::vector<Vector2d>> curves;
     for (const auto start : starts) {
-        auto at = next.find(start);
-        if (at == next.end()) continue;
+        auto segment = next.find(start);
+        if (segment == next.end()) continue;
         std::vector<Vector2d> curve;
-        while (at != next.end()) {
-            curve.push_back(place(at->first));
-            const auto to = at->second;
-            next.erase(at);
-            at = next.find(to);
+        while (segment != next.end()) {
+            curve.push_back(point_on(segment->first));
+            const auto end = segment->second;
+            next.erase(segment);
+            segment = next.find(end);
         }
         curves.push_back(std::move(curve));
     }
@@ -127,12 +130,12 @@ std::vector<std::vector<Vector2d>> trace(const Mask& mask) {
 /// Keeps points farther than `tolerance` from the line between kept points (Douglas and Peucker 1973).
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& curve, double tolerance) {
     std::vector<bool> keep(curve.size(), false);
-    std::size_t far = 0;
+    std::size_t farthest = 0;
     for (std::size_t i = 0; i < curve.size(); ++i)
-        if ((curve[i] - curve[0]).norm() > (curve[far] - curve[0]).norm()) far = i;
-    keep[0] = keep[far] = true;
+        if ((curve[i] - curve[0]).norm() > (curve[farthest] - curve[0]).norm()) farthest = i;
+    keep[0] = keep[farthest] = true;
     const std::size_t n = curve.size();
-    std::vector<std::pair<std::size_t, std::size_t>> stack{{0, far}, {far, n}};
+    std::vector<std::pair<std::size_t, std::size_t>> stack{{0, farthest}, {farthest, n}};
     while (!stack.empty()) {
         const auto [from, to] = stack.back();
         stack.pop_back();
@@ -148,17 +151,17 @@ std::vector<Vector2d> thinned(const std::vector<Vector2d>& curve, double toleran
         keep[worst] = true;
         stack.emplace_back(from, worst), stack.emplace_back(worst, to);
     }
-    std::vector<Vector2d> list;
+    std::vector<Vector2d> simplified;
     for (std::size_t i = 0; i < n; ++i)
-        if (keep[i]) list.push_back(curve[i]);
-    return list;
+        if (keep[i]) simplified.push_back(curve[i]);
+    return simplified;
 }
 
 }  // namespace
 
 std::vector<std::vector<Vector2d>> silhouette(const Mesh& mesh, const SliceFrame& frame, int cells,
                                               const std::vector<Index>& faces) {
-    if (cells < 8 || cells > 4000) fail_usage("a silhouette of " + std::to_string(cells) + " cells", "use 8 to 4000");
+    if (cells < 8 || cells > 4000) fail_usage(fmt::format("the number of cells of the silhouette is {}", cells), "use 8 to 4000");
     std::vector<std::array<Vector2d, 3>> triangles;
     const auto add = [&](Face f) {
         const auto [a, b, c] = corners(mesh, f);

@@ -8,6 +8,8 @@
 #include "ostraka/core/limits.h"
 #include "ostraka/core/parallel.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -17,13 +19,15 @@ namespace {
 
 void check(const Mesh& mesh, const SliceFrame& frame, const std::vector<double>& heights, const std::vector<Index>& faces) {
     const Vector cross = CGAL::cross_product(frame.u, frame.v) - frame.normal;
-    const bool sound = is_place(frame.origin) && std::abs(frame.u.squared_length() - 1) < 1e-9 &&
-                       std::abs(frame.v.squared_length() - 1) < 1e-9 && std::abs(frame.u * frame.v) < 1e-9 &&
-                       cross.squared_length() < 1e-18;
-    if (!sound) fail_usage("the frame of the slices is not right-handed with unit vectors", "make it by slice_frame");
+    const bool right_handed = is_place(frame.origin) && std::abs(frame.u.squared_length() - 1) < 1e-9 &&
+                              std::abs(frame.v.squared_length() - 1) < 1e-9 && std::abs(frame.u * frame.v) < 1e-9 &&
+                              cross.squared_length() < 1e-18;
+    if (!right_handed)
+        fail_usage("the frame of the slices is not right-handed with unit vectors", "construct the frame with slice_frame");
     for (const double height : heights)
         if (!(std::abs(height) <= largest_coordinate))
-            fail_usage("a slice is asked for at height " + std::to_string(height), "give finite heights");
+            fail_usage(fmt::format("the height {} of a slice is not finite or too large", std::to_string(height)),
+                       "give finite heights");
     detail::check_faces(mesh, faces);
 }
 
@@ -171,20 +175,20 @@ SliceStack slice_mesh(const Mesh& mesh, const SliceFrame& frame, const std::vect
             slice.contours = sweep.contours(plane);
         },
         1);
-    stack.reversed = detail::settle(stack.slices, mesh, faces.empty());
+    stack.reversed = detail::classify_contours(stack.slices, mesh, faces.empty());
     return stack;
 }
 
 std::vector<Slice> components(const Slice& slice) {
-    std::vector<Slice> list;
-    std::vector<std::size_t> place(slice.contours.size());
+    std::vector<Slice> parts;
+    std::vector<std::size_t> component_of(slice.contours.size());
     for (std::size_t i = 0; i < slice.contours.size(); ++i) {
         const Contour& contour = slice.contours[i];
         if (!contour.closed) continue;
         if (!contour.hole) {
-            place[i] = list.size();
-            list.push_back({slice.height, {contour}, {}});
-            list.back().contours[0].parent = -1, list.back().contours[0].depth = 0;
+            component_of[i] = parts.size();
+            parts.push_back({slice.height, {contour}, {}});
+            parts.back().contours[0].parent = -1, parts.back().contours[0].depth = 0;
             continue;
         }
         // The nearest outer contour that contains it.
@@ -192,11 +196,11 @@ std::vector<Slice> components(const Slice& slice) {
         while (outer >= 0 && slice.contours[static_cast<std::size_t>(outer)].hole)
             outer = slice.contours[static_cast<std::size_t>(outer)].parent;
         if (outer < 0) continue;
-        Slice& whole = list[place[static_cast<std::size_t>(outer)]];
-        whole.contours.push_back(contour);
-        whole.contours.back().parent = 0, whole.contours.back().depth = 1;
+        Slice& component = parts[component_of[static_cast<std::size_t>(outer)]];
+        component.contours.push_back(contour);
+        component.contours.back().parent = 0, component.contours.back().depth = 1;
     }
-    return list;
+    return parts;
 }
 
 }  // namespace ostraka

@@ -49,9 +49,9 @@ Wall wall_of(const Slice& slice) {
     for (std::size_t k = 2; k < parts[0].contours.size(); ++k) wall.beside = wall.beside || of_size(parts[0].contours[k], hole);
     for (std::size_t k = 1; k < parts.size(); ++k) wall.beside = wall.beside || of_size(parts[k].contours[0], outer);
     if (wall.beside) return wall;
-    Slice alone = parts[0];
-    alone.contours.resize(2);
-    const SliceDescriptors d = describe_slice(alone);
+    Slice bare_wall = parts[0];
+    bare_wall.contours.resize(2);
+    const SliceDescriptors d = describe_slice(bare_wall);
     wall.mean = d.thickness_mean, wall.variance = d.thickness_variance;
     return wall;
 }
@@ -68,21 +68,22 @@ std::vector<int> similar_groups(const Eigen::MatrixXd& samples, const TubeOption
             square[static_cast<std::size_t>(label)] += (samples.row(i) - groups.centres.row(label)).squaredNorm();
             count[static_cast<std::size_t>(label)] += 1;
         }
-        bool even = true;
-        for (std::size_t g = 0; g < square.size(); ++g) even = even && std::sqrt(square[g] / count[g]) <= options.similarity;
-        if (even || means.clusters >= samples.rows()) return groups.labels;
+        bool homogeneous = true;
+        for (std::size_t g = 0; g < square.size(); ++g)
+            homogeneous = homogeneous && std::sqrt(square[g] / count[g]) <= options.similarity;
+        if (homogeneous || means.clusters >= samples.rows()) return groups.labels;
     }
 }
 
 }  // namespace
 
 std::vector<Point> barycentres(const SliceStack& stack, const std::vector<SliceDescriptors>& descriptors, bool of_outline) {
-    std::vector<Point> list;
+    std::vector<Point> points;
     for (std::size_t i = 0; i < stack.slices.size(); ++i) {
-        const auto& place = of_outline ? descriptors[i].outline_barycentre : descriptors[i].barycentre;
-        if (place.allFinite()) list.push_back(stack.frame.point(place, stack.slices[i].height));
+        const auto& barycentre = of_outline ? descriptors[i].outline_barycentre : descriptors[i].barycentre;
+        if (barycentre.allFinite()) points.push_back(stack.frame.point(barycentre, stack.slices[i].height));
     }
-    return list;
+    return points;
 }
 
 SliceLine mean_line(const SliceFrame& frame, const std::vector<Point>& barycentres) {
@@ -98,7 +99,7 @@ SliceLine regression_line(const SliceFrame& frame, const std::vector<Point>& bar
     for (const auto& p : barycentres) points.push_back(eigen(p));
     bool distinct = false;
     for (const auto& p : points) distinct = distinct || p != points[0];
-    if (!distinct) fail_input("slices", "no line goes through fewer than two barycentres", "cut more slices");
+    if (!distinct) fail_input("slices", "a line cannot be fitted to fewer than two distinct barycentres", "use more slices");
     const LineFit fit = fit_line(points, std::vector<double>(points.size(), 1));
     const Vector direction = unit_vector(vector_of(fit.direction));
     return {point_of(fit.point), direction * frame.normal < 0 ? -direction : direction};
@@ -116,7 +117,7 @@ Straightness straightness(const std::vector<Point>& barycentres, const SliceLine
 }
 
 Straightness straightness(const std::vector<Point>& barycentres, const std::vector<Point>& polyline) {
-    if (polyline.empty()) fail_usage("an axis without points is given", "give a poly-line");
+    if (polyline.empty()) fail_usage("the axis has no points", "give a poly-line");
     std::vector<double> distances;
     double length = 0;
     for (std::size_t i = 1; i < polyline.size(); ++i) length += std::sqrt((polyline[i] - polyline[i - 1]).squared_length());
@@ -154,7 +155,7 @@ ThicknessHomogeneity thickness_homogeneity(const std::vector<Slice>& slices) {
 Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& descriptors, const TubeOptions& options) {
     check_options(options, "tube");
     if (descriptors.size() != stack.slices.size())
-        fail_usage("there are not as many descriptors as slices", "describe each slice");
+        fail_usage("the number of descriptors differs from the number of slices", "describe each slice");
     const std::size_t n = stack.slices.size();
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -162,24 +163,24 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
                      [&](std::size_t a, std::size_t b) { return stack.slices[a].height < stack.slices[b].height; });
     Tube tube;
     tube.cluster.assign(n, -1);
-    std::vector<std::size_t> able;
+    std::vector<std::size_t> candidates;
     for (std::size_t i = 0; i < n; ++i)
-        if (may_belong(stack.slices[order[i]], descriptors[order[i]], options)) able.push_back(i);
-    if (able.size() < 2) {
-        tube.reason = "fewer than two slices are round, complete and of one outer contour";
+        if (may_belong(stack.slices[order[i]], descriptors[order[i]], options)) candidates.push_back(i);
+    if (candidates.size() < 2) {
+        tube.reason = "fewer than two slices are round, complete and have exactly one outer contour";
         return tube;
     }
     std::vector<double> radii;
-    for (const std::size_t i : able) radii.push_back(descriptors[order[i]].equivalent_radius);
+    for (const std::size_t i : candidates) radii.push_back(descriptors[order[i]].equivalent_radius);
     const double median = summarise(radii).median;
-    Eigen::MatrixXd samples(able.size(), 3);
-    for (std::size_t k = 0; k < able.size(); ++k) {
-        const auto& d = descriptors[order[able[k]]];
+    Eigen::MatrixXd samples(candidates.size(), 3);
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const auto& d = descriptors[order[candidates[k]]];
         samples.row(static_cast<Eigen::Index>(k)) << d.equivalent_radius / median, d.eccentricity,
             d.roundness_equivalent_relative;
     }
     const auto labels = similar_groups(samples, options);
-    for (std::size_t k = 0; k < able.size(); ++k) tube.cluster[able[k]] = labels[k];
+    for (std::size_t k = 0; k < candidates.size(); ++k) tube.cluster[candidates[k]] = labels[k];
     double longest = 0;
     for (std::size_t i = 0; i < n;) {
         std::size_t j = i;
@@ -188,7 +189,7 @@ Tube tubular_part(const SliceStack& stack, const std::vector<SliceDescriptors>& 
         if (tube.cluster[i] >= 0 && length > longest) longest = length, tube.first = i, tube.last = j, tube.found = true;
         i = j + 1;
     }
-    if (!tube.found) tube.reason = "no two slices one above the other are of one group";
+    if (!tube.found) tube.reason = "no two consecutive slices belong to the same group";
     return tube;
 }
 

@@ -9,6 +9,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/geom/planar.h"
 
+#include <fmt/core.h>
+
 #include <array>
 
 namespace ostraka {
@@ -162,7 +164,7 @@ SliceDescriptors describe_slice(const Slice& slice) {
     PlaneSegments outline;
     const Contour* main = nullptr;
     std::vector<Vector2d> corners;
-    PolygonMoments whole, filled;
+    PolygonMoments material, filled;
     double perimeter = 0, holes = 0, outline_length = 0;
     Walls walls;
     const auto parts = components(slice);
@@ -171,7 +173,7 @@ SliceDescriptors describe_slice(const Slice& slice) {
     for (const Slice& part : parts) {
         ++d.components;
         for (const Contour& contour : part.contours) {
-            add(whole, polygon_moments(contour.points, reference));
+            add(material, polygon_moments(contour.points, reference));
             perimeter += contour.length;
             if (contour.hole) ++d.holes, holes -= contour.area;
         }
@@ -189,11 +191,11 @@ SliceDescriptors describe_slice(const Slice& slice) {
     }
     d.euler_number = d.components - d.holes;
     if (filled.area > 0) {
-        d.area = whole.area, d.perimeter = perimeter, d.hole_area = holes;
-        d.barycentre = reference + whole.first / whole.area;
+        d.area = material.area, d.perimeter = perimeter, d.hole_area = holes;
+        d.barycentre = reference + material.first / material.area;
         d.outline_area = filled.area, d.outline_perimeter = outline_length;
         d.outline_barycentre = reference + filled.first / filled.area;
-        d.hole_area_ratio = holes / (whole.area + holes);
+        d.hole_area_ratio = holes / (material.area + holes);
         d.compactness = 4 * pi * d.area / (perimeter * perimeter);
         describe_outline(d, outline, corners);
         describe_roundness(d, *main);
@@ -251,15 +253,15 @@ std::vector<NamedDescriptor> list_descriptors(const SliceDescriptors& d) {
 }
 
 std::vector<SliceDescriptors> describe_slices(const std::vector<Slice>& slices) {
-    std::vector<SliceDescriptors> list(slices.size());
+    std::vector<SliceDescriptors> descriptors(slices.size());
     parallel_for(
-        slices.size(), [&](std::size_t i) { list[i] = describe_slice(slices[i]); }, 1);
-    return list;
+        slices.size(), [&](std::size_t i) { descriptors[i] = describe_slice(slices[i]); }, 1);
+    return descriptors;
 }
 
 std::vector<double> thickness_profile(const Slice& slice, int directions) {
     if (directions < 1 || directions > 1000000)
-        fail_usage("the profile has " + std::to_string(directions) + " directions", "use 1 to a million");
+        fail_usage(fmt::format("the number of directions of the profile is {}", directions), "use 1 to a million");
     if (!slice.completeness.has_areas()) return {};
     // Components and holes are sorted by decreasing size.
     const auto parts = components(slice);

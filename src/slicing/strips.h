@@ -30,8 +30,8 @@ public:
         low_ = high_ = edges_.front().a.y();
         for (const auto& edge : edges_) low_ = std::min(low_, edge.a.y()), high_ = std::max(high_, edge.a.y());
         // The number of strips for which the number of entries is about twice the number of edges.
-        const double wanted = variation > 0 ? double(edges_.size()) * (high_ - low_) / variation : 1;
-        strips_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, double(edges_.size())));
+        const double target_count = variation > 0 ? double(edges_.size()) * (high_ - low_) / variation : 1;
+        strips_ = static_cast<std::size_t>(std::clamp(target_count, 1.0, double(edges_.size())));
         first_.assign(strips_ + 1, 0);
         for (const auto& edge : edges_) {
             const auto [from, to] = range(edge);
@@ -75,15 +75,15 @@ public:
         on.erase(std::unique(on.begin(), on.end()), on.end());
         // An odd number of crossings is inside.
         std::sort(crossed.begin(), crossed.end());
-        std::size_t kept = 0;
+        std::size_t kept_count = 0;
         for (std::size_t i = 0; i < crossed.size();) {
             std::size_t j = i;
             while (j < crossed.size() && crossed[j] == crossed[i]) ++j;
             const int contour = crossed[i];
-            if ((j - i) % 2 == 1 && !std::binary_search(on.begin(), on.end(), contour)) crossed[kept++] = contour;
+            if ((j - i) % 2 == 1 && !std::binary_search(on.begin(), on.end(), contour)) crossed[kept_count++] = contour;
             i = j;
         }
-        crossed.resize(kept);
+        crossed.resize(kept_count);
     }
 
     /// Calls visit(edge, edge) once for every pair of edges whose boxes overlap within the tolerance, except consecutive edges
@@ -121,8 +121,8 @@ private:
     }
     [[nodiscard]] std::size_t strip(double y) const {
         if (!(high_ > low_)) return 0;
-        const double at = (y - low_) / (high_ - low_) * double(strips_);
-        return static_cast<std::size_t>(std::clamp(at, 0.0, double(strips_ - 1)));
+        const double position = (y - low_) / (high_ - low_) * double(strips_);
+        return static_cast<std::size_t>(std::clamp(position, 0.0, double(strips_ - 1)));
     }
     [[nodiscard]] std::pair<std::size_t, std::size_t> range(const Edge& edge) const {
         return std::minmax(strip(edge.a.y()), strip(edge.b.y()));

@@ -38,24 +38,24 @@ TEST(AxisCommand, OfAPartWithFiles) {
     EXPECT_NE(girth.out.find(" 100 %"), std::string::npos) << girth.out;
 }
 
-TEST(AxisCommand, NoneIsAnAnswerAndBadInputIsNot) {
+TEST(AxisCommand, AMissingAxisIsAResultAndInvalidInputIsAnError) {
     const Scratch scratch;
     const std::string ball = (scratch / "ball.ply").string(), out = (scratch / "o.obj").string();
     ASSERT_EQ(run_command("mesh make sphere " + ball + " --vertices 500").code, 0);
-    const auto none = run_command("axis " + ball);
-    EXPECT_EQ(none.code, 3);
-    EXPECT_NE(none.out.find("has no axis: it is like a part of a sphere"), std::string::npos) << none.out;
-    const auto expect = [&](const std::string& line, int code, const std::string& words) {
+    const auto no_axis = run_command("axis " + ball);
+    EXPECT_EQ(no_axis.code, 3);
+    EXPECT_NE(no_axis.out.find("has no axis: it resembles a part of a sphere"), std::string::npos) << no_axis.out;
+    const auto expect_failure = [&](const std::string& line, int code, const std::string& message) {
         const auto result = run_command(line);
         EXPECT_EQ(result.code, code) << line << result.err;
-        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
     };
-    expect("axis " + pot + "--annotation 99", 1, "has no annotation '99'");
-    expect("axis " + pot, 2, "no annotation is named");
-    expect("axis " + ball + " --annotation 1", 2, "there are no annotations");
-    expect("axis " + ball + " --output " + (scratch / "o.txt").string(), 2, ".json or .obj");
-    expect("axis " + ball + " --method guess", 2, "guess");
-    expect("axis " + ball + " --tolerance -1", 2, "tolerance");
-    expect("axis " + pot + "--annotation 1 --annotation 12", 2, "no axis together");
+    expect_failure("axis " + pot + "--annotation 99", 1, "has no annotation '99'");
+    expect_failure("axis " + pot, 2, "no annotation is named");
+    expect_failure("axis " + ball + " --annotation 1", 2, "there are no annotations");
+    expect_failure("axis " + ball + " --output " + (scratch / "o.txt").string(), 2, ".json or .obj");
+    expect_failure("axis " + ball + " --method guess", 2, "guess");
+    expect_failure("axis " + ball + " --tolerance -1", 2, "tolerance");
+    expect_failure("axis " + pot + "--annotation 1 --annotation 12", 2, "no axis together");
     EXPECT_EQ(count_files(scratch.path()), 1U);
 }

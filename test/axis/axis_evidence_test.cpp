@@ -23,17 +23,17 @@ Mesh wall(double degrees) {
     }));
 }
 
-AxisEvidence asked(const Mesh& mesh, const AxisGuess& guess) {
-    std::vector<Index> all(mesh.number_of_faces());
-    std::iota(all.begin(), all.end(), Index(0));
-    return AxisWitness(mesh, all).at(guess);
+AxisEvidence evidence_at(const Mesh& mesh, const AxisGuess& guess) {
+    std::vector<Index> faces(mesh.number_of_faces());
+    std::iota(faces.begin(), faces.end(), Index(0));
+    return AxisWitness(mesh, faces).at(guess);
 }
 
-TEST(AxisEvidence, StepsLeadToTheAxis) {
+TEST(AxisEvidence, StepsConvergeToTheAxis) {
     const Mesh mesh = wall(100);
     AxisGuess guess{{0.2, -0.1, 3}, Vector3d(0.02, 0.03, 1).normalized(), Vector3d::UnitX(), Vector3d::UnitY()};
     for (int round = 0; round < 8; ++round) {
-        const AxisEvidence evidence = asked(mesh, guess);
+        const AxisEvidence evidence = evidence_at(mesh, guess);
         EXPECT_GT(evidence.round, 0.9);
         const Vector4d step = -evidence.information.ldlt().solve(evidence.gradient);
         guess.point = evidence.place + step[0] * guess.u + step[1] * guess.w;
@@ -43,32 +43,32 @@ TEST(AxisEvidence, StepsLeadToTheAxis) {
     EXPECT_LT((guess.point - guess.direction * (guess.point.z() / guess.direction.z())).head<2>().norm(), 0.01);
 }
 
-TEST(AxisEvidence, AShortArcTellsLess) {
+TEST(AxisEvidence, AShortArcHasLessInformation) {
     const AxisGuess truth{{0, 0, 0}, Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
-    double before = 0;
+    double previous_information = 0;
     for (const double degrees : {10.0, 30.0, 90.0, 180.0}) {
-        const AxisEvidence evidence = asked(wall(degrees), truth);
+        const AxisEvidence evidence = evidence_at(wall(degrees), truth);
         EXPECT_GT(evidence.round, 0.99);
         EXPECT_LT(evidence.gradient.norm(), 1e-2 * std::sqrt(evidence.information.trace())) << degrees;
         // What is known of the shift that is known least, tilts free.
         const Eigen::Matrix4d covariance =
             (evidence.information + 1e-12 * evidence.information.trace() * Eigen::Matrix4d::Identity()).inverse();
-        const double known = 1 / covariance.topLeftCorner<2, 2>().trace();
-        EXPECT_GT(known, 2 * before) << degrees;
-        before = known;
+        const double information = 1 / covariance.topLeftCorner<2, 2>().trace();
+        EXPECT_GT(information, 2 * previous_information) << degrees;
+        previous_information = information;
     }
 }
 
-TEST(AxisEvidence, WhatIsNotRoundThereSaysSo) {
-    const AxisGuess across{
+TEST(AxisEvidence, ShapesThatAreNotRoundHaveLittleEvidence) {
+    const AxisGuess wrong_axis{
         {7, 7, 6}, Vector3d(1, -1, 1).normalized(), Vector3d(1, 1, 0).normalized(), Vector3d(-1, 1, 2).normalized()};
-    EXPECT_LT(asked(wall(90), across).round, 0.5);
-    const Mesh few = build_mesh(grid(2, 1, false, false, [](double s, double t) { return std::array<double, 3>{s, t, 0}; }));
-    std::vector<Index> all(few.number_of_faces());
-    std::iota(all.begin(), all.end(), Index(0));
-    const AxisWitness witness(few, all);
-    EXPECT_FALSE(witness.enough());
-    EXPECT_EQ(witness.at(across).round, 0);
+    EXPECT_LT(evidence_at(wall(90), wrong_axis).round, 0.5);
+    const Mesh coarse = build_mesh(grid(2, 1, false, false, [](double s, double t) { return std::array<double, 3>{s, t, 0}; }));
+    std::vector<Index> faces(coarse.number_of_faces());
+    std::iota(faces.begin(), faces.end(), Index(0));
+    const AxisWitness evaluator(coarse, faces);
+    EXPECT_FALSE(evaluator.enough());
+    EXPECT_EQ(evaluator.at(wrong_axis).round, 0);
 }
 
 }  // namespace

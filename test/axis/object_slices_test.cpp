@@ -20,7 +20,7 @@ Mesh lying() {
 
 }  // namespace
 
-TEST(ObjectSlices, HeightsAreOverTheLowestPlaceAlongTheAxis) {
+TEST(ObjectSlices, HeightsAreAboveTheLowestPointAlongTheAxis) {
     CutOptions options;
     options.places.count = 5;
     options.up = {0, 1, 1};
@@ -43,16 +43,16 @@ TEST(ObjectSlices, HeightsAreOverTheLowestPlaceAlongTheAxis) {
     EXPECT_FALSE(bent.curve.empty());
 }
 
-TEST(ObjectSlices, WhatHasNoSuchAxisSaysWhy) {
+TEST(ObjectSlices, ReportsWhyAnObjectHasNoSuchAxis) {
     CutOptions options;
     options.direction = AxisMethod::principal;
-    const CutObject none = cut_object(build_mesh(octahedron_sphere(3)), {}, options);
-    EXPECT_TRUE(none.slices.empty());
-    EXPECT_NE(none.reason.find("no principal axis to slice along"), std::string::npos) << none.reason;
+    const CutObject unsliced = cut_object(build_mesh(octahedron_sphere(3)), {}, options);
+    EXPECT_TRUE(unsliced.slices.empty());
+    EXPECT_NE(unsliced.reason.find("no principal axis to slice along"), std::string::npos) << unsliced.reason;
     EXPECT_THROW(cut_object(build_mesh({{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 1, 2}}}), {}, options), Error);
 }
 
-TEST(ObjectSlices, AxesThatSlicesAreComparedWith) {
+TEST(ObjectSlices, ComparedAxes) {
     const Mesh mesh = lying();
     CutOptions options;
     options.up = {0, 1, 0};
@@ -67,7 +67,7 @@ TEST(ObjectSlices, AxesThatSlicesAreComparedWith) {
     options.places.heights = {1, 2};
     const auto two = compared_axes(mesh, {}, cut_object(mesh, {}, options), false);
     ASSERT_EQ(two.size(), 2U);
-    EXPECT_EQ(two[1].reason, "two places are always in line");
+    EXPECT_EQ(two[1].reason, "two barycentres are always collinear");
     options.places.heights = {1};
     EXPECT_TRUE(compared_axes(mesh, {}, cut_object(mesh, {}, options), true).empty());
 }

@@ -21,7 +21,7 @@ struct Cage {
     Mesh mesh;
 };
 
-inline std::vector<Cage> made_cages() {
+inline std::vector<Cage> synthetic_cages() {
     return {{"sphere", build_mesh(octahedron_sphere(2))},
             {"torus", build_mesh(torus(16, 8))},
             {"box", build_mesh(box(3))},
@@ -32,28 +32,28 @@ inline std::vector<Cage> made_cages() {
 
 /// The cages of the shared data: every OBJ file with "cage", "bounding" or "deformed" in its name.
 inline std::vector<Cage> shared_cages() {
-    std::vector<Cage> list;
+    std::vector<Cage> read_cages;
     for (const char* folder : {"cage-hand-made", "cage-mvc2005-armadillo", "cage-supercages-arm"}) {
-        const Path place = Path(OSTRAKA_SHARED_DATA) / folder;
+        const Path folder_path = Path(OSTRAKA_SHARED_DATA) / folder;
         std::error_code code;
         std::vector<Path> files;
-        for (const auto& entry : std::filesystem::directory_iterator(place, code)) files.push_back(entry.path());
+        for (const auto& entry : std::filesystem::directory_iterator(folder_path, code)) files.push_back(entry.path());
         std::sort(files.begin(), files.end());
         for (const Path& file : files) {
             const std::string name = file.filename().string();
             if (extension(file) != ".obj" || (name.find("cage") == std::string::npos &&
                                               name.find("bounding") == std::string::npos && !name.starts_with("deformed")))
                 continue;
-            list.push_back({std::string(folder) + "/" + name, read_mesh(file).mesh});
+            read_cages.push_back({std::string(folder) + "/" + name, read_mesh(file).mesh});
         }
     }
-    return list;
+    return read_cages;
 }
 
 inline std::vector<Cage> cages() {
-    std::vector<Cage> list = made_cages();
-    for (Cage& cage : shared_cages()) list.push_back(std::move(cage));
-    return list;
+    std::vector<Cage> all_cages = synthetic_cages();
+    for (Cage& cage : shared_cages()) all_cages.push_back(std::move(cage));
+    return all_cages;
 }
 
 /// Points on the vertices, edges and faces of a cage, at distances of 1e-9 to 1e-3 of the diagonal on both sides, and random
@@ -63,30 +63,31 @@ inline std::vector<Point> places(const Mesh& cage) {
     std::uniform_real_distribution<double> unit(0, 1);
     const double diagonal = box_diagonal(cage);
     std::vector<Point> points;
-    const auto around = [&](const Point& p) {
+    const auto add_near = [&](const Point& p) {
         points.push_back(p);
-        for (const double share : {1e-9, 1e-7, 1e-5, 1e-3}) {
-            const Vector way(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
-            points.push_back(p + share * diagonal / std::sqrt(way.squared_length()) * way);
+        for (const double fraction : {1e-9, 1e-7, 1e-5, 1e-3}) {
+            const Vector direction(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
+            points.push_back(p + fraction * diagonal / std::sqrt(direction.squared_length()) * direction);
         }
     };
-    for (const Vertex v : cage.vertices()) around(cage.point(v));
+    for (const Vertex v : cage.vertices()) add_near(cage.point(v));
     for (const Edge e : cage.edges()) {
         const Point a = cage.point(cage.vertex(e, 0)), b = cage.point(cage.vertex(e, 1));
-        around(CGAL::midpoint(a, b));
-        around(a + unit(random) * (b - a));
+        add_near(CGAL::midpoint(a, b));
+        add_near(a + unit(random) * (b - a));
     }
     for (const Face f : cage.faces()) {
         const auto [a, b, c] = corners(cage, f);
-        around(centroid(cage, f));
+        add_near(centroid(cage, f));
         double s = unit(random), t = unit(random);
         if (s + t > 1) s = 1 - s, t = 1 - t;
-        around(cage.point(a) + s * (cage.point(b) - cage.point(a)) + t * (cage.point(c) - cage.point(a)));
+        add_near(cage.point(a) + s * (cage.point(b) - cage.point(a)) + t * (cage.point(c) - cage.point(a)));
     }
     const CGAL::Bbox_3 box = bounding_box(cage);
     for (int i = 0; i < 1000; ++i) {
-        const auto at = [&](double low, double high) { return low + (1.2 * unit(random) - 0.1) * (high - low); };
-        points.emplace_back(at(box.xmin(), box.xmax()), at(box.ymin(), box.ymax()), at(box.zmin(), box.zmax()));
+        const auto random_between = [&](double low, double high) { return low + (1.2 * unit(random) - 0.1) * (high - low); };
+        points.emplace_back(random_between(box.xmin(), box.xmax()), random_between(box.ymin(), box.ymax()),
+                            random_between(box.zmin(), box.zmax()));
     }
     return points;
 }
@@ -120,8 +121,8 @@ inline double distance(const Mesh& cage, const Point& p) {
         const auto corner = corners(cage, f);
         for (std::size_t k = 0; k < 3; ++k) t[k] = CGAL::ORIGIN + (cage.point(corner[k]) - p) / diagonal;
         const auto b = nearest_barycentric(t[0], t[1], t[2], CGAL::ORIGIN);
-        const Vector way = b[0] * (t[0] - CGAL::ORIGIN) + b[1] * (t[1] - CGAL::ORIGIN) + b[2] * (t[2] - CGAL::ORIGIN);
-        minimum = std::min(minimum, std::sqrt(way.squared_length()));
+        const Vector offset = b[0] * (t[0] - CGAL::ORIGIN) + b[1] * (t[1] - CGAL::ORIGIN) + b[2] * (t[2] - CGAL::ORIGIN);
+        minimum = std::min(minimum, std::sqrt(offset.squared_length()));
     }
     return minimum;
 }

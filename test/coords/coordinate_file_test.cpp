@@ -17,9 +17,9 @@ struct Saved : test::Scratch {
         write_coordinates(file, c, mesh, cage, certify(c, cage, points_of(mesh)), Provenance{"test", {}, {}});
         return c;
     }
-    std::string problem(const Mesh& of, const Mesh& in) const {
+    std::string problem(const Mesh& given_mesh, const Mesh& given_cage) const {
         try {
-            (void)read_coordinates(file, of, in);
+            (void)read_coordinates(file, given_mesh, given_cage);
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::input);
             EXPECT_FALSE(error.remedy().empty()) << error.what();
@@ -30,17 +30,17 @@ struct Saved : test::Scratch {
     }
     std::string problem() const { return problem(mesh, cage); }
 };
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST(CoordinateFile, WhatIsWrittenIsReadToTheBit) {
+TEST(CoordinateFile, RoundTripIsExact) {
     const Saved saved;
     for (const char* kind : {"mean-value", "green"}) {
-        const Coordinates c = saved.save(kind), back = read_coordinates(saved.file, saved.mesh, saved.cage);
-        EXPECT_EQ(back.kind, kind);
-        EXPECT_EQ(back.vertex, c.vertex);
-        EXPECT_EQ(back.normal.size(), c.normal.size());
+        const Coordinates c = saved.save(kind), reread = read_coordinates(saved.file, saved.mesh, saved.cage);
+        EXPECT_EQ(reread.kind, kind);
+        EXPECT_EQ(reread.vertex, c.vertex);
+        EXPECT_EQ(reread.normal.size(), c.normal.size());
         if (c.has_normals()) {
-            EXPECT_EQ(back.normal, c.normal);
+            EXPECT_EQ(reread.normal, c.normal);
         }
         // And by anybody else: a plain array.
         const auto array = read_npy(saved.file);
@@ -52,44 +52,44 @@ TEST(CoordinateFile, WhatIsWrittenIsReadToTheBit) {
     EXPECT_EQ(test::count_files(saved.path()), 3U);
 }
 
-TEST(CoordinateFile, AnotherMeshOrCageIsRefused) {
+TEST(CoordinateFile, RejectsAnotherMeshOrCage) {
     const Saved saved;
     saved.save("mean-value");
     EXPECT_EQ(saved.problem(), "accepted");
-    Mesh other = saved.mesh;
-    other.point(Vertex(5)) = Point(0.5, 0.5, 0.5);
-    EXPECT_TRUE(holds(saved.problem(other, saved.cage), "another mesh (its checksum"));
-    EXPECT_TRUE(holds(saved.problem(build_mesh(test::box(3)), saved.cage), "another mesh, of 18 vertices"));
-    other = saved.cage;
-    other.point(Vertex(0)) = Point(-1, -1, -1);
-    EXPECT_TRUE(holds(saved.problem(saved.mesh, other), "another cage (its checksum"));
-    EXPECT_TRUE(holds(saved.problem(saved.mesh, build_mesh(test::box(2))), "another cage, of 8 vertices"));
+    Mesh changed = saved.mesh;
+    changed.point(Vertex(5)) = Point(0.5, 0.5, 0.5);
+    EXPECT_TRUE(contains(saved.problem(changed, saved.cage), "another mesh (its checksum"));
+    EXPECT_TRUE(contains(saved.problem(build_mesh(test::box(3)), saved.cage), "another mesh, with 18 vertices"));
+    changed = saved.cage;
+    changed.point(Vertex(0)) = Point(-1, -1, -1);
+    EXPECT_TRUE(contains(saved.problem(saved.mesh, changed), "another cage (its checksum"));
+    EXPECT_TRUE(contains(saved.problem(saved.mesh, build_mesh(test::box(2))), "another cage, with 8 vertices"));
 }
 
-TEST(CoordinateFile, ArraysThatChangedAreRefused) {
+TEST(CoordinateFile, RejectsChangedArrays) {
     const Saved saved;
     const Coordinates c = saved.save("green");
-    const std::string good = read_file(saved.file);
+    const std::string original = read_file(saved.file);
     std::vector<double> values(c.vertex.data(), c.vertex.data() + c.vertex.size());
     values[7] += 1e-15;
     write_npy(saved.file, values, {18, 8});
-    EXPECT_TRUE(holds(saved.problem(), "its checksum differs"));
+    EXPECT_TRUE(contains(saved.problem(), "its checksum differs"));
     values[7] = NAN;
     write_npy(saved.file, values, {18, 8});
-    EXPECT_TRUE(holds(saved.problem(), "weight 7 is not finite"));
+    EXPECT_TRUE(contains(saved.problem(), "weight 7 is not finite"));
     write_npy(saved.file, values, {8, 18});
-    EXPECT_TRUE(holds(saved.problem(), "8 rows and 18 columns, not 18 and 8"));
+    EXPECT_TRUE(contains(saved.problem(), "8 rows and 18 columns, not 18 and 8"));
     write_npy(saved.file, std::vector<std::int64_t>(144, 1), {18, 8});
-    EXPECT_TRUE(holds(saved.problem(), "float64"));
-    write_file(saved.file, good);
+    EXPECT_TRUE(contains(saved.problem(), "float64"));
+    write_file(saved.file, original);
     EXPECT_EQ(saved.problem(), "accepted");
     std::filesystem::remove(saved / "ball.normal.npy");
-    EXPECT_TRUE(holds(saved.problem(), "cannot be opened"));
+    EXPECT_TRUE(contains(saved.problem(), "cannot be opened"));
     std::filesystem::remove(saved.header);
-    EXPECT_TRUE(holds(saved.problem(), "no header ball.coordinates.json"));
+    EXPECT_TRUE(contains(saved.problem(), "no header ball.coordinates.json"));
 }
 
-/// Writes an array anew, and its checksum into the header.
+/// Writes an array again, and its checksum into the header.
 void replace_array(const Saved& saved, const char* name, const std::vector<double>& values, std::size_t columns) {
     const std::string old = sha256(read_file(saved / name));
     write_npy(saved / name, values, {values.size() / columns, columns});
@@ -98,66 +98,66 @@ void replace_array(const Saved& saved, const char* name, const std::vector<doubl
     write_file(saved.header, text);
 }
 
-TEST(CoordinateFile, RowsThatDoNotSumToOneAreRefused) {
+TEST(CoordinateFile, RejectsRowsThatDoNotSumToOne) {
     const Saved saved;
     for (const char* kind : {"mean-value", "green"}) {
         const Coordinates c = saved.save(kind);
-        const std::vector<double> good(c.vertex.data(), c.vertex.data() + c.vertex.size());
-        for (const double wrong : {good[5 * 8 + 3] + 1e-4, 1e300, -1e308, 0.0}) {
-            std::vector<double> values = good;
-            values[5 * 8 + 3] = wrong;
+        const std::vector<double> original(c.vertex.data(), c.vertex.data() + c.vertex.size());
+        for (const double invalid : {original[5 * 8 + 3] + 1e-4, 1e300, -1e308, 0.0}) {
+            std::vector<double> values = original;
+            values[5 * 8 + 3] = invalid;
             replace_array(saved, "ball.npy", values, 8);
-            EXPECT_TRUE(holds(saved.problem(), "row 5 do not sum to 1")) << kind << ' ' << wrong << saved.problem();
+            EXPECT_TRUE(contains(saved.problem(), "row 5 do not sum to 1")) << kind << ' ' << invalid << saved.problem();
         }
-        std::vector<double> huge = good;
+        std::vector<double> huge = original;
         for (std::size_t i = 0; i < 8; ++i) huge[i] = 1.7e308;
         replace_array(saved, "ball.npy", huge, 8);
-        EXPECT_TRUE(holds(saved.problem(), "row 0 do not sum to 1")) << kind;
-        replace_array(saved, "ball.npy", good, 8);
+        EXPECT_TRUE(contains(saved.problem(), "row 0 do not sum to 1")) << kind;
+        replace_array(saved, "ball.npy", original, 8);
         EXPECT_EQ(saved.problem(), "accepted");
     }
 }
 
-TEST(CoordinateFile, NormalWeightsThatMoveAPointAtRestAreRefused) {
+TEST(CoordinateFile, RejectsNormalWeightsThatMoveAPointAtRest) {
     const Saved saved;
     const Coordinates c = saved.save("green");
     std::vector<double> values(c.normal.data(), c.normal.data() + c.normal.size());
-    for (const double wrong : {values[4 * 12] + 1e-4, 1e300}) {
-        values[4 * 12] = wrong;
+    for (const double invalid : {values[4 * 12] + 1e-4, 1e300}) {
+        values[4 * 12] = invalid;
         replace_array(saved, "ball.normal.npy", values, 12);
-        EXPECT_TRUE(holds(saved.problem(), "row 4 move their point")) << saved.problem();
+        EXPECT_TRUE(contains(saved.problem(), "row 4 do not reproduce their point")) << saved.problem();
     }
 }
 
-TEST(CoordinateFile, TheKindSaysWhetherThereAreNormals) {
+TEST(CoordinateFile, TheKindDeterminesWhetherThereAreNormals) {
     const Saved saved;
     saved.save("green");
-    const std::string good = read_file(saved.header);
+    const std::string original = read_file(saved.header);
     const auto kind_is = [&](const std::string& kind) {
-        std::string text = good;
+        std::string text = original;
         text.replace(text.find("\"green\""), 7, '"' + kind + '"');
         write_file(saved.header, text);
         return saved.problem();
     };
-    EXPECT_TRUE(holds(kind_is("mean-value"), "mean-value coordinates have no normal weights"));
-    EXPECT_TRUE(holds(kind_is("grean"), "kind 'grean' are not known"));
+    EXPECT_TRUE(contains(kind_is("mean-value"), "mean-value coordinates have no normal weights"));
+    EXPECT_TRUE(contains(kind_is("grean"), "kind of coordinates 'grean' is unknown"));
     EXPECT_EQ(kind_is("green"), "accepted");
-    std::string text = good;
+    std::string text = original;
     text.replace(text.find("\"normal\""), 8, "\"namrol\"");
     write_file(saved.header, text);
-    EXPECT_TRUE(holds(saved.problem(), "green coordinates need normal weights")) << saved.problem();
+    EXPECT_TRUE(contains(saved.problem(), "green coordinates need normal weights")) << saved.problem();
 }
 
-TEST(CoordinateFile, HeadersLeadNowhereElse) {
+TEST(CoordinateFile, HeadersMustNotReferOutsideTheFolder) {
     const Saved saved;
     saved.save("mean-value");
     std::string text = read_file(saved.header);
     text.replace(text.find("\"ball.npy\""), 10, "\"../../x.npy\"");
     write_file(saved.header, text);
-    EXPECT_TRUE(holds(saved.problem(), "'../../x.npy' instead of ball.npy"));
+    EXPECT_TRUE(contains(saved.problem(), "'../../x.npy' instead of ball.npy"));
 }
 
-TEST(CoordinateFile, WhatDoesNotFitIsNotWritten) {
+TEST(CoordinateFile, RejectsMismatchedCoordinatesOnWriting) {
     const test::Scratch scratch;
     const Mesh cage = build_mesh(test::box(1)), mesh = build_mesh(test::moved(test::octahedron_sphere(0), 0.4, {0.5, 0.5, 0.5}));
     Coordinates c = compute_coordinates("mean-value", cage, mesh);
@@ -169,26 +169,26 @@ TEST(CoordinateFile, WhatDoesNotFitIsNotWritten) {
     EXPECT_EQ(test::count_files(scratch.path()), 0U);
 }
 
-TEST(CoordinateFile, DamagedFilesAreRefusedOrTheSame) {
+TEST(CoordinateFile, DamagedFilesAreRejectedOrUnchanged) {
     const Saved saved;
     const Coordinates c = saved.save("green");
-    std::size_t refused = 0;
+    std::size_t rejected = 0;
     for (const char* name : {"ball.npy", "ball.normal.npy", "ball.coordinates.json"}) {
-        const std::string good = read_file(saved / name);
+        const std::string original = read_file(saved / name);
         for (std::uint64_t seed = 0; seed < 300; ++seed) {
-            write_file(saved / name, test::mutate(good, seed));
+            write_file(saved / name, test::mutate(original, seed));
             try {
-                const Coordinates back = read_coordinates(saved.file, saved.mesh, saved.cage);
+                const Coordinates reread = read_coordinates(saved.file, saved.mesh, saved.cage);
                 // The header may be hurt where it binds nothing (its certificate), the kind is text.
-                EXPECT_EQ(back.vertex, c.vertex) << name << ' ' << seed;
+                EXPECT_EQ(reread.vertex, c.vertex) << name << ' ' << seed;
             } catch (const Error& error) {
                 EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-                ++refused;
+                ++rejected;
             }
         }
-        write_file(saved / name, good);
+        write_file(saved / name, original);
     }
-    EXPECT_GT(refused, 600U);
+    EXPECT_GT(rejected, 600U);
 }
 
 }  // namespace

@@ -19,54 +19,54 @@ std::string problem(Work&& work) {
     }
     return "accepted";
 }
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST(Coordinates, BadInputIsRefusedWithWords) {
+TEST(Coordinates, InvalidInputIsRejectedWithMessages) {
     const Mesh cage = build_mesh(test::box(1));
     const std::vector<Point> points{{0.5, 0.5, 0.5}};
     for (const char* kind : {"mean-value", "green"}) {
-        const auto said = [&](const Mesh& mesh, const std::vector<Point>& p) {
+        const auto outcome = [&](const Mesh& mesh, const std::vector<Point>& p) {
             return problem([&] { return compute_coordinates(kind, mesh, p); });
         };
-        EXPECT_EQ(said(cage, points), "accepted");
-        EXPECT_TRUE(holds(said(Mesh(), points), "no faces"));
-        EXPECT_TRUE(holds(said(build_mesh(test::patch(3, 3)), points), "open"));
-        EXPECT_TRUE(holds(said(cage, {{0.5, 0.5, 0.5}, {NAN, 0, 0}}), "point 1: is not finite"));
-        EXPECT_TRUE(holds(said(cage, {{0.5, INFINITY, 0.5}}), "point 0"));
+        EXPECT_EQ(outcome(cage, points), "accepted");
+        EXPECT_TRUE(contains(outcome(Mesh(), points), "no faces"));
+        EXPECT_TRUE(contains(outcome(build_mesh(test::patch(3, 3)), points), "open"));
+        EXPECT_TRUE(contains(outcome(cage, {{0.5, 0.5, 0.5}, {NAN, 0, 0}}), "point 1: is not finite"));
+        EXPECT_TRUE(contains(outcome(cage, {{0.5, INFINITY, 0.5}}), "point 0"));
         Mesh broken = cage;
         broken.point(Vertex(3)) = Point(0, NAN, 0);
-        EXPECT_TRUE(holds(said(broken, points), "vertex 3 is not finite"));
+        EXPECT_TRUE(contains(outcome(broken, points), "vertex 3 is not finite"));
         Mesh flat = cage;
         for (const Vertex v : flat.vertices()) flat.point(v) = Point(1, 2, 3);
-        EXPECT_TRUE(holds(said(flat, points), "has no extent"));
+        EXPECT_TRUE(contains(outcome(flat, points), "has no extent"));
         Mesh garbage = cage;
         garbage.remove_vertex(garbage.add_vertex(Point(0, 0, 0)));
-        EXPECT_TRUE(holds(said(garbage, points), "removed"));
+        EXPECT_TRUE(contains(outcome(garbage, points), "removed"));
         EXPECT_EQ(compute_coordinates(kind, cage, std::vector<Point>()).vertex.rows(), 0);
     }
-    EXPECT_TRUE(holds(problem([&] { return compute_coordinates("no-such-kind", cage, points); }), "'no-such-kind'"));
+    EXPECT_TRUE(contains(problem([&] { return compute_coordinates("no-such-kind", cage, points); }), "'no-such-kind'"));
     CoordinateOptions options;
     options.snap = 1;
-    EXPECT_TRUE(holds(problem([&] { return compute_coordinates("mean-value", cage, points, options); }), "snap"));
+    EXPECT_TRUE(contains(problem([&] { return compute_coordinates("mean-value", cage, points, options); }), "snap"));
 }
 
 /// A box with a further vertex on one of its edges, at `share` of its length (0: at the place of the edge's first vertex), that
 /// only one side uses: the triangle between it and the edge has no area.
-Mesh with_flat_triangle(double share) {
+Mesh with_flat_triangle(double fraction) {
     TriangleSoup soup = test::box(1);
     const auto [u, v, w] = soup.triangles[0];
     const auto &a = soup.points[u], &b = soup.points[v];
     const auto m = static_cast<Index>(soup.points.size());
-    soup.points.push_back({a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])});
+    soup.points.push_back({a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1]), a[2] + fraction * (b[2] - a[2])});
     soup.triangles[0] = {u, m, w};
     soup.triangles.push_back({m, v, w});
     soup.triangles.push_back({u, v, m});
     return build_mesh(test::moved(soup, 0.7, {0.1, 0.2, 0.3}));
 }
 
-TEST(Coordinates, FlatTrianglesAndDoublePointsLeaveThemSound) {
-    for (const double share : {0.3, 0.0}) {
-        const Mesh cage = with_flat_triangle(share);
+TEST(Coordinates, AreValidWithFlatTrianglesAndDuplicatePoints) {
+    for (const double fraction : {0.3, 0.0}) {
+        const Mesh cage = with_flat_triangle(fraction);
         const auto points = test::places(cage);
         const Coordinates c = compute_coordinates("mean-value", cage, points);
         EXPECT_TRUE(c.vertex.allFinite());
@@ -95,20 +95,20 @@ TEST(Coordinates, FarFromTheOrigin) {
     EXPECT_LT(c.linear, 1e-11);
 }
 
-TEST(Coordinates, PointsFarOutsideAreNumbersOrAnError) {
+TEST(Coordinates, PointsFarOutsideGiveFiniteWeightsOrAnError) {
     const Mesh cage = build_mesh(test::octahedron_sphere(1));
-    for (const double far : {3.0, 10.0, 100.0, 1e4, 1e8, 1e16, 1e150, 1e300}) {
+    for (const double distance : {3.0, 10.0, 100.0, 1e4, 1e8, 1e16, 1e150, 1e300}) {
         try {
-            const std::vector<Point> points{{far, 0.2 * far, -0.1 * far}};
+            const std::vector<Point> points{{distance, 0.2 * distance, -0.1 * distance}};
             const Coordinates c = compute_coordinates("mean-value", cage, points);
-            EXPECT_TRUE(c.vertex.allFinite()) << far;
-            EXPECT_NEAR(c.vertex.sum(), 1, 1e-12 * std::max(1.0, c.vertex.cwiseAbs().sum())) << far;
-            if (far <= 100) {
-                EXPECT_LT(certify(c, cage, points).linear, 1e-6) << far;
+            EXPECT_TRUE(c.vertex.allFinite()) << distance;
+            EXPECT_NEAR(c.vertex.sum(), 1, 1e-12 * std::max(1.0, c.vertex.cwiseAbs().sum())) << distance;
+            if (distance <= 100) {
+                EXPECT_LT(certify(c, cage, points).linear, 1e-6) << distance;
             }
         } catch (const Error& error) {
-            EXPECT_TRUE(holds(error.problem(), "no mean value coordinates")) << far;
-            EXPECT_GT(far, 1e4);
+            EXPECT_TRUE(contains(error.problem(), "no mean value coordinates")) << distance;
+            EXPECT_GT(distance, 1e4);
         }
     }
 }
@@ -150,7 +150,7 @@ TEST(Coordinates, TheSameToTheBitForAnyNumberOfThreads) {
     EXPECT_EQ(a.vertex, WeightMatrix(b.vertex.colwise().reverse()));
 }
 
-TEST(Coordinates, AffineMapsOfTheCageAreFollowed) {
+TEST(Coordinates, FollowAffineMapsOfTheCage) {
     const Mesh cage = build_mesh(test::torus(16, 8));
     const auto points = test::places(cage);
     const auto map = [](const Point& p) { return Point(2 * p.x() - p.y() + 5, p.y() + 0.5 * p.z(), -p.z() + 0.1 * p.x() - 7); };
@@ -162,22 +162,23 @@ TEST(Coordinates, AffineMapsOfTheCageAreFollowed) {
         EXPECT_LT(std::sqrt((result[i] - map(points[i])).squared_length()), 1e-12);
         EXPECT_LT(std::sqrt((rest[i] - points[i]).squared_length()), 1e-13);
     }
-    EXPECT_TRUE(holds(problem([&] { return deformed(c, cage, points); }), "moved points"));
-    EXPECT_TRUE(holds(problem([&] { return deformed(c, build_mesh(test::box(1)), moved); }), "coordinates of 128 cage vertices"));
+    EXPECT_TRUE(contains(problem([&] { return deformed(c, cage, points); }), "moved points"));
+    EXPECT_TRUE(
+        contains(problem([&] { return deformed(c, build_mesh(test::box(1)), moved); }), "coordinates of 128 cage vertices"));
 }
 
-TEST(Coordinates, AFurtherKindNeedsNoChangeElsewhere) {
+TEST(Coordinates, AdditionalKindsCanBeRegistered) {
     add_coordinate_kind({"nearest", "all weight on the nearest vertex", true, false,
                          [](const Mesh& cage, const std::vector<Point>& points, const CoordinateOptions&) {
                              Coordinates c;
                              c.vertex.setZero(Eigen::Index(points.size()), Eigen::Index(cage.number_of_vertices()));
                              for (std::size_t i = 0; i < points.size(); ++i) {
-                                 Vertex best(0);
+                                 Vertex nearest(0);
                                  for (const Vertex v : cage.vertices())
-                                     if (CGAL::compare_distance_to_point(points[i], cage.point(v), cage.point(best)) ==
+                                     if (CGAL::compare_distance_to_point(points[i], cage.point(v), cage.point(nearest)) ==
                                          CGAL::SMALLER)
-                                         best = v;
-                                 c.vertex(Eigen::Index(i), best.idx()) = 1;
+                                         nearest = v;
+                                 c.vertex(Eigen::Index(i), nearest.idx()) = 1;
                              }
                              return c;
                          }});
@@ -196,33 +197,33 @@ TEST(Coordinates, AFurtherKindNeedsNoChangeElsewhere) {
     EXPECT_FALSE(certificate.holds());
 }
 
-TEST(Certificate, MeasuresWhatItSays) {
+TEST(Certificate, MeasuresTheProperties) {
     const Mesh cage = build_mesh(test::box(1));
     const std::vector<Point> points{{0.5, 0.5, 0.5}, {0.2, 0.3, 0.4}, {1.5, 0.5, 0.5}};
     Coordinates c = compute_coordinates("mean-value", cage, points);
-    const CoordinateCertificate good = certify(c, cage, points);
-    EXPECT_TRUE(good.holds());
-    EXPECT_LT(*good.lagrange, 1e-15);
-    EXPECT_LT(*good.edges, 1e-14);
-    EXPECT_LT(*good.on_faces, 1e-14);
+    const CoordinateCertificate valid = certify(c, cage, points);
+    EXPECT_TRUE(valid.holds());
+    EXPECT_LT(*valid.lagrange, 1e-15);
+    EXPECT_LT(*valid.edges, 1e-14);
+    EXPECT_LT(*valid.on_faces, 1e-14);
     // Only the point outside has negative weights: by hand.
     double negative = 0, sum = 0;
     for (Eigen::Index j = 0; j < 8; ++j)
         if (c.vertex(2, j) < 0) ++negative, sum -= c.vertex(2, j);
     EXPECT_GT(negative, 0);
-    EXPECT_DOUBLE_EQ(good.negative, negative / 24);
-    EXPECT_DOUBLE_EQ(good.negative_rows, 1.0 / 3);
-    EXPECT_DOUBLE_EQ(good.negative_sum, sum);
-    EXPECT_EQ(good.minimum, c.vertex.minCoeff());
+    EXPECT_DOUBLE_EQ(valid.negative, negative / 24);
+    EXPECT_DOUBLE_EQ(valid.negative_rows, 1.0 / 3);
+    EXPECT_DOUBLE_EQ(valid.negative_sum, sum);
+    EXPECT_EQ(valid.minimum, c.vertex.minCoeff());
     c.vertex(1, 4) += 0.25;
-    const CoordinateCertificate bad = certify(c, cage, points);
-    EXPECT_NEAR(bad.partition, 0.25, 1e-15);
-    EXPECT_NEAR(bad.linear, 0.25 * std::sqrt((cage.point(Vertex(4)) - points[1]).squared_length()) / std::sqrt(3), 1e-15);
-    EXPECT_EQ(bad.worst_linear, 1U);
-    EXPECT_FALSE(bad.holds());
+    const CoordinateCertificate invalid = certify(c, cage, points);
+    EXPECT_NEAR(invalid.partition, 0.25, 1e-15);
+    EXPECT_NEAR(invalid.linear, 0.25 * std::sqrt((cage.point(Vertex(4)) - points[1]).squared_length()) / std::sqrt(3), 1e-15);
+    EXPECT_EQ(invalid.worst_linear, 1U);
+    EXPECT_FALSE(invalid.holds());
     c.vertex(0, 0) = NAN;
-    EXPECT_TRUE(holds(problem([&] { return certify(c, cage, points); }), "point 0 are not finite"));
-    EXPECT_TRUE(holds(problem([&] { return certify(c, cage, {{0, 0, 0}}); }), "3 rows"));
+    EXPECT_TRUE(contains(problem([&] { return certify(c, cage, points); }), "point 0 are not finite"));
+    EXPECT_TRUE(contains(problem([&] { return certify(c, cage, {{0, 0, 0}}); }), "3 rows"));
 }
 
 TEST(Influence, OfAndOn) {
@@ -235,9 +236,9 @@ TEST(Influence, OfAndOn) {
     EXPECT_EQ(influence_on(c, {0, 2}, InfluenceBy::sum), (std::vector<double>{1.5, 0.75, -0.25}));
     EXPECT_EQ(carriers(c.vertex), (std::vector<Index>{3, 3, 1}));
     EXPECT_EQ(carriers(c.vertex, 0.8), (std::vector<Index>{2, 2, 1}));
-    EXPECT_TRUE(holds(problem([&] { return influence_of(c, 3); }), "no cage vertex 3"));
-    EXPECT_TRUE(holds(problem([&] { return influence_on(c, {7}); }), "point 7"));
-    EXPECT_TRUE(holds(problem([&] { return influence_on(c, {}); }), "none"));
+    EXPECT_TRUE(contains(problem([&] { return influence_of(c, 3); }), "no cage vertex 3"));
+    EXPECT_TRUE(contains(problem([&] { return influence_on(c, {7}); }), "point 7"));
+    EXPECT_TRUE(contains(problem([&] { return influence_on(c, {}); }), "none"));
 }
 
 }  // namespace

@@ -21,17 +21,17 @@ double units(double value, long double truth) {
 TEST(Functions, Angle) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> unit(0, 1), power(-300, 300);
-    double worst = 0;
+    double max_error = 0;
     for (int i = 0; i < 2'000'000; ++i) {
         const double a = std::numbers::pi * unit(random), r = std::pow(10, 0.5 * power(random));
         double y = r * std::sin(a), x = r * std::cos(a);
         if (i % 4 == 1) y *= std::pow(10, -15 * unit(random));
         if (i % 4 == 2) x *= std::pow(10, -15 * unit(random));
         if (i % 4 == 3) y = r * unit(random) * 0.01 + std::fabs(x);
-        worst = std::max(worst, units(angle(y, x), std::atan2(static_cast<long double>(y), static_cast<long double>(x))));
+        max_error = std::max(max_error, units(angle(y, x), std::atan2(static_cast<long double>(y), static_cast<long double>(x))));
     }
-    EXPECT_LT(worst, 2);
-    std::cout << "angle: " << worst << " units in the last place\n";
+    EXPECT_LT(max_error, 2);
+    std::cout << "angle: " << max_error << " units in the last place\n";
     EXPECT_EQ(angle(0, 0), 0);
     EXPECT_EQ(angle(0, 3), 0);
     EXPECT_EQ(angle(0, -3), std::numbers::pi);
@@ -43,13 +43,13 @@ TEST(Functions, Angle) {
 TEST(Functions, Logarithm) {
     std::mt19937_64 random(2);
     std::uniform_real_distribution<double> unit(0, 1);
-    double worst = 0;
+    double max_error = 0;
     for (int i = 0; i < 2'000'000; ++i) {
         const double x = i % 2 == 0 ? 1 + unit(random) * std::pow(10, -15 * unit(random)) : std::pow(10, 200 * unit(random));
-        worst = std::max(worst, units(logarithm(x), std::log(static_cast<long double>(x))));
+        max_error = std::max(max_error, units(logarithm(x), std::log(static_cast<long double>(x))));
     }
-    EXPECT_LT(worst, 2);
-    std::cout << "logarithm: " << worst << " units in the last place\n";
+    EXPECT_LT(max_error, 2);
+    std::cout << "logarithm: " << max_error << " units in the last place\n";
     EXPECT_EQ(logarithm(1), 0);
 }
 

@@ -32,7 +32,7 @@ double integral(const Point& a, const Point& b, const Point& c, int n, Function&
     return sum;
 }
 
-TEST(Green, AreTheIntegralsThatDefineThem) {
+TEST(Green, MatchTheDefiningIntegrals) {
     const Mesh cage = build_mesh(test::torus(9, 6));
     const std::vector<Point> points{{2.1, 0.1, 0.2}, {-1.5, 1.2, -0.3}, {0.2, -1.8, 0.4}};
     const Coordinates c = compute_coordinates("green", cage, points);
@@ -75,7 +75,7 @@ TEST(Green, FollowSimilaritiesOfTheCageWithTheirNormals) {
     EXPECT_GT(std::sqrt((deformed(without, cage, moved)[0] - move(points[0])).squared_length()), 0.1);
 }
 
-TEST(Green, RefusesPointsThatAreNotStrictlyInside) {
+TEST(Green, RejectsPointsThatAreNotStrictlyInside) {
     const Mesh cage = build_mesh(test::box(2));
     const auto problem = [&](const std::vector<Point>& points, const Mesh& mesh) {
         try {

@@ -41,12 +41,12 @@ TriangleSoup fork() {
     for (const double y : {0.0, 2.0})
         for (const auto& [x, z] : outline) soup.points.push_back({x, y, z});
     for (const auto& q : quads) {
-        const auto at = [&](int k) { return static_cast<Index>(q.at(static_cast<std::size_t>(k))); };
+        const auto corner = [&](int k) { return static_cast<Index>(q.at(static_cast<std::size_t>(k))); };
         // In front (y = 0) the outline runs counter-clockwise seen from -y.
-        soup.triangles.push_back({at(0), at(1), at(2)});
-        soup.triangles.push_back({at(0), at(2), at(3)});
-        soup.triangles.push_back({at(0) + n, at(2) + n, at(1) + n});
-        soup.triangles.push_back({at(0) + n, at(3) + n, at(2) + n});
+        soup.triangles.push_back({corner(0), corner(1), corner(2)});
+        soup.triangles.push_back({corner(0), corner(2), corner(3)});
+        soup.triangles.push_back({corner(0) + n, corner(2) + n, corner(1) + n});
+        soup.triangles.push_back({corner(0) + n, corner(3) + n, corner(2) + n});
     }
     for (Index i = 0; i < n; ++i) {
         const Index j = (i + 1) % n;
@@ -61,11 +61,11 @@ std::vector<Point> grid_in(const std::array<double, 3>& low, const std::array<do
     for (int i = 0; i < count; ++i)
         for (int j = 0; j < count; ++j)
             for (int k = 0; k < count; ++k) {
-                const auto at = [&](int axis, int step) {
+                const auto coordinate = [&](int axis, int step) {
                     const auto a = static_cast<std::size_t>(axis);
                     return low[a] + (high[a] - low[a]) * (step + 0.5) / count;
                 };
-                points.emplace_back(at(0, i), at(1, j), at(2, k));
+                points.emplace_back(coordinate(0, i), coordinate(1, j), coordinate(2, k));
             }
     return points;
 }
@@ -100,7 +100,7 @@ TEST(InteriorCoordinates, InATetrahedronAreBarycentric) {
     }
 }
 
-TEST(InteriorCoordinates, KeepTheirPromises) {
+TEST(InteriorCoordinates, SatisfyTheirProperties) {
     for (const auto& [name, soup, points] : {std::tuple{"box", test::box(2), grid_in({0, 0, 0}, {1, 1, 1}, 4)},
                                              std::tuple{"fork", fork(), grid_in({0.1, 0.1, 1.2}, {1.9, 1.9, 5.9}, 4)},
                                              std::tuple{"box far away", test::moved(test::box(2), 1e-3, {1e3, -2e3, 5e2}),
@@ -111,7 +111,7 @@ TEST(InteriorCoordinates, KeepTheirPromises) {
     }
 }
 
-TEST(InteriorCoordinates, InAnOctahedronAreAlikeForItsCorners) {
+TEST(InteriorCoordinates, InAnOctahedronAreEqualForItsCorners) {
     const Mesh cage = build_mesh(test::octahedron_sphere(0));
     const std::vector<Point> middle{{0, 0, 0}};
     for (const std::string& kind : kinds) {
@@ -126,24 +126,24 @@ TEST(InteriorCoordinates, InAnOctahedronAreAlikeForItsCorners) {
 double reach_over(const std::string& kind, const Mesh& cage, const CoordinateOptions& options) {
     const std::vector<Point> points = grid_in({0.2, 0.2, 4}, {1.8, 1.8, 5.8}, 3);
     const Coordinates c = compute_coordinates(kind, cage, points, options);
-    double worst = 0;
+    double maximum = 0;
     for (Eigen::Index i = 0; i < c.vertex.rows(); ++i) {
         double sum = 0;
         for (const Vertex v : cage.vertices())
             if (cage.point(v).x() > 2.5 && cage.point(v).z() > 2) sum += std::abs(c.vertex(i, v.idx()));
-        worst = std::max(worst, sum);
+        maximum = std::max(maximum, sum);
     }
-    return worst;
+    return maximum;
 }
 
-TEST(InteriorCoordinates, DoNotReachOverAGap) {
+TEST(InteriorCoordinates, DoNotReachAcrossAGap) {
     const Mesh cage = build_mesh(fork());
     const double mean_value = reach_over("mean-value", cage, {});
     EXPECT_GT(mean_value, 0.01);
     for (const std::string& kind : kinds) EXPECT_LT(reach_over(kind, cage, quick()), mean_value / 10) << kind;
 }
 
-TEST(InteriorCoordinates, LocalOnesAreFewer) {
+TEST(InteriorCoordinates, LocalWeightsAreSparser) {
     const Mesh cage = build_mesh(fork());
     const std::vector<Point> points = grid_in({0.1, 0.1, 0.1}, {1.9, 1.9, 5.9}, 5);
     CoordinateOptions options = quick(3000);
@@ -158,11 +158,11 @@ TEST(InteriorCoordinates, AreTheSameForAnyNumberOfThreads) {
     const std::vector<Point> points = grid_in({0.1, 0.1, 1.2}, {1.9, 1.9, 5.9}, 4);
     for (const std::string& kind : kinds) {
         set_threads(1);
-        const Coordinates one = compute_coordinates(kind, cage, points, quick());
+        const Coordinates sequential = compute_coordinates(kind, cage, points, quick());
         set_threads(2);
-        const Coordinates two = compute_coordinates(kind, cage, points, quick());
+        const Coordinates parallel = compute_coordinates(kind, cage, points, quick());
         set_threads(0);
-        EXPECT_EQ(one.vertex, two.vertex) << kind;
+        EXPECT_EQ(sequential.vertex, parallel.vertex) << kind;
     }
 }
 
@@ -180,7 +180,7 @@ TEST(InteriorCoordinates, MoveTheSameBySparseAndDenseWeights) {
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((sparse[i] - dense[i]).squared_length(), 1e-26);
 }
 
-TEST(InteriorCoordinates, RefuseWhatTheyAreNotDefinedFor) {
+TEST(InteriorCoordinates, RejectPointsWhereTheyAreUndefined) {
     const Mesh cage = build_mesh(test::box(2));
     TriangleSoup crossing = test::joined(test::box(1), test::moved(test::box(1), 1, {0.5, 0.5, 0.5}));
     for (const std::string& kind : kinds) {
@@ -196,7 +196,7 @@ TEST(InteriorCoordinates, RefuseWhatTheyAreNotDefinedFor) {
     }
 }
 
-TEST(InteriorCoordinates, AreWrittenAsTheyAreAndChangedFilesRefused) {
+TEST(InteriorCoordinates, RoundTripIsExactAndChangedFilesAreRejected) {
     const test::Scratch scratch;
     const Mesh cage = build_mesh(test::box(2));
     Mesh mesh = build_mesh(test::moved(test::box(3), 0.5, {0.25, 0.25, 0.25}));
@@ -204,10 +204,10 @@ TEST(InteriorCoordinates, AreWrittenAsTheyAreAndChangedFilesRefused) {
     const CoordinateCertificate certificate = certify(c, cage, points_of(mesh), quick());
     const Path file = scratch / "w.npy";
     write_coordinates(file, c, mesh, cage, certificate, Provenance{"test", {}, {}});
-    const Coordinates read = read_coordinates(file, mesh, cage);
-    EXPECT_EQ(read.kind, c.kind);
-    EXPECT_EQ(read.vertex, c.vertex);
-    EXPECT_EQ(read.sparse.nonZeros(), c.sparse.nonZeros());
+    const Coordinates reread = read_coordinates(file, mesh, cage);
+    EXPECT_EQ(reread.kind, c.kind);
+    EXPECT_EQ(reread.vertex, c.vertex);
+    EXPECT_EQ(reread.sparse.nonZeros(), c.sparse.nonZeros());
     EXPECT_EQ(read_coordinate_header(file).vertex.rows, static_cast<std::size_t>(c.sparse.nonZeros()));
     std::vector<std::int64_t> columns = read_npy_integers(sparse_columns_file(file)).values;
     columns[0] = 1000000;

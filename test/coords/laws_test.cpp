@@ -7,24 +7,24 @@ namespace {
 using test::Cage;
 using test::cages;
 
-double share_off(const Coordinates& c, const Mesh& cage, const std::vector<Point>& points, double& partition) {
-    double worst = 0;
+double relative_error(const Coordinates& c, const Mesh& cage, const std::vector<Point>& points, double& partition) {
+    double maximum = 0;
     partition = 0;
     const std::vector<Vector> normals = stretched_normals(cage, points_of(cage));
     const double diagonal = box_diagonal(cage);
     for (Eigen::Index i = 0; i < c.vertex.rows(); ++i) {
         double sum = 0;
-        Vector off(0, 0, 0);
+        Vector error(0, 0, 0);
         for (const Vertex v : cage.vertices()) {
             sum += c.vertex(i, v.idx());
-            off += c.vertex(i, v.idx()) * (cage.point(v) - points[static_cast<std::size_t>(i)]);
+            error += c.vertex(i, v.idx()) * (cage.point(v) - points[static_cast<std::size_t>(i)]);
         }
         if (c.has_normals())
-            for (const Face f : cage.faces()) off += c.normal(i, f.idx()) * normals[f];
+            for (const Face f : cage.faces()) error += c.normal(i, f.idx()) * normals[f];
         partition = std::max(partition, std::abs(sum - 1));
-        worst = std::max(worst, std::sqrt(off.squared_length()) / diagonal);
+        maximum = std::max(maximum, std::sqrt(error.squared_length()) / diagonal);
     }
-    return worst;
+    return maximum;
 }
 
 TEST(Laws, MeanValue) {
@@ -32,7 +32,7 @@ TEST(Laws, MeanValue) {
         const auto points = test::places(cage.mesh);
         const Coordinates c = compute_coordinates("mean-value", cage.mesh, points);
         double partition = 0;
-        const double linear = share_off(c, cage.mesh, points, partition);
+        const double linear = relative_error(c, cage.mesh, points, partition);
         EXPECT_LE(partition, 1e-12) << cage.name;
         EXPECT_LE(linear, 1e-11) << cage.name;
     }
@@ -47,7 +47,7 @@ TEST(Laws, Green) {
         }
         const Coordinates c = compute_coordinates("green", cage.mesh, points);
         double partition = 0;
-        const double linear = share_off(c, cage.mesh, points, partition);
+        const double linear = relative_error(c, cage.mesh, points, partition);
         EXPECT_LE(partition, 1e-10) << cage.name;
         EXPECT_LE(linear, 1e-10) << cage.name;
     }

@@ -36,16 +36,16 @@ std::vector<double> by_definition(const Mesh& cage, const Point& x) {
         for (std::size_t k = 0; k < 3; ++k) w[corner[k]] += dot(m, c[k]) / det;
     }
     Real sum = 0;
-    for (const Real one : w) sum += one;
+    for (const Real weight : w) sum += weight;
     std::vector<double> result;
-    for (const Real one : w) result.push_back(static_cast<double>(one / sum));
+    for (const Real weight : w) result.push_back(static_cast<double>(weight / sum));
     return result;
 }
 
 double difference(const Coordinates& c, Eigen::Index row, const std::vector<double>& w) {
-    double worst = 0;
-    for (std::size_t j = 0; j < w.size(); ++j) worst = std::max(worst, std::abs(c.vertex(row, Eigen::Index(j)) - w[j]));
-    return worst;
+    double maximum = 0;
+    for (std::size_t j = 0; j < w.size(); ++j) maximum = std::max(maximum, std::abs(c.vertex(row, Eigen::Index(j)) - w[j]));
+    return maximum;
 }
 
 TriangleSoup tetrahedron() {
@@ -100,7 +100,7 @@ TEST(MeanValue, AgreeWithTheDefinitionInLongerArithmetic) {
 }
 
 /// Where the plane of a far face passes through the point, or close by, its weights vanish with the distance: no jump, no noise.
-TEST(MeanValue, NothingHappensInThePlaneOfAFarFace) {
+TEST(MeanValue, AreContinuousAcrossThePlaneOfADistantFace) {
     // An L whose inner corner lies at (1, 1): the plane x = 1 of one wall runs through the inside.
     const Mesh cage = build_mesh(
         {{{0, 0, 0},
@@ -137,13 +137,14 @@ TEST(MeanValue, NothingHappensInThePlaneOfAFarFace) {
         const Point q(std::cos(a) * p.x() - std::sin(a) * p.y(), std::sin(a) * p.x() + std::cos(a) * p.y(), p.z());
         return Point(q.x(), std::cos(b) * q.y() - std::sin(b) * q.z(), std::sin(b) * q.y() + std::cos(b) * q.z());
     };
-    Mesh turned = cage;
-    for (const Vertex v : turned.vertices()) turned.point(v) = rotated(cage.point(v));
+    Mesh rotated_cage = cage;
+    for (const Vertex v : rotated_cage.vertices()) rotated_cage.point(v) = rotated(cage.point(v));
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(0.05, 0.95);
     std::vector<Point> flat, slanted;
     for (int i = 0; i < 500; ++i) flat.emplace_back(1, unit(random), unit(random)), slanted.push_back(rotated(flat.back()));
-    const Coordinates f = compute_coordinates("mean-value", cage, flat), s = compute_coordinates("mean-value", turned, slanted);
+    const Coordinates f = compute_coordinates("mean-value", cage, flat),
+                      s = compute_coordinates("mean-value", rotated_cage, slanted);
     EXPECT_LT((f.vertex - s.vertex).cwiseAbs().maxCoeff(), 1e-13);
 }
 
@@ -177,7 +178,7 @@ TEST(MeanValue, OnTheCageTheyAreLinear) {
     }
 }
 
-TEST(MeanValue, TurningOrMovingEverythingChangesNothing) {
+TEST(MeanValue, AreInvariantToSimilarities) {
     const Mesh cage = build_mesh(test::torus(12, 7));
     std::vector<Point> points;
     for (const Vertex v : cage.vertices()) {
@@ -188,14 +189,14 @@ TEST(MeanValue, TurningOrMovingEverythingChangesNothing) {
     }
     const Coordinates c = compute_coordinates("mean-value", cage, points);
     for (const double scale : {1e-100, 0.3, 1e100}) {
-        Mesh other = cage;
+        Mesh moved_cage = cage;
         std::vector<Point> moved;
         const auto move = [&](const Point& p) {
             return Point(scale * (0.6 * p.x() - 0.8 * p.y() + 3), scale * (0.8 * p.x() + 0.6 * p.y()), scale * (p.z() - 1));
         };
-        for (const Vertex v : other.vertices()) other.point(v) = move(cage.point(v));
+        for (const Vertex v : moved_cage.vertices()) moved_cage.point(v) = move(cage.point(v));
         for (const Point& p : points) moved.push_back(move(p));
-        EXPECT_LT((compute_coordinates("mean-value", other, moved).vertex - c.vertex).cwiseAbs().maxCoeff(), 1e-13) << scale;
+        EXPECT_LT((compute_coordinates("mean-value", moved_cage, moved).vertex - c.vertex).cwiseAbs().maxCoeff(), 1e-13) << scale;
     }
 }
 

@@ -18,7 +18,7 @@ using test::moved;
 
 double norm(const Vector& v) { return std::sqrt(v.squared_length()); }
 
-TriangleSoup turned(TriangleSoup soup) {
+TriangleSoup reversed(TriangleSoup soup) {
     for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
     return soup;
 }
@@ -32,28 +32,30 @@ struct Post {
             const Point p = mesh.point(v);
             mesh.point(v) = Point(p.x(), p.y(), 4 * p.z());
         }
-        TriangleSoup whole = test::box(2), top = test::box(2);
+        TriangleSoup outer = test::box(2), top = test::box(2);
         const auto fit = [](TriangleSoup& soup, const std::array<double, 3>& low, const std::array<double, 3>& high) {
-            std::array<double, 3> from = soup.points[0], to = soup.points[0];
+            std::array<double, 3> box_low = soup.points[0], box_high = soup.points[0];
             for (const auto& p : soup.points)
-                for (std::size_t k = 0; k < 3; ++k) from[k] = std::min(from[k], p[k]), to[k] = std::max(to[k], p[k]);
+                for (std::size_t k = 0; k < 3; ++k)
+                    box_low[k] = std::min(box_low[k], p[k]), box_high[k] = std::max(box_high[k], p[k]);
             for (auto& p : soup.points)
-                for (std::size_t k = 0; k < 3; ++k) p[k] = low[k] + (p[k] - from[k]) / (to[k] - from[k]) * (high[k] - low[k]);
+                for (std::size_t k = 0; k < 3; ++k)
+                    p[k] = low[k] + (p[k] - box_low[k]) / (box_high[k] - box_low[k]) * (high[k] - low[k]);
         };
-        fit(whole, {-2, -2, -5}, {2, 2, 5});
+        fit(outer, {-2, -2, -5}, {2, 2, 5});
         fit(top, {-1.5, -1.5, 2}, {1.5, 1.5, 4.5});
-        cage = build_mesh(joined(whole, top));
+        cage = build_mesh(joined(outer, top));
         levels = cage_levels(cage);
     }
 };
 
-TEST(NestedCages, LevelsAreToldByWhatLiesInWhat) {
+TEST(NestedCages, LevelsFollowFromContainment) {
     const TriangleSoup big = test::octahedron_sphere(2), small = moved(big, 0.4, {0.1, 0, 0}),
                        tiny = moved(big, 0.1, {0.1, 0, 0}), beside = moved(big, 0.3, {0, -0.5, 0}),
                        away = moved(big, 1, {5, 0, 0});
     EXPECT_EQ(cage_levels(build_mesh(big)).size(), 1U);
     EXPECT_EQ(cage_levels(build_mesh(joined(big, away))).size(), 1U);
-    EXPECT_EQ(cage_levels(build_mesh(joined(big, turned(small)))).size(), 1U) << "a cavity is no cage";
+    EXPECT_EQ(cage_levels(build_mesh(joined(big, reversed(small)))).size(), 1U) << "a cavity is no cage";
     EXPECT_EQ(cage_levels(Mesh()).size(), 1U);
     // In any order in the file.
     const std::vector<CageLevel> levels = cage_levels(build_mesh(joined(joined(tiny, beside), joined(small, joined(big, away)))));
@@ -69,17 +71,17 @@ TEST(NestedCages, LevelsAreToldByWhatLiesInWhat) {
     EXPECT_EQ(levels[3].parent, 2U) << "within the small one";
 }
 
-TEST(NestedCages, CoordinatesKeepTheirPromisesAndLeaveTheRestAlone) {
+TEST(NestedCages, CoordinatesSatisfyTheirPropertiesAndAreLocal) {
     const Post post;
     ASSERT_EQ(post.levels.size(), 2U);
     for (const char* kind : {"mean-value", "harmonic"}) {
         CoordinateOptions options;
         options.nodes = 1500;
         const Coordinates c = compute_coordinates(kind, post.cage, post.mesh, options);
-        const CoordinateCertificate promise = certify(c, post.cage, points_of(post.mesh), options);
-        EXPECT_LT(promise.partition, 1e-12) << kind;
-        EXPECT_LT(promise.linear, 1e-12) << kind;
-        EXPECT_TRUE(promise.holds()) << kind;
+        const CoordinateCertificate certificate = certify(c, post.cage, points_of(post.mesh), options);
+        EXPECT_LT(certificate.partition, 1e-12) << kind;
+        EXPECT_LT(certificate.linear, 1e-12) << kind;
+        EXPECT_TRUE(certificate.holds()) << kind;
         const Coordinates outer = compute_coordinates(kind, post.levels[0].cage.mesh, points_of(post.mesh), options);
         std::size_t outside = 0;
         for (const Vertex v : post.mesh.vertices()) {
@@ -93,48 +95,48 @@ TEST(NestedCages, CoordinatesKeepTheirPromisesAndLeaveTheRestAlone) {
         EXPECT_GT(outside, 100U);
         // What the levels say by themselves can be had back.
         const auto carrying = carrying_weights(post.levels);
-        const WeightMatrix back = weights_of_level(c.vertex, post.levels, carrying, 0);
-        EXPECT_LT((back - outer.vertex).cwiseAbs().maxCoeff(), 1e-12) << kind;
+        const WeightMatrix recovered = weights_of_level(c.vertex, post.levels, carrying, 0);
+        EXPECT_LT((recovered - outer.vertex).cwiseAbs().maxCoeff(), 1e-12) << kind;
     }
 }
 
-TEST(NestedCages, TheInnerCageMovesItsPartAlone) {
+TEST(NestedCages, TheInnerCageMovesOnlyItsPart) {
     const Post post;
     CoordinateOptions options;
     options.fade = 0.2;
     const Coordinates c = compute_coordinates("mean-value", post.cage, post.mesh, options);
     std::vector<Point> handles = points_of(post.cage);
     for (const Index j : post.levels[1].cage.vertices) handles[j] = handles[j] + Vector(0.5, 0, 0.25);
-    const std::vector<Point> after = deformed(c, post.cage, handles);
+    const std::vector<Point> moved_points = deformed(c, post.cage, handles);
     const double length = 0.2 * box_diagonal(post.levels[1].cage.mesh);
-    double last = 0;
+    double largest = 0;
     for (const Vertex v : post.mesh.vertices()) {
         const Point& p = post.mesh.point(v);
-        const Vector by = after[v] - p;
+        const Vector displacement = moved_points[v] - p;
         if (p.z() <= 2) {
-            ASSERT_LT(norm(by), 1e-12);
+            ASSERT_LT(norm(displacement), 1e-12);
         } else if (p.z() > 2 + length + 0.2) {
-            ASSERT_LT(norm(by - Vector(0.5, 0, 0.25)), 1e-12);
+            ASSERT_LT(norm(displacement - Vector(0.5, 0, 0.25)), 1e-12);
         }
-        last = std::max(last, norm(by));
+        largest = std::max(largest, norm(displacement));
     }
-    EXPECT_NEAR(last, std::sqrt(0.25 + 0.0625), 1e-12);
+    EXPECT_NEAR(largest, std::sqrt(0.25 + 0.0625), 1e-12);
     // Without a fade it takes hold at once.
     options.fade = 0;
-    const std::vector<Point> sharp =
+    const std::vector<Point> unfaded =
         deformed(compute_coordinates("mean-value", post.cage, post.mesh, options), post.cage, handles);
     for (const Vertex v : post.mesh.vertices())
         if (post.mesh.point(v).z() > 2) {
-            ASSERT_LT(norm(sharp[v] - post.mesh.point(v) - Vector(0.5, 0, 0.25)), 1e-12);
+            ASSERT_LT(norm(unfaded[v] - post.mesh.point(v) - Vector(0.5, 0, 0.25)), 1e-12);
         }
 }
 
-TEST(NestedCages, AnotherPartThatReachesInIsNotHeld) {
+TEST(NestedCages, OtherPartsThatReachInAreNotInfluenced) {
     // Two posts side by side, and a cage around one that takes in a corner of the other.
     const Post post;
     TriangleSoup both = joined(to_soup(post.mesh), moved(to_soup(post.mesh), 1, {2.2, 0, 0}));
-    TriangleSoup whole = moved(to_soup(post.levels[0].cage.mesh), 3, {0, 0, 0});
-    const Mesh mesh = build_mesh(both), cage = build_mesh(joined(whole, to_soup(post.levels[1].cage.mesh)));
+    TriangleSoup outer_cage = moved(to_soup(post.levels[0].cage.mesh), 3, {0, 0, 0});
+    const Mesh mesh = build_mesh(both), cage = build_mesh(joined(outer_cage, to_soup(post.levels[1].cage.mesh)));
     const std::vector<CageLevel> levels = cage_levels(cage);
     ASSERT_EQ(levels.size(), 2U);
     const Coordinates c = compute_coordinates("mean-value", cage, mesh);
@@ -152,23 +154,24 @@ TEST(NestedCages, AnotherPartThatReachesInIsNotHeld) {
 TEST(NestedCages, AnyNumberOfThreadsAndFarAway) {
     const Post post;
     set_threads(1);
-    const Coordinates one = compute_coordinates("mean-value", post.cage, post.mesh);
+    const Coordinates sequential = compute_coordinates("mean-value", post.cage, post.mesh);
     set_threads(3);
-    EXPECT_EQ(one.vertex, compute_coordinates("mean-value", post.cage, post.mesh).vertex);
+    EXPECT_EQ(sequential.vertex, compute_coordinates("mean-value", post.cage, post.mesh).vertex);
     set_threads(0);
     for (const double scale : {1e-6, 1e6}) {
         const Mesh mesh = build_mesh(moved(to_soup(post.mesh), scale, {scale * 1e3, 0, 0})),
                    cage = build_mesh(moved(to_soup(post.cage), scale, {scale * 1e3, 0, 0}));
-        EXPECT_LT((compute_coordinates("mean-value", cage, mesh).vertex - one.vertex).cwiseAbs().maxCoeff(), 1e-6) << scale;
+        EXPECT_LT((compute_coordinates("mean-value", cage, mesh).vertex - sequential.vertex).cwiseAbs().maxCoeff(), 1e-6)
+            << scale;
     }
 }
 
-TEST(NestedCages, NoNormalTerms) {
+TEST(NestedCages, RejectsKindsWithNormalTerms) {
     const Post post;
     EXPECT_THROW((void)compute_coordinates("green", post.cage, post.mesh), Error);
 }
 
-TEST(NestedCages, EachIsCheckedByItself) {
+TEST(NestedCages, EachCageIsCheckedSeparately) {
     const Post post;
     const CageCheck check = check_cage(post.cage, post.mesh);
     EXPECT_TRUE(check.valid());
@@ -182,10 +185,10 @@ TEST(NestedCages, EachIsCheckedByItself) {
     for (const Index v : post.levels[1].cage.vertices)
         if (const Point& p = folded.point(Vertex(v)); p.x() < -1.4 && p.y() < -1.4 && p.z() < 2.1)
             folded.point(Vertex(v)) = Point(1.7, 1.7, 4.7);
-    const CageCheck bad = check_cage(folded, post.mesh);
-    EXPECT_EQ(bad.nested, 1U);
-    EXPECT_FALSE(bad.intersections.empty());
-    for (const auto& [f, g] : bad.intersections) EXPECT_GE(std::min(f, g), post.levels[1].cage.faces.front());
+    const CageCheck invalid = check_cage(folded, post.mesh);
+    EXPECT_EQ(invalid.nested, 1U);
+    EXPECT_FALSE(invalid.intersections.empty());
+    for (const auto& [f, g] : invalid.intersections) EXPECT_GE(std::min(f, g), post.levels[1].cage.faces.front());
 }
 
 }  // namespace

@@ -55,14 +55,14 @@ Mesh capsule(int level, double r, double length) {
             soup.points.push_back({radius * std::cos(2 * pi * i / around), radius * std::sin(2 * pi * i / around), height});
     const Index top = static_cast<Index>(soup.points.size());
     soup.points.push_back({0, 0, r + length / 2});
-    const auto at = [&](Index ring, Index i) { return 1 + ring * around + i % around; };
+    const auto index_of = [&](Index ring, Index i) { return 1 + ring * around + i % around; };
     const Index rings = static_cast<Index>(profile.size());
     for (Index i = 0; i < around; ++i) {
-        soup.triangles.push_back({0, at(0, i + 1), at(0, i)});
-        soup.triangles.push_back({top, at(rings - 1, i), at(rings - 1, i + 1)});
+        soup.triangles.push_back({0, index_of(0, i + 1), index_of(0, i)});
+        soup.triangles.push_back({top, index_of(rings - 1, i), index_of(rings - 1, i + 1)});
         for (Index k = 0; k + 1 < rings; ++k) {
-            soup.triangles.push_back({at(k, i), at(k, i + 1), at(k + 1, i + 1)});
-            soup.triangles.push_back({at(k, i), at(k + 1, i + 1), at(k + 1, i)});
+            soup.triangles.push_back({index_of(k, i), index_of(k, i + 1), index_of(k + 1, i + 1)});
+            soup.triangles.push_back({index_of(k, i), index_of(k + 1, i + 1), index_of(k + 1, i)});
         }
     }
     return build_mesh(soup);
@@ -94,7 +94,7 @@ void expect_order_two(const std::function<Mesh(int)>& make, double exact, const 
     EXPECT_LT(errors.back(), 0.01) << name;
 }
 
-TEST(Curvature, IntegralsOfMeanCurvatureMeetTheClosedForms) {
+TEST(Curvature, IntegralsOfMeanCurvatureMatchTheClosedForms) {
     const double r = 1.3, R = 3, length = 2.5;
     expect_order_two([&](int level) { return sphere(level + 1, r); }, 4 * pi * r, "sphere");
     expect_order_two([&](int level) { return capsule(level, r, length); }, pi * (length + 4 * r), "capsule");
@@ -113,16 +113,16 @@ TEST(Curvature, IntegralsOfGaussianCurvatureAreGaussBonnet) {
     EXPECT_NEAR(mean_integral(build_mesh(soup)), 1e-3 * mean_integral(torus(1, 3, 1)), 1e-9);
 }
 
-TEST(Curvature, RegionsAddUp) {
+TEST(Curvature, IntegralsAreAdditiveOverRegions) {
     const Mesh mesh = torus(2, 3, 1);
     const CurvatureIntegrals integrals = curvature_integrals(mesh);
-    std::vector<Index> some, others;
-    for (const Index f : every_face(mesh)) (f % 3 == 0 ? some : others).push_back(f);
-    const RegionCurvature a = region_curvature(mesh, integrals, some), b = region_curvature(mesh, integrals, others),
-                          all = region_curvature(mesh, integrals, every_face(mesh));
-    EXPECT_NEAR(a.mean_integral + b.mean_integral, all.mean_integral, 1e-10);
-    EXPECT_NEAR(a.gaussian_integral + b.gaussian_integral, all.gaussian_integral, 1e-10);
-    EXPECT_NEAR(a.area + b.area, all.area, 1e-10);
+    std::vector<Index> selected, remaining;
+    for (const Index f : every_face(mesh)) (f % 3 == 0 ? selected : remaining).push_back(f);
+    const RegionCurvature a = region_curvature(mesh, integrals, selected), b = region_curvature(mesh, integrals, remaining),
+                          complete = region_curvature(mesh, integrals, every_face(mesh));
+    EXPECT_NEAR(a.mean_integral + b.mean_integral, complete.mean_integral, 1e-10);
+    EXPECT_NEAR(a.gaussian_integral + b.gaussian_integral, complete.gaussian_integral, 1e-10);
+    EXPECT_NEAR(a.area + b.area, complete.area, 1e-10);
     EXPECT_THROW((void)region_curvature(mesh, integrals, {99999999}), Error);
     EXPECT_THROW((void)region_curvature(sphere(1), integrals, {0}), Error);
 }
@@ -152,10 +152,10 @@ TEST(Curvature, PointValuesOfSphereAndTorus) {
     // Turned inside out the mean changes its sign, the Gaussian does not.
     TriangleSoup soup = to_soup(ring);
     for (auto& t : soup.triangles) std::swap(t[0], t[1]);
-    const Curvature turned = curvature(build_mesh(soup), options);
+    const Curvature reversed = curvature(build_mesh(soup), options);
     for (const Vertex v : ring.vertices()) {
-        EXPECT_NEAR(turned.mean[v], -values.mean[v], 1e-9);
-        EXPECT_NEAR(turned.gaussian[v], values.gaussian[v], 1e-9);
+        EXPECT_NEAR(reversed.mean[v], -values.mean[v], 1e-9);
+        EXPECT_NEAR(reversed.gaussian[v], values.gaussian[v], 1e-9);
     }
 }
 
@@ -173,9 +173,9 @@ TEST(Curvature, FlatOpenIsolatedAndDegenerate) {
     soup.points = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, -1, 0}};
     soup.triangles = {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}, {1, 0, 4}};
     for (const double x : curvature(build_mesh(soup)).mean) EXPECT_NEAR(x, 0, 1e-12);
-    CurvatureOptions wrong;
-    wrong.scale = -1;
-    EXPECT_THROW((void)curvature(sphere(1), wrong), Error);
+    CurvatureOptions invalid;
+    invalid.scale = -1;
+    EXPECT_THROW((void)curvature(sphere(1), invalid), Error);
 }
 
 TEST(Curvature, SameBitsForAnyNumberOfThreads) {
@@ -183,12 +183,12 @@ TEST(Curvature, SameBitsForAnyNumberOfThreads) {
     CurvatureOptions options;
     options.scale = 0.05;
     set_threads(1);
-    const Curvature one = curvature(mesh, options);
+    const Curvature sequential = curvature(mesh, options);
     set_threads(3);
-    const Curvature three = curvature(mesh, options);
+    const Curvature parallel = curvature(mesh, options);
     set_threads(0);
-    EXPECT_EQ(one.mean, three.mean);
-    EXPECT_EQ(one.gaussian, three.gaussian);
+    EXPECT_EQ(sequential.mean, parallel.mean);
+    EXPECT_EQ(sequential.gaussian, parallel.gaussian);
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ TEST(Thickness, OfABallIsItsDiameterBySmallCones) {
     }
     // Wider cones see shorter chords: 2 r cos of the angle.
     const Mesh mesh = sphere(4, 1);
-    const std::vector<double> wide = thickness(mesh);
-    for (const double t : wide) {
+    const std::vector<double> wide_cone = thickness(mesh);
+    for (const double t : wide_cone) {
         ASSERT_GT(t, 2 * 0.9);
         ASSERT_LT(t, 2);
     }
@@ -61,10 +61,10 @@ TEST(Thickness, OfAWall) {
     ThicknessOptions options;
     options.cone = 20;
     std::vector<double> values = thickness(mesh, options);
-    const Statistics all = statistics(values, std::vector<double>(values.size(), 1));
-    EXPECT_NEAR(all.median, 0.1, 0.004);
-    EXPECT_LT(all.max, 0.115);
-    EXPECT_GT(all.min, 0.09);
+    const Statistics summary = statistics(values, std::vector<double>(values.size(), 1));
+    EXPECT_NEAR(summary.median, 0.1, 0.004);
+    EXPECT_LT(summary.max, 0.115);
+    EXPECT_GT(summary.min, 0.09);
 }
 
 TEST(Thickness, OpenFlatEmpty) {
@@ -74,9 +74,9 @@ TEST(Thickness, OpenFlatEmpty) {
     for (const double t : thickness(flat)) EXPECT_TRUE(std::isnan(t));
     for (const double t : vertices_from_faces(flat, thickness(flat))) EXPECT_TRUE(std::isnan(t));
     EXPECT_TRUE(thickness(Mesh()).empty());
-    ThicknessOptions wrong;
-    wrong.rays = 0;
-    EXPECT_THROW((void)thickness(flat, wrong), Error);
+    ThicknessOptions invalid;
+    invalid.rays = 0;
+    EXPECT_THROW((void)thickness(flat, invalid), Error);
     EXPECT_THROW((void)vertices_from_faces(flat, {1.0}), Error);
     for (const double x : vertices_from_faces(flat, std::vector<double>(32, 7.5))) EXPECT_DOUBLE_EQ(x, 7.5);
 }
@@ -84,21 +84,21 @@ TEST(Thickness, OpenFlatEmpty) {
 TEST(Thickness, SameBitsForAnyNumberOfThreads) {
     const Mesh mesh = shell(3, 1, 0.8);
     set_threads(1);
-    const std::vector<double> one = thickness(mesh);
+    const std::vector<double> sequential = thickness(mesh);
     set_threads(3);
-    EXPECT_EQ(one, thickness(mesh));
+    EXPECT_EQ(sequential, thickness(mesh));
     set_threads(0);
 }
 
 TEST(Statistics, KnownAnswers) {
-    const Statistics even = statistics({4, 1, 3, 2}, {1, 1, 1, 1});
-    EXPECT_EQ(even.count, 4U);
-    EXPECT_DOUBLE_EQ(even.mean, 2.5);
-    EXPECT_DOUBLE_EQ(even.median, 2.5);
-    EXPECT_DOUBLE_EQ(even.deviation, std::sqrt(1.25));
-    EXPECT_DOUBLE_EQ(even.min, 1);
-    EXPECT_DOUBLE_EQ(even.max, 4);
-    EXPECT_DOUBLE_EQ(even.integral, 10);
+    const Statistics uniform = statistics({4, 1, 3, 2}, {1, 1, 1, 1});
+    EXPECT_EQ(uniform.count, 4U);
+    EXPECT_DOUBLE_EQ(uniform.mean, 2.5);
+    EXPECT_DOUBLE_EQ(uniform.median, 2.5);
+    EXPECT_DOUBLE_EQ(uniform.deviation, std::sqrt(1.25));
+    EXPECT_DOUBLE_EQ(uniform.min, 1);
+    EXPECT_DOUBLE_EQ(uniform.max, 4);
+    EXPECT_DOUBLE_EQ(uniform.integral, 10);
     const Statistics weighted = statistics({1, 100}, {3, 1});
     EXPECT_DOUBLE_EQ(weighted.mean, 25.75);
     EXPECT_DOUBLE_EQ(weighted.median, 1);
@@ -118,18 +118,18 @@ TEST(Statistics, OverRegions) {
     std::vector<double> x, faces(mesh.number_of_faces());
     for (const Vertex v : mesh.vertices()) x.push_back(mesh.point(v).x());
     for (const Face f : mesh.faces()) faces[f] = centroid(mesh, f).x();
-    std::vector<Index> all(mesh.number_of_faces());
-    std::iota(all.begin(), all.end(), Index{0});
-    const Statistics vertex = vertex_statistics(mesh, x, all);
+    std::vector<Index> all_faces(mesh.number_of_faces());
+    std::iota(all_faces.begin(), all_faces.end(), Index{0});
+    const Statistics vertex = vertex_statistics(mesh, x, all_faces);
     EXPECT_NEAR(vertex.mean, 0.5, 1e-14);  // linear maps are integrated exactly
     EXPECT_NEAR(vertex.weight, 1, 1e-14);
     EXPECT_EQ(vertex.count, 81U);
     EXPECT_NEAR(vertex.integral, 0.5, 1e-14);
-    EXPECT_THROW((void)vertex_statistics(mesh, faces, all), Error);
+    EXPECT_THROW((void)vertex_statistics(mesh, faces, all_faces), Error);
     EXPECT_THROW((void)vertex_statistics(mesh, x, {}), Error);
     EXPECT_THROW((void)vertex_statistics(mesh, x, {128}), Error);
     x[0] = std::nan("");
-    EXPECT_THROW((void)vertex_statistics(mesh, x, all), Error);
+    EXPECT_THROW((void)vertex_statistics(mesh, x, all_faces), Error);
     EXPECT_NO_THROW((void)vertex_statistics(mesh, x, {127})) << "the gap lies outside of the region";
     EXPECT_THROW((void)statistics({}, {}), Error);
     EXPECT_THROW((void)statistics({1}, {-1}), Error);

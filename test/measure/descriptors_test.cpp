@@ -27,11 +27,11 @@ TEST(OrientedBox, IsExactOnBoxes) {
     for (int seed = 0; seed < 12; ++seed) {
         const double a = 1, b = 1 + seed * 0.3, c = 4 - seed * 0.2;
         const TriangleSoup soup = moved(box(1 + seed % 4, a, b, c), some_rotation(seed), Vector3d(seed, 2 * seed, -seed));
-        const OrientedBox found = oriented_box(soup.points);
+        const OrientedBox computed = oriented_box(soup.points);
         std::array<double, 3> sides{a, b, c};
         std::sort(sides.rbegin(), sides.rend());
-        EXPECT_NEAR(found.volume(), a * b * c, 1e-6 * a * b * c);
-        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found.sides[k], sides[k], 1e-6 * sides[0]) << seed;
+        EXPECT_NEAR(computed.volume(), a * b * c, 1e-6 * a * b * c);
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(computed.sides[k], sides[k], 1e-6 * sides[0]) << seed;
     }
 }
 
@@ -41,32 +41,33 @@ double min_box_by_search(const std::vector<std::array<double, 3>>& points) {
     for (std::size_t i = 0; i < points.size(); ++i)
         p.col(static_cast<Eigen::Index>(i)) = Vector3d(points[i][0], points[i][1], points[i][2]);
     const auto volume = [&](const Eigen::Quaterniond& q) {
-        const Eigen::Matrix3Xd turned = q.toRotationMatrix() * p;
-        return (turned.rowwise().maxCoeff() - turned.rowwise().minCoeff()).prod();
+        const Eigen::Matrix3Xd rotated = q.toRotationMatrix() * p;
+        return (rotated.rowwise().maxCoeff() - rotated.rowwise().minCoeff()).prod();
     };
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     double best = std::numeric_limits<double>::infinity();
     for (int start = 0; start < 60; ++start) {  // from random orientations, downhill by random steps
-        Eigen::Quaterniond at = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
-        double here = volume(at);
+        Eigen::Quaterniond orientation =
+            Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+        double current = volume(orientation);
         for (double step = 0.3; step > 1e-4;) {
-            bool better = false;
-            for (int tries = 0; tries < 12 && !better; ++tries) {
+            bool improved = false;
+            for (int tries = 0; tries < 12 && !improved; ++tries) {
                 const Eigen::Quaterniond next =
                     (Eigen::Quaterniond(1, step * normal(random), step * normal(random), step * normal(random)).normalized() *
-                     at);
+                     orientation);
                 const double v = volume(next);
-                if (v < here) here = v, at = next, better = true;
+                if (v < current) current = v, orientation = next, improved = true;
             }
-            if (!better) step /= 2;
+            if (!improved) step /= 2;
         }
-        best = std::min(best, here);
+        best = std::min(best, current);
     }
     return best;
 }
 
-TEST(OrientedBox, IsWithinOnePercentOfTheLeast) {
+TEST(OrientedBox, IsWithinOnePercentOfTheMinimum) {
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
     for (int seed = 0; seed < 8; ++seed) {
@@ -118,29 +119,29 @@ TEST(Solid, OpenRegionsAreClosedByTheirOutlines) {
         (p.z() > 0.3 + 0.2 * p.x() * p.x() - 0.1 * p.y() ? cap : rest).push_back(f);
     }
     const RegionSolid a = region_solid(sphere, cap), b = region_solid(sphere, rest),
-                      all = region_solid(sphere, [&] {
+                      complete = region_solid(sphere, [&] {
                           std::vector<Index> faces(sphere.number_of_faces());
                           std::iota(faces.begin(), faces.end(), Index{0});
                           return faces;
                       }());
     EXPECT_EQ(a.outlines, 1U);
-    EXPECT_NEAR(a.volume + b.volume, all.volume, 1e-12);  // both are closed by the same fan
+    EXPECT_NEAR(a.volume + b.volume, complete.volume, 1e-12);  // both are closed by the same fan
     EXPECT_GT(a.volume_bound, 0);
     EXPECT_NEAR(a.volume_bound, b.volume_bound, 1e-12);
     // Another surface over the outline: a fan from one of its vertices.
     const Outline outline = extract_outlines(sphere, cap).front();
-    double other = 0;
+    double other_volume = 0;
     for (const Index f : cap) {
         const auto [p, q, r] = corners(sphere, Face(f));
-        other += CGAL::cross_product(sphere.point(p) - CGAL::ORIGIN, sphere.point(q) - CGAL::ORIGIN) *
-                 (sphere.point(r) - CGAL::ORIGIN) / 6;
+        other_volume += CGAL::cross_product(sphere.point(p) - CGAL::ORIGIN, sphere.point(q) - CGAL::ORIGIN) *
+                        (sphere.point(r) - CGAL::ORIGIN) / 6;
     }
     for (std::size_t i = 0; i < outline.size(); ++i)
-        other -= CGAL::cross_product(sphere.point(Vertex(outline[i])) - CGAL::ORIGIN,
-                                     sphere.point(Vertex(outline[(i + 1) % outline.size()])) - CGAL::ORIGIN) *
-                 (sphere.point(Vertex(outline[0])) - CGAL::ORIGIN) / 6;
-    EXPECT_GT(std::abs(other - a.volume), 1e-9);
-    EXPECT_LE(std::abs(other - a.volume), a.volume_bound);
+        other_volume -= CGAL::cross_product(sphere.point(Vertex(outline[i])) - CGAL::ORIGIN,
+                                            sphere.point(Vertex(outline[(i + 1) % outline.size()])) - CGAL::ORIGIN) *
+                        (sphere.point(Vertex(outline[0])) - CGAL::ORIGIN) / 6;
+    EXPECT_GT(std::abs(other_volume - a.volume), 1e-9);
+    EXPECT_LE(std::abs(other_volume - a.volume), a.volume_bound);
 }
 
 TEST(Solid, HullVolume) {
@@ -156,8 +157,8 @@ TEST(Solid, HullVolume) {
 TEST(Reference, MassPropertiesMeasuredInACadSystem) {
     const Path folder = Path(OSTRAKA_SHARED_DATA) / "reference-trimesh";
     if (!std::filesystem::exists(folder / "mass_properties.json")) GTEST_SKIP() << folder << " is not here";
-    const Json list = read_json(folder / "mass_properties.json");
-    for (const auto& entry : list.GetArray()) {
+    const Json documents = read_json(folder / "mass_properties.json");
+    for (const auto& entry : documents.GetArray()) {
         const std::string name = entry["filename"].GetString();
         // The files have seams that must be welded within a tolerance first; volume and centroid do not need that.
         const TriangulatedSoup file = triangulate(read_polygons(folder / name));
@@ -248,7 +249,7 @@ TEST(Describe, RegionsLinesPointsAndMaps) {
     EXPECT_EQ(unit_of({"k", {1}, false, -2, ""}, ""), "");
 }
 
-TEST(Describe, TheLargestIdLeavesFreeOnes) {
+TEST(Describe, UsesFreeIdsBelowTheLargest) {
     Annotation annotation;
     annotation.attributes.emplace_back();
     annotation.attributes[0].id = std::numeric_limits<int>::max();
@@ -258,7 +259,7 @@ TEST(Describe, TheLargestIdLeavesFreeOnes) {
     EXPECT_EQ(annotation.attributes[2].id, 1);
 }
 
-TEST(Uncertainty, OfARulerIsThatOfItsPins) {
+TEST(Uncertainty, OfARulerFollowsFromItsPins) {
     // On a flat grid of unit cells the faces around an inner vertex have three units of area: a third is one.
     const Mesh mesh = build_mesh(test::grid(10, 10, false, false, [](double u, double v) {
         return std::array<double, 3>{10 * u, 10 * v, 0};
@@ -266,31 +267,31 @@ TEST(Uncertainty, OfARulerIsThatOfItsPins) {
     const Annotation root = whole(mesh);
     const Index a = 5 * 11 + 2, b = 5 * 11 + 8, c = 5 * 11 + 9;
     const double s = 1 / (4 * std::numbers::pi);
-    Evaluated taken = evaluate_with_uncertainty(mesh, root, pins("ruler", {a, b}));
-    EXPECT_DOUBLE_EQ(taken.value, 6);
-    EXPECT_NEAR(taken.uncertainty, std::sqrt(2 * s), 1e-12);
+    Evaluated measured = evaluate_with_uncertainty(mesh, root, pins("ruler", {a, b}));
+    EXPECT_DOUBLE_EQ(measured.value, 6);
+    EXPECT_NEAR(measured.uncertainty, std::sqrt(2 * s), 1e-12);
     // A pin in the middle of a straight way changes nothing; at a corner it counts twice.
     EXPECT_NEAR(evaluate_with_uncertainty(mesh, root, pins("ruler", {a, 5 * 11 + 5, b})).uncertainty, std::sqrt(2 * s), 1e-12);
     EXPECT_NEAR(evaluate_with_uncertainty(mesh, root, pins("ruler", {a, b, 2 * 11 + 8})).uncertainty, std::sqrt(4 * s), 1e-12);
     // Picked again: the mean, and the spread of the mean added.
-    Measure again = pins("ruler", {a, b});
-    again.repeats = {{a, c}};
-    taken = evaluate_with_uncertainty(mesh, root, again);
-    EXPECT_DOUBLE_EQ(taken.value, 6.5);
-    EXPECT_EQ(taken.pickings, 2U);
-    EXPECT_NEAR(taken.spread, std::sqrt(0.5), 1e-12);
-    EXPECT_NEAR(taken.uncertainty, std::sqrt(2 * s + 0.5 / 2), 1e-12);
-    EXPECT_DOUBLE_EQ(evaluate(mesh, root, again), 6.5);
+    Measure repeated = pins("ruler", {a, b});
+    repeated.repeats = {{a, c}};
+    measured = evaluate_with_uncertainty(mesh, root, repeated);
+    EXPECT_DOUBLE_EQ(measured.value, 6.5);
+    EXPECT_EQ(measured.pickings, 2U);
+    EXPECT_NEAR(measured.spread, std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(measured.uncertainty, std::sqrt(2 * s + 0.5 / 2), 1e-12);
+    EXPECT_DOUBLE_EQ(evaluate(mesh, root, repeated), 6.5);
     Measure bounding = pins("bounding", {a, b, c});
     bounding.direction = {1, 0, 0};
     EXPECT_NEAR(evaluate_with_uncertainty(mesh, root, bounding).uncertainty, std::sqrt(2 * s), 1e-12);
     bounding.direction = {0, 0, 1};
     EXPECT_EQ(evaluate_with_uncertainty(mesh, root, bounding).uncertainty, 0) << "all at one height";
-    again.repeats = {{a}};
-    EXPECT_THROW((void)evaluate(mesh, root, again), Error);
+    repeated.repeats = {{a}};
+    EXPECT_THROW((void)evaluate(mesh, root, repeated), Error);
 }
 
-TEST(Uncertainty, CoversWhatPickingOnCoarseMeshesGivesAway) {
+TEST(Uncertainty, CoversTheErrorOfPickingOnCoarseMeshes) {
     // Two fixed places on a sphere, pinned to the nearest vertices of turned meshes: the error stays within three of what is said
     // nearly always, and is not far below it on the whole.
     const Vector3d p(1, 0, 0), q = Vector3d(-0.3, 1, 0.4).normalized();
@@ -300,16 +301,17 @@ TEST(Uncertainty, CoversWhatPickingOnCoarseMeshesGivesAway) {
     const int count = 200;
     for (int seed = 0; seed < count; ++seed) {
         const Mesh mesh = build_mesh(moved(test::octahedron_sphere(4), some_rotation(seed + 1000), Vector3d::Zero()));
-        const auto nearest = [&](const Vector3d& place) {
+        const auto nearest = [&](const Vector3d& position) {
             Index best = 0;
             for (const Vertex v : mesh.vertices()) {
-                const Point at(place[0], place[1], place[2]);
-                if (CGAL::squared_distance(mesh.point(v), at) < CGAL::squared_distance(mesh.point(Vertex(best)), at)) best = v;
+                const Point target(position[0], position[1], position[2]);
+                if (CGAL::squared_distance(mesh.point(v), target) < CGAL::squared_distance(mesh.point(Vertex(best)), target))
+                    best = v;
             }
             return best;
         };
-        const Evaluated taken = evaluate_with_uncertainty(mesh, whole(mesh), pins("ruler", {nearest(p), nearest(q)}));
-        const double error = (taken.value - truth) / taken.uncertainty;
+        const Evaluated measured = evaluate_with_uncertainty(mesh, whole(mesh), pins("ruler", {nearest(p), nearest(q)}));
+        const double error = (measured.value - truth) / measured.uncertainty;
         squares += error * error;
         outside += std::abs(error) > 3;
     }
@@ -318,7 +320,7 @@ TEST(Uncertainty, CoversWhatPickingOnCoarseMeshesGivesAway) {
     EXPECT_LT(outside, 4);
 }
 
-TEST(Uncertainty, PickingsOfOneNameBecomeOneMeasure) {
+TEST(Uncertainty, PickingsOfTheSameNameBecomeOneMeasure) {
     Annotation annotation;
     const auto add = [&](int id, const std::string& name, const Measure& measure) {
         Attribute attribute;

@@ -31,33 +31,33 @@ TEST(Exactness, OfPolyhedraUnderRigidMotionToRounding) {
         const double tolerance = 1e-12 * (1 + offset / diagonal);
         DescriptorSearch search(mesh);
         const auto value = [&](const std::string& name) { return search.find(root, name)->values.front(); };
-        const auto near = [&](double x, double exact, const char* what) {
+        const auto expect_near = [&](double x, double exact, const char* what) {
             EXPECT_LE(std::abs(x - exact), tolerance * std::abs(exact)) << what << " at " << offset;
         };
-        near(value("area"), 2 * (a * b + b * c + c * a), "area");
-        near(value("volume"), a * b * c, "volume");
+        expect_near(value("area"), 2 * (a * b + b * c + c * a), "area");
+        expect_near(value("volume"), a * b * c, "volume");
         EXPECT_EQ(value("volume bound"), 0);
-        near(value("mean curvature integral"), std::numbers::pi * (a + b + c), "mean curvature");
+        expect_near(value("mean curvature integral"), std::numbers::pi * (a + b + c), "mean curvature");
         const Vector3d middle = rotation * Vector3d(a / 2, b / 2, c / 2) + translation;
         for (const char* name : {"centroid", "solid centroid", "box centre"}) {
-            const auto at = search.find(root, name)->values;
+            const auto centre = search.find(root, name)->values;
             const double allowed = (std::string(name) == "box centre" ? 1e-6 : tolerance) * (diagonal + offset);
-            EXPECT_LE((Vector3d(at[0], at[1], at[2]) - middle).norm(), allowed) << name << " at " << offset;
+            EXPECT_LE((Vector3d(centre[0], centre[1], centre[2]) - middle).norm(), allowed) << name << " at " << offset;
         }
-        near(evaluate(mesh, root, pins("ruler", {o, far})), diagonal, "ruler");
-        near(evaluate(mesh, root, pins("tape", {o, up})), c, "tape");
+        expect_near(evaluate(mesh, root, pins("ruler", {o, far})), diagonal, "ruler");
+        expect_near(evaluate(mesh, root, pins("tape", {o, up})), c, "tape");
         Measure bounding = pins("bounding", {o, far});
         const Vector3d z = rotation * Vector3d::UnitZ();
         bounding.direction = std::array<double, 3>{z[0], z[1], z[2]};
-        near(evaluate(mesh, root, bounding), c, "bounding");
+        expect_near(evaluate(mesh, root, bounding), c, "bounding");
         Annotation side;  // the faces on x = 0
         for (const Face f : mesh.faces())
             if (std::abs((rotation.transpose() * (Vector3d(centroid(mesh, f).x(), centroid(mesh, f).y(), centroid(mesh, f).z()) -
                                                   translation))[0]) < 1e-6)
                 side.faces.push_back(f);
-        near(search.find(side, "area")->values.front(), b * c, "area of a side");
-        near(search.find(side, "perimeter")->values.front(), 2 * (b + c), "perimeter of a side");
-        near(search.find(side, "circularity")->values.front(), 4 * (b + c) * (b + c) / (b * c), "circularity");
+        expect_near(search.find(side, "area")->values.front(), b * c, "area of a side");
+        expect_near(search.find(side, "perimeter")->values.front(), 2 * (b + c), "perimeter of a side");
+        expect_near(search.find(side, "circularity")->values.front(), 4 * (b + c) * (b + c) / (b * c), "circularity");
     }
 }
 
@@ -102,7 +102,7 @@ TEST(Exactness, OfRegularPolyhedra) {
             ball.soup.points.push_back({a, b, 0});
             ball.soup.points.push_back({b, 0, a});
         }
-    const auto apart = [&](Index i, Index j) {
+    const auto squared_distance = [&](Index i, Index j) {
         double sum = 0;
         for (std::size_t k = 0; k < 3; ++k) sum += std::pow(ball.soup.points[i][k] - ball.soup.points[j][k], 2);
         return sum;
@@ -110,7 +110,7 @@ TEST(Exactness, OfRegularPolyhedra) {
     for (Index i = 0; i < 12; ++i)
         for (Index j = i + 1; j < 12; ++j)
             for (Index k = j + 1; k < 12; ++k) {
-                if (apart(i, j) > 4.1 || apart(j, k) > 4.1 || apart(k, i) > 4.1) continue;
+                if (squared_distance(i, j) > 4.1 || squared_distance(j, k) > 4.1 || squared_distance(k, i) > 4.1) continue;
                 const Vector3d p(ball.soup.points[i].data()), q(ball.soup.points[j].data()), r(ball.soup.points[k].data());
                 const bool outward = (q - p).cross(r - p).dot(p) > 0;
                 ball.soup.triangles.push_back(outward ? std::array{i, j, k} : std::array{i, k, j});

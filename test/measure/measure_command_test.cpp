@@ -32,14 +32,14 @@ protected:
             if (centroid(mesh, f).x() == 0) side.faces.push_back(f);
         write_annotations(annotated, set, mesh, cube.string(), {});
     }
-    Index at(double x, double y, double z) const {
+    Index vertex_at(double x, double y, double z) const {
         for (const Vertex v : mesh.vertices())
             if (mesh.point(v) == Point(x, y, z)) return v;
         return no_index;
     }
-    std::string pins(std::initializer_list<Index> list) const {
+    std::string pins(std::initializer_list<Index> vertices) const {
         std::string text;
-        for (const Index v : list) text += (text.empty() ? "" : ",") + std::to_string(v);
+        for (const Index v : vertices) text += (text.empty() ? "" : ",") + std::to_string(v);
         return text;
     }
     test::CommandResult run(const std::string& words) const { return run_command("measure " + words); }
@@ -51,10 +51,10 @@ protected:
     }
 };
 
-TEST_F(MeasureCommand, ASecondMeasureOfOneNameIsNoted) {
+TEST_F(MeasureCommand, ASecondMeasureOfTheSameNameIsReported) {
     const Path out = scratch / "out.ant.json", last = scratch / "last.ant.json";
     const std::string measure = "take " + cube.string() + " --tool ruler --name r --annotation side --points " +
-                                pins({at(0, 0, 0), at(0, 1, 1)}) + " --annotations ";
+                                pins({vertex_at(0, 0, 0), vertex_at(0, 1, 1)}) + " --annotations ";
     const auto first = run(measure + annotated.string() + " --output " + out.string());
     ASSERT_EQ(first.code, 0) << first.err;
     EXPECT_EQ(first.err, "");
@@ -75,30 +75,30 @@ TEST_F(MeasureCommand, DescribeShowsAxesOneByOne) {
 }
 
 TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
-    const std::string o = pins({at(0, 0, 0), at(1, 1, 1)});
+    const std::string o = pins({vertex_at(0, 0, 0), vertex_at(1, 1, 1)});
     auto result = run("take " + cube.string() + " --tool ruler --json --points " + o);
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_DOUBLE_EQ(parse_json(result.out, "report")["result"]["value"].GetDouble(), std::sqrt(3));
     const Path out = scratch / "out.ant.json", last = scratch / "last.ant.json";
-    const std::string rest = " --annotations " + annotated.string() + " --annotation side --output " + out.string();
+    const std::string output_options = " --annotations " + annotated.string() + " --annotation side --output " + out.string();
     result = run("take " + cube.string() + " --tool tape --geodesic exact --name way --points " + o + " --repeat " +
-                 pins({at(0, 0, 0), at(1, 1, 0.5)}) + rest);
+                 pins({vertex_at(0, 0, 0), vertex_at(1, 1, 0.5)}) + output_options);
     ASSERT_EQ(result.code, 0) << result.err;
     AnnotationSet set = read_annotations(out, mesh);
     ASSERT_EQ(set.find(7)->attributes.size(), 1U);
-    const Measure way = set.find(7)->attributes[0].measure;
-    EXPECT_TRUE(way.exact);
-    EXPECT_EQ(way.unit, "mm");
-    EXPECT_NEAR(*way.value, (std::sqrt(5) + std::hypot(1.5, 1)) / 2, 1e-12);
-    EXPECT_GT(*way.uncertainty, 0);
-    ASSERT_EQ(way.repeats.size(), 1U);
+    const Measure measure = set.find(7)->attributes[0].measure;
+    EXPECT_TRUE(measure.exact);
+    EXPECT_EQ(measure.unit, "mm");
+    EXPECT_NEAR(*measure.value, (std::sqrt(5) + std::hypot(1.5, 1)) / 2, 1e-12);
+    EXPECT_GT(*measure.uncertainty, 0);
+    ASSERT_EQ(measure.repeats.size(), 1U);
     // What is stored is enough to take it again: checking finds no defect, refreshing changes no digit.
     EXPECT_EQ(run_command("annotation check " + cube.string() + " " + out.string()).code, 0);
     result = run("refresh " + cube.string() + " --annotations " + out.string() + " --output " + last.string());
     EXPECT_EQ(result.code, 0) << result.err;
     set = read_annotations(last, mesh);
-    EXPECT_EQ(set.find(7)->attributes[0].measure.value, way.value);
-    EXPECT_EQ(set.find(7)->attributes[0].measure.uncertainty, way.uncertainty);
+    EXPECT_EQ(set.find(7)->attributes[0].measure.value, measure.value);
+    EXPECT_EQ(set.find(7)->attributes[0].measure.uncertainty, measure.uncertainty);
     // By coordinates; along a direction, the whole annotation.
     result = run("take " + cube.string() + " --tool ruler --at 0.1,0,0 --at 5,0.9,0");
     EXPECT_EQ(result.code, 1);
@@ -136,13 +136,13 @@ TEST_F(MeasureCommand, DescribesAndStores) {
     EXPECT_EQ(run_command("annotation check " + cube.string() + " " + out.string()).code, 0);
 }
 
-TEST_F(MeasureCommand, MapsAreWrittenForPicturesAndOthers) {
+TEST_F(MeasureCommand, WritesMaps) {
     const Path map = scratch / "map.npy", text = scratch / "map.txt";
-    ASSERT_EQ(run("map " + cube.string() + " " + map.string() + " --of geodesic --from " + pins({at(0, 0, 0)})).code, 0);
+    ASSERT_EQ(run("map " + cube.string() + " " + map.string() + " --of geodesic --from " + pins({vertex_at(0, 0, 0)})).code, 0);
     const auto values = read_values(map);
     ASSERT_EQ(values.size(), mesh.number_of_vertices());
-    EXPECT_NEAR(values[at(1, 1, 1)], std::sqrt(5), 1e-12);
-    EXPECT_EQ(run("map " + cube.string() + " " + text.string() + " --of geodesic --from " + pins({at(0, 0, 0)})).code, 0);
+    EXPECT_NEAR(values[vertex_at(1, 1, 1)], std::sqrt(5), 1e-12);
+    EXPECT_EQ(run("map " + cube.string() + " " + text.string() + " --of geodesic --from " + pins({vertex_at(0, 0, 0)})).code, 0);
     EXPECT_EQ(read_values(text), values);
     EXPECT_EQ(run("map " + cube.string() + " " + map.string() + " --of thickness --on face").code, 0);
     EXPECT_EQ(read_values(map).size(), mesh.number_of_faces());
@@ -180,14 +180,14 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     EXPECT_EQ(check().code, 0) << check().out;
 
     // Written again, the attribute is replaced.
-    const Path before = scratch / "before.ant.json";
-    std::filesystem::rename(set_file, before);
-    const auto again_mapped = run("map " + pot.string() + " " + map.string() + " --of thickness --on face --name bumpiness" +
-                                  " --annotations " + before.string() + " --annotations-out " + set_file.string());
-    ASSERT_EQ(again_mapped.code, 0) << again_mapped.err;
-    const AnnotationSet again = read_annotations(set_file, body);
-    ASSERT_EQ(again.annotations[0].attributes.size(), 1U);
-    EXPECT_EQ(again.annotations[0].attributes[0].descriptor.unit, "mm");
+    const Path earlier_file = scratch / "before.ant.json";
+    std::filesystem::rename(set_file, earlier_file);
+    const auto remapped = run("map " + pot.string() + " " + map.string() + " --of thickness --on face --name bumpiness" +
+                              " --annotations " + earlier_file.string() + " --annotations-out " + set_file.string());
+    ASSERT_EQ(remapped.code, 0) << remapped.err;
+    const AnnotationSet updated = read_annotations(set_file, body);
+    ASSERT_EQ(updated.annotations[0].attributes.size(), 1U);
+    EXPECT_EQ(updated.annotations[0].attributes[0].descriptor.unit, "mm");
     EXPECT_EQ(check().code, 0) << check().out;
 
     // A changed file, one of another mesh, and none at all are defects.
@@ -195,9 +195,9 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     EXPECT_EQ(check().code, 3);
     EXPECT_NE(check().out.find("has changed since"), std::string::npos) << check().out;
     write_values(map, {1, 2, 3});
-    AnnotationSet other = again;
-    other.annotations[0].attributes[0].descriptor.sha256 = sha256_of_file(map);
-    write_annotations(set_file, other, body, pot.string(), {});
+    AnnotationSet changed = updated;
+    changed.annotations[0].attributes[0].descriptor.sha256 = sha256_of_file(map);
+    write_annotations(set_file, changed, body, pot.string(), {});
     EXPECT_EQ(check().code, 3);
     EXPECT_NE(check().out.find("which has 3 numbers"), std::string::npos) << check().out;
     std::filesystem::remove(map);
@@ -213,21 +213,21 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     EXPECT_TRUE(read_annotations(carried, read_mesh(finer).mesh).annotations.at(0).attributes.at(0).descriptor.stale);
 }
 
-TEST_F(MeasureCommand, AMapThatIsNoAttributeIsRefused) {
+TEST_F(MeasureCommand, RejectsMapsThatCannotBecomeAttributes) {
     make_folder(scratch / "in");
     const std::string map = "map " + cube.string() + " ";
-    const std::string here = (scratch / "a.npy").string(), out = " --annotations-out " + (scratch / "a.ant.json").string();
+    const std::string map_file = (scratch / "a.npy").string(), out = " --annotations-out " + (scratch / "a.ant.json").string();
     refused(map + (scratch / "a.txt").string() + " --of thickness" + out, 2, "end its name in .npy");
-    refused(map + here + " --of thickness --annotations-out " + (scratch / "in" / "a.ant.json").string(), 2,
+    refused(map + map_file + " --of thickness --annotations-out " + (scratch / "in" / "a.ant.json").string(), 2,
             "outside of the folder");
-    refused(map + here + " --of thickness --name bumps", 2, "--annotations-out");
-    refused(map + here + " --of thickness --annotations " + annotated.string(), 2, "none are written");
-    refused(map + here + " --of thickness --annotation side" + out, 2, "add --annotations");
-    refused(map + here + " --of thickness --annotation nose --annotations " + annotated.string() + out, 1, "nose");
+    refused(map + map_file + " --of thickness --name bumps", 2, "--annotations-out");
+    refused(map + map_file + " --of thickness --annotations " + annotated.string(), 2, "none are written");
+    refused(map + map_file + " --of thickness --annotation side" + out, 2, "add --annotations");
+    refused(map + map_file + " --of thickness --annotation nose --annotations " + annotated.string() + out, 1, "nose");
     EXPECT_FALSE(file_exists(scratch / "a.ant.json"));
 }
 
-TEST_F(MeasureCommand, BadInputIsRefusedAndEarlierOutputsStay) {
+TEST_F(MeasureCommand, InvalidInputIsRejectedAndEarlierOutputsAreKept) {
     const Path out = scratch.file("out.ant.json", "earlier");
     const std::string c = cube.string(), o = " --output " + out.string();
     refused("take " + c + " --tool ruler --points 3" + o, 2, "1 pin");

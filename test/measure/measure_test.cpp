@@ -15,7 +15,7 @@ using namespace ostraka::example;
 
 namespace {
 
-Annotation whole(const Mesh& mesh) {
+Annotation whole_annotation(const Mesh& mesh) {
     AnnotationSet set;
     return ensure_root(set, mesh);
 }
@@ -37,7 +37,7 @@ bool mentions(const std::vector<Finding>& findings, bool defect, const std::stri
 
 TEST(Measure, ToolsOnAFlatSquare) {
     const Mesh mesh = grid(4, 2);
-    const Annotation root = whole(mesh);
+    const Annotation root = whole_annotation(mesh);
     EXPECT_DOUBLE_EQ(evaluate(mesh, root, measure("ruler", {0, 24})), 8 * std::numbers::sqrt2);
     EXPECT_DOUBLE_EQ(evaluate(mesh, root, measure("ruler", {0, 4, 24})), 16);
     EXPECT_DOUBLE_EQ(evaluate(mesh, root, measure("tape", {0, 24})), 8 * std::numbers::sqrt2);  // along the diagonals
@@ -47,23 +47,25 @@ TEST(Measure, ToolsOnAFlatSquare) {
     EXPECT_DOUBLE_EQ(evaluate(mesh, root, measure("bounding", {0, 24}, std::array<double, 3>{0, 0, 1})), 0);
 }
 
-TEST(Measure, ScaleAndPlaceDoNotMatter) {
+TEST(Measure, IsInvariantToScaleAndPosition) {
     for (const double scale : {1e-9, 1.0, 1e9}) {
         const Mesh mesh = grid(3, scale);
-        EXPECT_NEAR(evaluate(mesh, whole(mesh), measure("tape", {3, 12})) / scale, 6, 1e-12);
+        EXPECT_NEAR(evaluate(mesh, whole_annotation(mesh), measure("tape", {3, 12})) / scale, 6, 1e-12);
     }
-    const Mesh near = spheres(2), far = spheres(2, {{1e7, 1e7, 1e7}});
+    const Mesh centred = spheres(2), distant = spheres(2, {{1e7, 1e7, 1e7}});
     for (const char* tool : {"ruler", "tape"})
-        EXPECT_NEAR(evaluate(near, whole(near), measure(tool, {0, 1})), evaluate(far, whole(far), measure(tool, {0, 1})), 1e-6);
-    EXPECT_NEAR(*evaluate(near, whole(near), "volume"), *evaluate(far, whole(far), "volume"), 1e-6);
+        EXPECT_NEAR(evaluate(centred, whole_annotation(centred), measure(tool, {0, 1})),
+                    evaluate(distant, whole_annotation(distant), measure(tool, {0, 1})), 1e-6);
+    EXPECT_NEAR(*evaluate(centred, whole_annotation(centred), "volume"), *evaluate(distant, whole_annotation(distant), "volume"),
+                1e-6);
 }
 
 TEST(Measure, DirectionsOfAnyLengthAreTheSameDirection) {
     const Mesh mesh = spheres(3);
-    const Annotation root = whole(mesh);
-    const std::array<double, 3> plain{1, 2, -3};
-    const auto ends = extremes(mesh, root, plain);
-    const double value = evaluate(mesh, root, measure("bounding", {ends[0], ends[1]}, plain));
+    const Annotation root = whole_annotation(mesh);
+    const std::array<double, 3> direction_vector{1, 2, -3};
+    const auto ends = extremes(mesh, root, direction_vector);
+    const double value = evaluate(mesh, root, measure("bounding", {ends[0], ends[1]}, direction_vector));
     for (const double length : {5e307, 1e200, 1e-200, 1e-307}) {
         const std::array<double, 3> direction{length, 2 * length, -3 * length};
         EXPECT_EQ(extremes(mesh, root, direction), ends) << length;
@@ -80,7 +82,7 @@ TEST(Measure, DirectionsOfAnyLengthAreTheSameDirection) {
 
 TEST(Measure, PinsInsideFaces) {
     const Mesh mesh = grid(2);
-    const Annotation root = whole(mesh);
+    const Annotation root = whole_annotation(mesh);
     Measure tape = measure("tape", {0, 1});
     tape.locations = {{0, {0.5, 0.25, 0.25}}, {0, {0.25, 0.5, 0.25}}};
     Measure ruler = tape;
@@ -98,15 +100,16 @@ TEST(Measure, PinsInsideFaces) {
 
 TEST(Measure, DescriptorsOfASphere) {
     const Mesh mesh = spheres(5, {{0, 0, 0}}, 2);
-    const Annotation root = whole(mesh);
+    const Annotation root = whole_annotation(mesh);
     EXPECT_NEAR(*evaluate(mesh, root, "area"), 16 * std::numbers::pi, 0.01 * 16 * std::numbers::pi);
     EXPECT_NEAR(*evaluate(mesh, root, "volume"), 32 * std::numbers::pi / 3, 0.01 * 32 * std::numbers::pi / 3);
     EXPECT_EQ(*evaluate(mesh, root, "perimeter"), 0);
     EXPECT_FALSE(evaluate(mesh, root, "length"));
     EXPECT_FALSE(evaluate(mesh, root, "roundness"));
-    EXPECT_EQ(*evaluate(grid(1), whole(grid(1)), "volume"), 0) << "closed by its outline, a flat mesh encloses nothing";
+    EXPECT_EQ(*evaluate(grid(1), whole_annotation(grid(1)), "volume"), 0)
+        << "closed by its outline, a flat mesh encloses nothing";
     const Mesh square = grid(4);
-    EXPECT_DOUBLE_EQ(*evaluate(square, whole(square), "circularity"), 16);
+    EXPECT_DOUBLE_EQ(*evaluate(square, whole_annotation(square), "circularity"), 16);
     EXPECT_EQ(descriptor_unit("area", "mm"), "mm^2");
     EXPECT_EQ(descriptor_unit("circularity", "mm"), "");
     EXPECT_EQ(extremes(mesh, root, {0, 0, 1}), (std::array<Index, 2>{5, 4}));
@@ -114,7 +117,7 @@ TEST(Measure, DescriptorsOfASphere) {
 
 TEST(Measure, ErrorsNameTheAnnotation) {
     const Mesh mesh = spheres(0, {{0, 0, 0}, {5, 0, 0}});
-    Annotation annotation = whole(mesh);
+    Annotation annotation = whole_annotation(mesh);
     annotation.tag = "pair";
     const auto fails = [&](const Measure& m) {
         try {
@@ -130,14 +133,14 @@ TEST(Measure, ErrorsNameTheAnnotation) {
     EXPECT_TRUE(fails(measure("bounding", {0, 1})));
     EXPECT_TRUE(fails(measure("bounding", {0, 1}, std::array<double, 3>{0, 0, 0})));
     EXPECT_TRUE(fails(measure("laser", {0, 1})));
-    Measure lost = measure("ruler", {0, 1});
-    lost.locations = {{0, {1, 0, 0}}, {99, {1, 0, 0}}};
-    EXPECT_TRUE(fails(lost));
+    Measure invalid = measure("ruler", {0, 1});
+    invalid.locations = {{0, {1, 0, 0}}, {99, {1, 0, 0}}};
+    EXPECT_TRUE(fails(invalid));
     annotation.faces.clear();
     EXPECT_THROW((void)extremes(mesh, annotation, {0, 0, 1}), Error);
 }
 
-TEST(Measure, RefreshComputesWhatItCanAndMarksTheRest) {
+TEST(Measure, RefreshMarksValuesThatCannotBeComputed) {
     const Mesh mesh = spheres(0, {{0, 0, 0}, {5, 0, 0}});
     AnnotationSet set;
     Annotation& root = ensure_root(set, mesh);

@@ -74,19 +74,19 @@ TEST_P(EveryScheme, SmallestMeshes) {
     for (const TriangleSoup& soup :
          {TriangleSoup{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}},
           TriangleSoup{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}}}) {
-        for (std::uint64_t wanted = soup.points.size(); wanted < 40; ++wanted) {
+        for (std::uint64_t target = soup.points.size(); target < 40; ++target) {
             Mesh mesh = build_mesh(soup);
             RefineOptions options;
-            options.vertices = wanted;
+            options.vertices = target;
             set_option(options, "scheme", GetParam());
             refine(mesh, options);
-            EXPECT_EQ(mesh.number_of_vertices(), wanted);
+            EXPECT_EQ(mesh.number_of_vertices(), target);
             EXPECT_TRUE(is_sound(mesh));
         }
     }
 }
 
-TEST_P(EveryScheme, TheSameTwice) {
+TEST_P(EveryScheme, IsDeterministic) {
     Mesh first = build_mesh(torus(48, 24)), second = first;
     RefineOptions options;
     options.vertices = 20000;
@@ -152,15 +152,15 @@ TEST(Refine, HalvingKeepsAnglesBounded) {
         return minimum;
     };
     Mesh mesh = build_mesh(patch(7, 40));
-    const double before = smallest_angle(mesh);
+    const double original_angle = smallest_angle(mesh);
     RefineOptions options;
     options.vertices = 20000;
     options.scheme = RefineOptions::Scheme::longest_edge;
     refine(mesh, options);
-    EXPECT_GE(smallest_angle(mesh), 0.5 * before * (1 - 1e-9));
+    EXPECT_GE(smallest_angle(mesh), 0.5 * original_angle * (1 - 1e-9));
 }
 
-TEST(Refine, WrongRequests) {
+TEST(Refine, InvalidRequests) {
     Mesh mesh = build_mesh(octahedron_sphere(2));
     const auto kind_of = [&](auto change) {
         RefineOptions options;
@@ -181,10 +181,10 @@ TEST(Refine, WrongRequests) {
     EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 12; }), usage);  // too many edges for 32 bits
     EXPECT_EQ(kind_of([](RefineOptions& o) { o.levels = 1, o.scheme = RefineOptions::Scheme::longest_edge; }), usage);
     EXPECT_EQ(kind_of([](RefineOptions& o) { set_option(o, "scheme", "butterfly"); }), usage);
-    Mesh empty;
+    Mesh empty_mesh;
     RefineOptions options;
     options.levels = 1;
-    EXPECT_THROW(refine(empty, options), Error);
+    EXPECT_THROW(refine(empty_mesh, options), Error);
     // All vertices in one place: there is nothing to halve.
     Mesh point = build_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}});
     options.levels = 0;

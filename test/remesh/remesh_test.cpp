@@ -26,13 +26,13 @@ TEST(Remesh, KeepsSurfaceAndTopologyAtAnyResolution) {
             EXPECT_NEAR(surface_area(result.mesh) / surface_area(mesh), 1, 0.03);
             // Edges are of nearly one length.
             const double mean = mean_edge_length(result.mesh);
-            std::size_t odd = 0;
+            std::size_t outliers = 0;
             for (const Edge e : result.mesh.edges()) {
                 const double length = std::sqrt(CGAL::squared_distance(result.mesh.point(result.mesh.vertex(e, 0)),
                                                                        result.mesh.point(result.mesh.vertex(e, 1))));
-                odd += length < 0.5 * mean || length > 2 * mean;
+                outliers += length < 0.5 * mean || length > 2 * mean;
             }
-            EXPECT_LT(odd, result.mesh.number_of_edges() / 20);
+            EXPECT_LT(outliers, result.mesh.number_of_edges() / 20);
         }
     }
 }
@@ -47,7 +47,7 @@ TEST(Remesh, FeaturesStay) {
     EXPECT_NEAR(surface_area(result.mesh), 6, 0.01);
 }
 
-TEST(Remesh, TheSameTwice) {
+TEST(Remesh, IsDeterministic) {
     const Mesh mesh = build_mesh(torus(48, 24));
     RemeshOptions options;
     options.vertices = 2000;
@@ -55,9 +55,9 @@ TEST(Remesh, TheSameTwice) {
 }
 
 TEST(Remesh, APointFarAwayIsAnErrorNotAHang) {
-    for (const double far : {1e9, 1e18}) {
+    for (const double distance : {1e9, 1e18}) {
         TriangleSoup soup = torus(48, 24);
-        soup.points[5][1] = far;
+        soup.points[5][1] = distance;
         RemeshOptions options;
         options.vertices = 150;
         EXPECT_THROW(remesh(build_mesh(soup), options), Error);
@@ -81,7 +81,7 @@ TEST(Remesh, APieceWithoutAreaBesideTheObject) {
     }
 }
 
-TEST(Remesh, NothingToRemesh) {
+TEST(Remesh, RejectsMeshesWithoutArea) {
     RemeshOptions options;
     options.vertices = 100;
     EXPECT_THROW(remesh(Mesh(), options), Error);

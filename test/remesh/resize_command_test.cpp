@@ -29,10 +29,10 @@ protected:
         line.polylines = {{0}};
         for (int i = 0; i < 8; ++i) {
             const Vertex v(line.polylines[0].back());
-            Vertex best = v;  // towards -z
+            Vertex lowest = v;  // towards -z
             for (const Vertex w : CGAL::vertices_around_target(v, mesh))
-                if (mesh.point(w).z() < mesh.point(best).z()) best = w;
-            line.polylines[0].push_back(best);
+                if (mesh.point(w).z() < mesh.point(lowest).z()) lowest = w;
+            line.polylines[0].push_back(lowest);
         }
         Annotation point;
         point.id = 5, point.tag = "top", point.type = AnnotationType::point, point.points = {4};
@@ -40,7 +40,7 @@ protected:
         write_annotations(scratch / "ball.ant.json", set, mesh, "ball.ply", {});
     }
     [[nodiscard]] CommandResult run(const std::string& arguments) const { return run_command("mesh " + arguments); }
-    [[nodiscard]] std::string at(const std::string& name) const { return (scratch / name).string(); }
+    [[nodiscard]] std::string path_of(const std::string& name) const { return (scratch / name).string(); }
 
     Scratch scratch;
     Mesh mesh;
@@ -57,31 +57,32 @@ double area_of(const Mesh& mesh, const Annotation& annotation) {
 TEST_F(ResizeCommand, SimplifyCarriesAnnotationsAndLabels) {
     for (const std::string flags : {"", "--protect-outlines", "--outlines ignore", "--method lindstrom-turk"}) {
         SCOPED_TRACE(flags);
-        const auto result =
-            run("simplify " + at("ball.ply") + " " + at("small.ply") + " --vertices 300 --annotations " + at("ball.ant.json") +
-                " --annotations-out " + at("small.ant.json") + " --labels-out " + at("small.txt") + " --vertex-map " +
-                at("vertices.json") + " --face-map " + at("faces.json") + " " + flags);
+        const auto result = run("simplify " + path_of("ball.ply") + " " + path_of("small.ply") +
+                                " --vertices 300 --annotations " + path_of("ball.ant.json") + " --annotations-out " +
+                                path_of("small.ant.json") + " --labels-out " + path_of("small.txt") + " --vertex-map " +
+                                path_of("vertices.json") + " --face-map " + path_of("faces.json") + " " + flags);
         ASSERT_EQ(result.code, 0) << result.err;
-        const MeshFile small = read_mesh(at("small.ply"));
+        const MeshFile small = read_mesh(path_of("small.ply"));
         EXPECT_EQ(small.mesh.number_of_vertices(), 300u);
         EXPECT_EQ(small.extras.face_labels.size(), small.mesh.number_of_faces());
-        const AnnotationSet before = read_annotations(at("ball.ant.json"), mesh),
-                            after = read_annotations(at("small.ant.json"), small.mesh);
-        ASSERT_EQ(after.annotations.size(), 3u);
-        EXPECT_NEAR(area_of(small.mesh, *after.find(3)) / area_of(mesh, *before.find(3)), 1, 0.1);
-        EXPECT_GE(after.find(4)->polylines.at(0).size(), 2u);
-        EXPECT_EQ(after.find(5)->points.size(), 1u);
+        const AnnotationSet original = read_annotations(path_of("ball.ant.json"), mesh),
+                            simplified = read_annotations(path_of("small.ant.json"), small.mesh);
+        ASSERT_EQ(simplified.annotations.size(), 3u);
+        EXPECT_NEAR(area_of(small.mesh, *simplified.find(3)) / area_of(mesh, *original.find(3)), 1, 0.1);
+        EXPECT_GE(simplified.find(4)->polylines.at(0).size(), 2u);
+        EXPECT_EQ(simplified.find(5)->points.size(), 1u);
         EXPECT_NE(result.out.find("cap"), std::string::npos);
-        EXPECT_TRUE(std::filesystem::exists(at("small.txt")));
-        EXPECT_TRUE(std::filesystem::exists(at("vertices.json")));
+        EXPECT_TRUE(std::filesystem::exists(path_of("small.txt")));
+        EXPECT_TRUE(std::filesystem::exists(path_of("vertices.json")));
     }
 }
 
 TEST_F(ResizeCommand, RefineKeepsAreaAndLengthExactly) {
     for (const std::string flags : {"--vertices 5000", "--levels 1", "--vertices 3000 --scheme longest-edge"}) {
         SCOPED_TRACE(flags);
-        const auto result = run("refine " + at("ball.ply") + " " + at("large.obj") + " --annotations " + at("ball.ant.json") +
-                                " --annotations-out " + at("large.ant.json") + " --json " + flags);
+        const auto result =
+            run("refine " + path_of("ball.ply") + " " + path_of("large.obj") + " --annotations " + path_of("ball.ant.json") +
+                " --annotations-out " + path_of("large.ant.json") + " --json " + flags);
         ASSERT_EQ(result.code, 0) << result.err;
         const Json report = parse_json(result.out, "report");
         validate(report, "report", "report");
@@ -89,16 +90,16 @@ TEST_F(ResizeCommand, RefineKeepsAreaAndLengthExactly) {
             EXPECT_NEAR(entry["after"]["area"].GetDouble(), entry["before"]["area"].GetDouble(), 1e-9);
             EXPECT_NEAR(entry["after"]["length"].GetDouble(), entry["before"]["length"].GetDouble(), 1e-9);
         }
-        const MeshFile large = read_mesh(at("large.obj"));
-        const AnnotationSet after = read_annotations(at("large.ant.json"), large.mesh);
-        EXPECT_EQ(after.annotations.size(), 3u);
+        const MeshFile large = read_mesh(path_of("large.obj"));
+        const AnnotationSet refined = read_annotations(path_of("large.ant.json"), large.mesh);
+        EXPECT_EQ(refined.annotations.size(), 3u);
     }
 }
 
-TEST_F(ResizeCommand, RemeshMeetsTheNumber) {
-    const auto result = run("remesh " + at("ball.ply") + " " + at("new.off") + " --vertices 700");
+TEST_F(ResizeCommand, RemeshReachesTheRequestedNumber) {
+    const auto result = run("remesh " + path_of("ball.ply") + " " + path_of("new.off") + " --vertices 700");
     ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(read_mesh(at("new.off")).mesh.number_of_vertices(), 700u);
+    EXPECT_EQ(read_mesh(path_of("new.off")).mesh.number_of_vertices(), 700u);
     EXPECT_NE(result.err.find("labels"), std::string::npos) << result.err;  // says that they are left out
 }
 
@@ -106,32 +107,32 @@ TEST_F(ResizeCommand, TheSameBytesTwiceAndForAnyNumberOfThreads) {
     for (const std::string name : {"a", "b"}) {
         const std::string threads = name == "a" ? " --threads 1" : " --threads 2";
         std::filesystem::create_directory(scratch / name);
-        ASSERT_EQ(run("simplify " + at("ball.ply") + " " + at(name + "/s.ply") + " --vertices 200 --annotations " +
-                      at("ball.ant.json") + " --annotations-out " + at(name + "/s.ant.json") + threads)
+        ASSERT_EQ(run("simplify " + path_of("ball.ply") + " " + path_of(name + "/s.ply") + " --vertices 200 --annotations " +
+                      path_of("ball.ant.json") + " --annotations-out " + path_of(name + "/s.ant.json") + threads)
                       .code,
                   0);
-        ASSERT_EQ(run("remesh " + at("ball.ply") + " " + at(name + "/r.ply") + " --vertices 900" + threads).code, 0);
-        ASSERT_EQ(run("refine " + at("ball.ply") + " " + at(name + "/f.ply") + " --vertices 4000" + threads).code, 0);
+        ASSERT_EQ(run("remesh " + path_of("ball.ply") + " " + path_of(name + "/r.ply") + " --vertices 900" + threads).code, 0);
+        ASSERT_EQ(run("refine " + path_of("ball.ply") + " " + path_of(name + "/f.ply") + " --vertices 4000" + threads).code, 0);
     }
     for (const std::string file : {"s.ply", "s.ant.json", "r.ply", "f.ply"})
-        EXPECT_EQ(read_file(at("a/" + file)), read_file(at("b/" + file))) << file;
+        EXPECT_EQ(read_file(path_of("a/" + file)), read_file(path_of("b/" + file))) << file;
 }
 
 TEST_F(ResizeCommand, TooFewVerticesGiveTheSmallestMeshAndCodeThree) {
-    const auto result = run("simplify " + at("ball.ply") + " " + at("tiny.ply") + " --vertices 2");
+    const auto result = run("simplify " + path_of("ball.ply") + " " + path_of("tiny.ply") + " --vertices 2");
     EXPECT_EQ(result.code, 3);
     EXPECT_NE(result.err.find("could not be reached"), std::string::npos) << result.err;
-    EXPECT_GE(read_mesh(at("tiny.ply")).mesh.number_of_vertices(), 4u);
+    EXPECT_GE(read_mesh(path_of("tiny.ply")).mesh.number_of_vertices(), 4u);
 }
 
-TEST_F(ResizeCommand, WrongUse) {
-    const std::string in = at("ball.ply"), out = at("out.ply"), annotations = at("ball.ant.json");
+TEST_F(ResizeCommand, InvalidUsage) {
+    const std::string in = path_of("ball.ply"), out = path_of("out.ply"), annotations = path_of("ball.ant.json");
     write_file(scratch / "bad.ply", "ply\nformat ascii 1.0\nend_header\n");
     write_file(scratch / "out.ply", "earlier");
     struct Case {
         std::string arguments;
         int code;
-        std::string says;
+        std::string message;
     };
     for (const Case& c :
          {Case{"simplify " + in + " " + out, 2, "vertices"},
@@ -139,15 +140,15 @@ TEST_F(ResizeCommand, WrongUse) {
           {"simplify " + in + " " + out + " --vertices 0", 2, "vertices"},
           {"simplify " + in + " " + out + " --vertices 100 --method best", 2, "method"},
           {"simplify " + in + " " + in + " --vertices 100", 2, "ball.ply"},
-          {"simplify " + in + " " + at("out.xyz") + " --vertices 100", 2, "xyz"},
-          {"simplify " + in + " " + at("nowhere/out.ply") + " --vertices 100", 1, "nowhere"},
-          {"simplify " + at("none.ply") + " " + out + " --vertices 100", 1, "none.ply"},
-          {"simplify " + at("bad.ply") + " " + out + " --vertices 100", 1, "bad.ply"},
+          {"simplify " + in + " " + path_of("out.xyz") + " --vertices 100", 2, "xyz"},
+          {"simplify " + in + " " + path_of("nowhere/out.ply") + " --vertices 100", 1, "nowhere"},
+          {"simplify " + path_of("none.ply") + " " + out + " --vertices 100", 1, "none.ply"},
+          {"simplify " + path_of("bad.ply") + " " + out + " --vertices 100", 1, "bad.ply"},
           {"simplify " + in + " " + out + " --vertices 100 --annotations " + annotations, 2, "--annotations-out"},
-          {"simplify " + in + " " + at("out.stl") + " --vertices 100 --annotations " + annotations + " --annotations-out " +
-               at("o.json"),
+          {"simplify " + in + " " + path_of("out.stl") + " --vertices 100 --annotations " + annotations + " --annotations-out " +
+               path_of("o.json"),
            2, "stl"},
-          {"simplify " + in + " " + out + " --vertices 100 --annotations " + in + " --annotations-out " + at("o.json"), 1,
+          {"simplify " + in + " " + out + " --vertices 100 --annotations " + in + " --annotations-out " + path_of("o.json"), 1,
            "ball.ply"},
           {"simplify " + in + " " + out + " --vertices 100 --protect-outlines --outlines follow", 2, "outlines"},
           {"refine " + in + " " + out, 2, "--levels"},
@@ -155,36 +156,38 @@ TEST_F(ResizeCommand, WrongUse) {
           {"refine " + in + " " + out + " --vertices 9999 --levels 1", 2, "one of"},
           {"refine " + in + " " + out + " --levels 1 --scheme sqrt3", 2, "scheme"},
           {"remesh " + in + " " + out, 2, "vertices"},
-          {"remesh " + at("none.ply") + " " + out + " --vertices 50", 1, "none.ply"}}) {
+          {"remesh " + path_of("none.ply") + " " + out + " --vertices 50", 1, "none.ply"}}) {
         SCOPED_TRACE(c.arguments);
         const auto result = run(c.arguments);
         EXPECT_EQ(result.code, c.code) << result.err;
-        EXPECT_NE(result.err.find(c.says), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find(c.message), std::string::npos) << result.err;
         EXPECT_TRUE(result.out.empty());
         EXPECT_EQ(read_file(scratch / "out.ply"), "earlier");
     }
 }
 
 // A region that loses all its faces becomes a line or a point, keeps its tag and says so.
-TEST_F(ResizeCommand, RegionsWithoutFacesSaySo) {
+TEST_F(ResizeCommand, RegionsWithoutFacesAreReported) {
     AnnotationSet set;
     for (int i = 0; i < 60; ++i) {
-        Annotation one;
-        one.id = i, one.tag = "face " + std::to_string(i), one.type = AnnotationType::region, one.faces = {Index(i * 30)};
-        set.annotations.push_back(one);
+        Annotation region;
+        region.id = i, region.tag = "face " + std::to_string(i), region.type = AnnotationType::region,
+        region.faces = {Index(i * 30)};
+        set.annotations.push_back(region);
     }
     write_annotations(scratch / "many.ant.json", set, mesh, "ball.ply", {});
-    const auto result = run("simplify " + at("ball.ply") + " " + at("few.ply") + " --vertices 40 --json --annotations " +
-                            at("many.ant.json") + " --annotations-out " + at("few.ant.json"));
+    const auto result =
+        run("simplify " + path_of("ball.ply") + " " + path_of("few.ply") + " --vertices 40 --json --annotations " +
+            path_of("many.ant.json") + " --annotations-out " + path_of("few.ant.json"));
     ASSERT_EQ(result.code, 0) << result.err;
     const Json report = parse_json(result.out, "report");
     EXPECT_TRUE(report["result"]["outlines_broken"].GetBool());
-    const MeshFile few = read_mesh(at("few.ply"));
-    const AnnotationSet after = read_annotations(at("few.ant.json"), few.mesh);
-    ASSERT_EQ(after.annotations.size(), 60u);
+    const MeshFile few = read_mesh(path_of("few.ply"));
+    const AnnotationSet simplified = read_annotations(path_of("few.ant.json"), few.mesh);
+    ASSERT_EQ(simplified.annotations.size(), 60u);
     std::size_t degenerate = 0;
     for (const auto& entry : report["result"]["annotations"].GetArray()) {
-        const Annotation* annotation = after.find(entry["id"].GetInt());
+        const Annotation* annotation = simplified.find(entry["id"].GetInt());
         ASSERT_NE(annotation, nullptr);
         EXPECT_EQ(annotation->tag, "face " + std::to_string(annotation->id));
         EXPECT_EQ(entry["degenerate"].GetBool(), annotation->type != AnnotationType::region);
@@ -203,10 +206,10 @@ TEST_F(ResizeCommand, ColoursAreCarried) {
     write_mesh(scratch / "coloured.ply", mesh, extras);
     for (const std::string work : {"simplify", "refine"}) {
         SCOPED_TRACE(work);
-        const auto result =
-            run(work + " " + at("coloured.ply") + " " + at("out.ply") + " --vertices " + (work == "refine" ? "6000" : "500"));
+        const auto result = run(work + " " + path_of("coloured.ply") + " " + path_of("out.ply") + " --vertices " +
+                                (work == "refine" ? "6000" : "500"));
         ASSERT_EQ(result.code, 0) << result.err;
-        const MeshFile out = read_mesh(at("out.ply"));
+        const MeshFile out = read_mesh(path_of("out.ply"));
         ASSERT_EQ(out.extras.vertex_colours.size(), out.mesh.number_of_vertices());
         ASSERT_EQ(out.extras.face_colours.size(), out.mesh.number_of_faces());
         for (const Vertex v : out.mesh.vertices())
@@ -228,8 +231,8 @@ TEST(ResizeRealScan, GargoyleKeepsTopologyAndVolume) {
     const std::string out = (scratch / "small.ply").string();
     const auto result = run_command("mesh simplify " + file.string() + " " + out + " --vertices 4000");
     ASSERT_EQ(result.code, 0) << result.err;
-    const Mesh before = read_mesh(file).mesh, after = read_mesh(out).mesh;
-    EXPECT_EQ(after.number_of_vertices(), 4000u);
-    EXPECT_EQ(euler_number(after), euler_number(before));
-    EXPECT_NEAR(volume(after) / volume(before), 1, 0.01);
+    const Mesh original = read_mesh(file).mesh, simplified = read_mesh(out).mesh;
+    EXPECT_EQ(simplified.number_of_vertices(), 4000u);
+    EXPECT_EQ(euler_number(simplified), euler_number(original));
+    EXPECT_NEAR(volume(simplified) / volume(original), 1, 0.01);
 }

@@ -23,7 +23,7 @@ const TriangleSoup tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0
 
 }  // namespace
 
-TEST(SimplifyLimits, SmallestMeshesStay) {
+TEST(SimplifyLimits, SmallestMeshesAreUnchanged) {
     for (const TriangleSoup& soup : {triangle, tetrahedron}) {
         Mesh mesh = build_mesh(soup);
         const SimplifyResult result = down_to(mesh, 2);
@@ -36,7 +36,7 @@ TEST(SimplifyLimits, SmallestMeshesStay) {
 
 // Closed surfaces of genus zero go down to a tetrahedron-like mesh of few vertices, a torus needs seven (Moebius); no topology is
 // ever lost.
-TEST(SimplifyLimits, TopologyIsNeverGivenUp) {
+TEST(SimplifyLimits, TopologyIsAlwaysPreserved) {
     for (const auto& [name, soup] : group()) {
         SCOPED_TRACE(name);
         Mesh mesh = build_mesh(soup);
@@ -96,21 +96,21 @@ TEST(SimplifyLimits, IsolatedVerticesAreDroppedAndCounted) {
 }
 
 // A hundred small regions on a sphere: with forty vertices their outlines cannot all stay.
-TEST(SimplifyLimits, OutlinesAreGivenUpOnlyWhenFollowed) {
+TEST(SimplifyLimits, OutlinesAreBrokenOnlyWhenFollowed) {
     Mesh mesh = build_mesh(octahedron_sphere(5));
     MarkedParts marked{std::vector<bool>(mesh.number_of_edges(), false), {}};
     for (Index f = 0; f < mesh.number_of_faces(); f += 80)
         for (const Halfedge h : CGAL::halfedges_around_face(mesh.halfedge(Face(f)), mesh)) marked.edges[mesh.edge(h)] = true;
     Mesh followed = mesh;
-    const SimplifyResult gave_up = down_to(followed, 40, "follow", marked);
-    EXPECT_TRUE(gave_up.reached) << gave_up.stop_reason;
-    EXPECT_TRUE(gave_up.outlines_broken);
+    const SimplifyResult followed_result = down_to(followed, 40, "follow", marked);
+    EXPECT_TRUE(followed_result.reached) << followed_result.stop_reason;
+    EXPECT_TRUE(followed_result.outlines_broken);
     EXPECT_TRUE(is_sound(followed));
-    Mesh kept = mesh;
-    const SimplifyResult refused = down_to(kept, 40, "protect", marked);
-    EXPECT_FALSE(refused.reached);
-    EXPECT_FALSE(refused.outlines_broken);
-    EXPECT_NE(refused.stop_reason.find("protected"), std::string::npos) << refused.stop_reason;
+    Mesh protected_mesh = mesh;
+    const SimplifyResult protected_result = down_to(protected_mesh, 40, "protect", marked);
+    EXPECT_FALSE(protected_result.reached);
+    EXPECT_FALSE(protected_result.outlines_broken);
+    EXPECT_NE(protected_result.stop_reason.find("protected"), std::string::npos) << protected_result.stop_reason;
     Mesh ignored = mesh;
     EXPECT_TRUE(down_to(ignored, 40, "ignore", marked).reached);
 }
@@ -136,7 +136,7 @@ TEST(SimplifyLimits, VisitorSeesEveryMerge) {
     EXPECT_EQ(edges - mesh.number_of_edges(), 3 * result.collapses);
 }
 
-TEST(SimplifyLimits, WrongRequests) {
+TEST(SimplifyLimits, InvalidRequests) {
     const Mesh original = build_mesh(octahedron_sphere(2));
     const auto kind_of = [&](const SimplifyOptions& options, const MarkedParts& marked = {}) {
         Mesh mesh = original;
@@ -161,12 +161,12 @@ TEST(SimplifyLimits, WrongRequests) {
     EXPECT_EQ(kind_of(options), usage);
     options.max_normal_change = 60;
     EXPECT_EQ(kind_of(options), -1);
-    Mesh empty;
-    EXPECT_THROW(simplify(empty, options), Error);
+    Mesh empty_mesh;
+    EXPECT_THROW(simplify(empty_mesh, options), Error);
 }
 
 // A vertex with thousands of neighbours, in a disc and at the tips of a double cone.
-TEST(SimplifyLimits, Hubs) {
+TEST(SimplifyLimits, VerticesOfHighValence) {
     constexpr Index n = 6000;
     for (const bool closed : {false, true}) {
         TriangleSoup soup;

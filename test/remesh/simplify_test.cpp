@@ -41,7 +41,7 @@ TEST_P(EveryMesh, KeepsTopologyAndReachesTheNumber) {
         const long euler = euler_number(mesh);
         const std::size_t loops = border_loops(mesh), parts = components(mesh);
         const double area = surface_area(mesh), enclosed = volume(mesh);
-        const std::size_t before = mesh.number_of_faces();
+        const std::size_t face_count = mesh.number_of_faces();
         SimplifyOptions options;
         options.vertices = soup.points.size() / 4;
         set_option(options, "method", GetParam());
@@ -57,7 +57,7 @@ TEST_P(EveryMesh, KeepsTopologyAndReachesTheNumber) {
             EXPECT_NEAR(volume(mesh) / enclosed, 1, 0.02);
         }
         // The maps are total and onto.
-        EXPECT_EQ(result.face_map.size(), before);
+        EXPECT_EQ(result.face_map.size(), face_count);
         std::vector<int> vertex_hit(mesh.number_of_vertices(), 0), face_hit(mesh.number_of_faces(), 0);
         for (const Index v : result.vertex_map) ++vertex_hit.at(v);
         for (const Index f : result.face_map)
@@ -90,9 +90,9 @@ TEST_P(EveryMesh, LabelsFollowWithTheirTopology) {
             Mesh mesh = build_mesh(soup);
             auto label = label_octants(mesh);
             const MarkedParts marked{label_outlines(mesh, label), {}};
-            std::array<std::size_t, 4> pieces{};
+            std::array<std::size_t, 4> component_count{};
             std::array<double, 4> area{};
-            for (int k = 0; k < 4; ++k) pieces[k] = components(mesh, [&](Face f) { return label[f] == k; });
+            for (int k = 0; k < 4; ++k) component_count[k] = components(mesh, [&](Face f) { return label[f] == k; });
             for (const Face f : mesh.faces()) area[label[f]] += face_area(mesh, f);
             SimplifyOptions options;
             options.vertices = soup.points.size() / 3;
@@ -108,7 +108,7 @@ TEST_P(EveryMesh, LabelsFollowWithTheirTopology) {
                 area_after[label[f]] += face_area(mesh, f);
             }
             for (int k = 0; k < 4; ++k) {
-                EXPECT_EQ(components(mesh, [&](Face f) { return label[f] == k; }), pieces[k]);
+                EXPECT_EQ(components(mesh, [&](Face f) { return label[f] == k; }), component_count[k]);
                 EXPECT_NEAR(area_after[k] / area[k], 1, 0.1);
             }
         }
@@ -140,7 +140,7 @@ TEST_P(EveryMesh, ProtectedOutlinesStayToTheBit) {
     }
 }
 
-TEST_P(EveryMesh, TheSameTwice) {
+TEST_P(EveryMesh, IsDeterministic) {
     for (const auto& [name, soup] : group()) {
         SCOPED_TRACE(name);
         Mesh first = build_mesh(soup), second = build_mesh(soup);

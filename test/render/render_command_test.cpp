@@ -15,7 +15,7 @@ namespace {
 using test::run_command;
 using test::Scratch;
 
-std::string off(const Scene& scene) {
+std::string off_text(const Scene& scene) {
     std::ostringstream text;
     text << "OFF\n" << scene.mesh.points.size() << ' ' << scene.mesh.triangles.size() << " 0\n";
     for (const auto& p : scene.mesh.points) text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
@@ -29,7 +29,7 @@ std::uint32_t pixel(const Rgb& c) { return 0xFF000000U | std::uint32_t{c.red} <<
 class RenderCommand : public ::testing::Test {
 protected:
     Scratch scratch;
-    Path cube = scratch.file("cube.off", off(test::cube()));
+    Path cube = scratch.file("cube.off", off_text(test::cube()));
     Path png = scratch / "picture.png";
 
     test::CommandResult run(const std::string& words) {
@@ -44,7 +44,7 @@ protected:
     }
 };
 
-TEST_F(RenderCommand, MakesAPictureOfTheSizeAskedFor) {
+TEST_F(RenderCommand, MakesAPictureOfTheRequestedSize) {
     const auto result = run("--size 320x200 --view front --json");
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(picture().width, 320);
@@ -66,12 +66,12 @@ TEST_F(RenderCommand, QuietWithoutJson) {
 
 TEST_F(RenderCommand, SameBytesForAnyNumberOfThreads) {
     ASSERT_EQ(run("--threads 1 --edges").code, 0);
-    const std::string one = read_file(png);
+    const std::string sequential = read_file(png);
     ASSERT_EQ(run("--threads 3 --edges").code, 0);
-    EXPECT_EQ(one, read_file(png));
+    EXPECT_EQ(sequential, read_file(png));
 }
 
-TEST_F(RenderCommand, WrongUsageIsTwo) {
+TEST_F(RenderCommand, InvalidUsageExitsWithTwo) {
     refused(run("--view behind"), 2, "behind");
     refused(run("--view 0,91"), 2, "0,91");
     refused(run("--up w"), 2, "'w'");
@@ -84,12 +84,12 @@ TEST_F(RenderCommand, WrongUsageIsTwo) {
     EXPECT_EQ(run_command("render " + cube.string() + " " + (scratch / "picture.jpg").string()).code, 2);
     EXPECT_EQ(run_command("render").code, 2);
     // The output is an input.
-    const Path copy = scratch.file("mesh.png", off(test::cube()));
+    const Path copy = scratch.file("mesh.png", off_text(test::cube()));
     EXPECT_EQ(run_command("render " + copy.string() + " " + copy.string()).code, 2);
-    EXPECT_EQ(read_file(copy), off(test::cube()));
+    EXPECT_EQ(read_file(copy), off_text(test::cube()));
 }
 
-TEST_F(RenderCommand, BadInputIsOne) {
+TEST_F(RenderCommand, InvalidInputExitsWithOne) {
     const Path map = scratch.file("map.txt", "1\n2\n3\n");
     refused(run("--map " + map.string()), 1, "3 values for a mesh of 8 vertices and 12 faces");
     refused(run("--map-on face --map " + map.string()), 1, "12 faces");
@@ -100,12 +100,12 @@ TEST_F(RenderCommand, BadInputIsOne) {
     refused(run_command("render " + cube.string() + " " + (scratch / "nowhere" / "a.png").string()), 1, "folder");
     const Path words = scratch.file("words.txt", "1\ntwo\n");
     refused(run("--map " + words.string()), 1, "line 2");
-    const Path none = scratch.file("none.txt", "nan\nnan\nnan\nnan\nnan\nnan\nnan\nnan\n");
-    refused(run("--map " + none.string()), 1, "no finite value");
+    const Path no_values = scratch.file("none.txt", "nan\nnan\nnan\nnan\nnan\nnan\nnan\nnan\n");
+    refused(run("--map " + no_values.string()), 1, "no finite value");
     EXPECT_EQ(test::count_files(scratch.path()), 4U);  // the cube and the maps; no temporary file
 }
 
-TEST_F(RenderCommand, AnEarlierPictureStaysWhenItFails) {
+TEST_F(RenderCommand, AnEarlierPictureIsKeptOnFailure) {
     write_file(png, "earlier");
     EXPECT_EQ(run("--view behind").code, 2);
     EXPECT_EQ(run("--map " + (scratch / "missing.txt").string()).code, 1);
@@ -120,9 +120,9 @@ TEST_F(RenderCommand, MapsColourFacesAndVertices) {
     EXPECT_EQ(picture().at(150, 130), pixel(colour_of({0, 1, false, ""}, 1)));
     ASSERT_EQ(run("--no-legend --size 300x300 --view front --map-range 0,2 --map " + map.string()).code, 0);
     EXPECT_EQ(picture().at(150, 130), pixel(colour_of({0, 2, false, ""}, 1)));
-    const auto plain = picture();
+    const auto unlabelled = picture();
     ASSERT_EQ(run("--size 300x300 --view front --map-label 'thickness (mm)' --map " + map.string()).code, 0);
-    EXPECT_NE(picture().argb, plain.argb);
+    EXPECT_NE(picture().argb, unlabelled.argb);
     EXPECT_EQ(run("--map-range 2,1 --map " + map.string()).code, 2);
     // Every option and file is in the report.
     const auto result = run("--json --map-range 0,2 --unit mm --map " + map.string());
@@ -132,9 +132,10 @@ TEST_F(RenderCommand, MapsColourFacesAndVertices) {
     EXPECT_EQ(report["provenance"]["inputs"].Size(), 2U);
 }
 
-TEST_F(RenderCommand, DrawsWhatIsNotManifold) {
-    const Path bad = scratch.file("bad.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n0 0 1\n0 1 0\n0 -1 0\n3 0 1 2\n3 0 1 3\n3 0 1 4\n");
-    const auto result = run_command("render " + bad.string() + " " + png.string());
+TEST_F(RenderCommand, DrawsNonManifoldMeshes) {
+    const Path non_manifold =
+        scratch.file("bad.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n0 0 1\n0 1 0\n0 -1 0\n3 0 1 2\n3 0 1 3\n3 0 1 4\n");
+    const auto result = run_command("render " + non_manifold.string() + " " + png.string());
     EXPECT_EQ(result.code, 0) << result.err;
 }
 

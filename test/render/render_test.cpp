@@ -55,9 +55,9 @@ TEST(Render, MarkersAndLinesBehindTheSurfaceAreHidden) {
     EXPECT_EQ(hidden.picture.argb, render({test::sphere(48)}, options).picture.argb);
 
     scene.markers = {{{0, -1, 0}, red, 8, ""}};
-    const Rendering seen = render({scene}, options);
-    EXPECT_EQ(seen.panes[0].markers_shown, 1U);
-    EXPECT_EQ(seen.picture.at(150, 150), 0xFFFF0000U);
+    const Rendering visible = render({scene}, options);
+    EXPECT_EQ(visible.panes[0].markers_shown, 1U);
+    EXPECT_EQ(visible.picture.at(150, 150), 0xFFFF0000U);
 
     scene.markers.clear();
     SceneLine line;
@@ -77,9 +77,9 @@ TEST(Render, AFaceTowardsTheViewerHasItsOwnColour) {
     scene.face_colours[test::front_of_cube] = scene.face_colours[test::front_of_cube + 1] = blue;
     const RenderOptions options = bare();
     EXPECT_EQ(render({scene}, options).picture.at(150, 150), 0xFF145AC8U);
-    RenderOptions back = options;
-    back.view = "back";
-    EXPECT_EQ(render({scene}, back).picture.at(150, 150), 0xFFF0960AU);
+    RenderOptions from_behind = options;
+    from_behind.view = "back";
+    EXPECT_EQ(render({scene}, from_behind).picture.at(150, 150), 0xFFF0960AU);
 }
 
 TEST(Render, ValuesTakeTheColoursOfTheScale) {
@@ -87,8 +87,9 @@ TEST(Render, ValuesTakeTheColoursOfTheScale) {
     scene.vertex_values.assign(8, 3);
     RenderOptions options = bare();
     options.scale = ColourScale{1, 4, false, ""};
-    const Rgb wanted = colour_of(*options.scale, 3);
-    const std::uint32_t pixel = 0xFF000000U | std::uint32_t{wanted.red} << 16 | std::uint32_t{wanted.green} << 8 | wanted.blue;
+    const Rgb expected = colour_of(*options.scale, 3);
+    const std::uint32_t pixel =
+        0xFF000000U | std::uint32_t{expected.red} << 16 | std::uint32_t{expected.green} << 8 | expected.blue;
     EXPECT_EQ(render({scene}, options).picture.at(140, 160), pixel);
     scene.vertex_values.clear();
     scene.face_values.assign(12, 3);
@@ -112,7 +113,7 @@ TEST(Render, ViewsShowTheSidesTheyName) {
     EXPECT_EQ(render({scene}, options).panes.size(), 6U);
 }
 
-TEST(Render, ScaleBarIsAsLongAsItSays) {
+TEST(Render, ScaleBarHasTheStatedLength) {
     RenderOptions options;
     options.size = "800x600";
     options.view = "front";
@@ -129,13 +130,13 @@ TEST(Render, ScaleBarIsAsLongAsItSays) {
         for (int column = 0; column < 400; ++column) dark += (rendering.picture.at(column, row) & 0xFF) < 128;
         EXPECT_NEAR(dark, pane.bar_pixels, 1.5);
         // The cube's sides are 2 x size long.
-        int wide = 0;
-        for (int column = 0; column < 800; ++column) wide += rendering.picture.at(column, pane.height / 2) != 0xFFFFFFFFU;
-        EXPECT_NEAR(wide, 2 * size * pane.pixels_per_unit, 1.5);
+        int width = 0;
+        for (int column = 0; column < 800; ++column) width += rendering.picture.at(column, pane.height / 2) != 0xFFFFFFFFU;
+        EXPECT_NEAR(width, 2 * size * pane.pixels_per_unit, 1.5);
     }
 }
 
-TEST(Render, ObjectsAreSetSoThatTheyAreLargest) {
+TEST(Render, ObjectsAreArrangedToBeLargest) {
     RenderOptions options;
     options.view = "front";
     for (const auto& [size, rows] : {std::pair{"1600x300", 1}, {"1600x900", 2}, {"300x1600", 6}}) {
@@ -147,17 +148,17 @@ TEST(Render, ObjectsAreSetSoThatTheyAreLargest) {
     }
 }
 
-TEST(Render, NeitherPlaceNorSizeChangesThePicture) {
+TEST(Render, PicturesAreInvariantToPositionAndScale) {
     const Scene scene = test::sphere(32);
     RenderOptions options = bare();
     options.view = "20,30";
     const Picture picture = render({scene}, options).picture;
     for (const double size : {1e-300, 1e-9, 1e9, 1e300}) {
-        const Picture other = render({test::moved(scene, size, {0, 0, 0})}, options).picture;
-        EXPECT_LT(differing_pixels(picture, other), 0.002 * static_cast<double>(picture.argb.size())) << size;
+        const Picture scaled = render({test::moved(scene, size, {0, 0, 0})}, options).picture;
+        EXPECT_LT(differing_pixels(picture, scaled), 0.002 * static_cast<double>(picture.argb.size())) << size;
     }
-    const Picture far = render({test::moved(scene, 1, {1e6, -3e6, 2e6})}, options).picture;
-    EXPECT_LT(differing_pixels(picture, far), 0.002 * static_cast<double>(picture.argb.size()));
+    const Picture distant = render({test::moved(scene, 1, {1e6, -3e6, 2e6})}, options).picture;
+    EXPECT_LT(differing_pixels(picture, distant), 0.002 * static_cast<double>(picture.argb.size()));
     EXPECT_NO_THROW(render({test::moved(scene, 1.7e308, {0, 0, 0})}, options));
 }
 
@@ -177,27 +178,27 @@ TEST(Render, TheSameForAnyNumberOfThreads) {
     options.ambient_occlusion = 4;
     options.view = "front";
     set_threads(1);
-    const Picture one = render({scene, box}, options).picture;
+    const Picture sequential = render({scene, box}, options).picture;
     for (const int threads : {2, 3, 7}) {
         set_threads(threads);
-        EXPECT_EQ(one.argb, render({scene, box}, options).picture.argb);
+        EXPECT_EQ(sequential.argb, render({scene, box}, options).picture.argb);
     }
     set_threads(0);
 }
 
 TEST(Render, DegenerateObjects) {
     RenderOptions options = bare("120x90");
-    Scene empty;
-    EXPECT_EQ(covered(render({empty}, options).picture), 0);
+    Scene empty_scene;
+    EXPECT_EQ(covered(render({empty_scene}, options).picture), 0);
     Scene points;
     points.mesh.points = {{1, 2, 3}, {1, 2, 3}};
     EXPECT_EQ(covered(render({points}, options).picture), 0);
     Scene triangle;
     triangle.mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
     triangle.mesh.triangles = {{0, 1, 2}};
-    const Rendering seen = render({triangle}, options);
-    const double scale = seen.panes[0].pixels_per_unit;
-    EXPECT_NEAR(covered(seen.picture) / (scale * scale / 2), 1, 0.03);
+    const Rendering rendering = render({triangle}, options);
+    const double scale = rendering.panes[0].pixels_per_unit;
+    EXPECT_NEAR(covered(rendering.picture) / (scale * scale / 2), 1, 0.03);
     for (const char* view : {"left", "top", "iso"})  // the first two edge on
         for (const char* projection : {"orthographic", "perspective"}) {
             options.view = view;
@@ -214,7 +215,7 @@ TEST(Render, DegenerateObjects) {
     EXPECT_GT(covered(render({repeated}, bare()).picture), 0);
 }
 
-TEST(Render, RefusesWhatCannotBeDrawn) {
+TEST(Render, RejectsInvalidScenesAndOptions) {
     const auto kind = [](const Scene& scene, const RenderOptions& options) {
         try {
             (void)render({scene}, options);
@@ -223,35 +224,35 @@ TEST(Render, RefusesWhatCannotBeDrawn) {
         }
         return std::optional<ErrorKind>();
     };
-    const RenderOptions good = bare();
+    const RenderOptions valid = bare();
     Scene scene = test::cube();
     scene.mesh.triangles[3][1] = 8;
-    EXPECT_EQ(kind(scene, good), ErrorKind::input);
+    EXPECT_EQ(kind(scene, valid), ErrorKind::input);
     scene = test::cube();
     scene.mesh.points[0][2] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(kind(scene, good), ErrorKind::input);
+    EXPECT_EQ(kind(scene, valid), ErrorKind::input);
     scene = test::cube();
     scene.face_colours.resize(11);
-    EXPECT_EQ(kind(scene, good), ErrorKind::input);
+    EXPECT_EQ(kind(scene, valid), ErrorKind::input);
     scene = test::cube();
     scene.markers = {{{std::numeric_limits<double>::infinity(), 0, 0}, {}, 6, ""}};
-    EXPECT_EQ(kind(scene, good), ErrorKind::input);
+    EXPECT_EQ(kind(scene, valid), ErrorKind::input);
     scene = test::cube();
-    const auto with = [&](auto&& change) {
-        RenderOptions options = good;
+    const auto kind_with = [&](auto&& change) {
+        RenderOptions options = valid;
         change(options);
         return kind(scene, options);
     };
-    EXPECT_EQ(with([](auto& o) { o.view = "behind"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.view = "10,95"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.up = "w"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.up = "0,0,0"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.size = "10x10"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.size = "1200"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.size = "99999x99999"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.background = "beige"; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.zoom = -1; }), ErrorKind::usage);
-    EXPECT_EQ(with([](auto& o) { o.zoom = std::numeric_limits<double>::quiet_NaN(); }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.view = "behind"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.view = "10,95"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.up = "w"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.up = "0,0,0"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.size = "10x10"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.size = "1200"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.size = "99999x99999"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.background = "beige"; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.zoom = -1; }), ErrorKind::usage);
+    EXPECT_EQ(kind_with([](auto& o) { o.zoom = std::numeric_limits<double>::quiet_NaN(); }), ErrorKind::usage);
 }
 
 TEST(Render, ContoursOfASphereAreItsCircle) {
@@ -276,8 +277,8 @@ TEST(Render, HiddenEdgesOfACubeAreNotDrawn) {
     options.drawing = RenderOptions::Drawing::lines;
     const Rendering rendering = render({test::cube()}, options);
     const PictureCamera& camera = rendering.panes[0].camera;
-    const auto drawn = [&](const Point& at) {
-        const auto place = camera.project(at);
+    const auto drawn = [&](const Point& point) {
+        const auto place = camera.project(point);
         for (int dy = -2; dy <= 2; ++dy)
             for (int dx = -2; dx <= 2; ++dx)
                 if (rendering.picture.at(static_cast<int>((*place)[0]) + dx, static_cast<int>((*place)[1]) + dy) >> 24 > 100)
@@ -285,16 +286,16 @@ TEST(Render, HiddenEdgesOfACubeAreNotDrawn) {
         return false;
     };
     // The viewer stands in front (-y), at the right (+x), above (+z): the three edges at the far corner are hidden.
-    std::size_t seen = 0;
+    std::size_t drawn_count = 0;
     for (int axis = 0; axis < 3; ++axis)
         for (const double a : {-1.0, 1.0})
             for (const double b : {-1.0, 1.0}) {
-                const Point at = axis == 0 ? Point(0.3, a, b) : axis == 1 ? Point(a, 0.3, b) : Point(a, b, 0.3);
+                const Point point = axis == 0 ? Point(0.3, a, b) : axis == 1 ? Point(a, 0.3, b) : Point(a, b, 0.3);
                 const bool hidden = axis == 0 ? a > 0 && b < 0 : axis == 1 ? a < 0 && b < 0 : a < 0 && b > 0;
-                EXPECT_EQ(drawn(at), !hidden) << axis << " " << a << " " << b;
-                seen += drawn(at);
+                EXPECT_EQ(drawn(point), !hidden) << axis << " " << a << " " << b;
+                drawn_count += drawn(point);
             }
-    EXPECT_EQ(seen, 9U);
+    EXPECT_EQ(drawn_count, 9U);
     // Half way across the front, where a diagonal runs, is no line of a drawing, but one of a wire.
     const auto middle = *camera.project(Point(0, -1, 0));
     const auto column = static_cast<int>(middle[0]), row = static_cast<int>(middle[1]);
@@ -305,7 +306,7 @@ TEST(Render, HiddenEdgesOfACubeAreNotDrawn) {
     EXPECT_GT(covered(render({test::cube()}, options).picture), 0);
 }
 
-TEST(Render, LabelsNeitherOverlapNorCrossAndNameWhatIsThere) {
+TEST(Render, LabelsDoNotOverlapOrCrossAndPointToTheirParts) {
     Scene scene = test::sphere(40);
     for (int part = 0; part < 23; ++part) {
         SceneLabel& label = scene.labels.emplace_back();
@@ -324,13 +325,13 @@ TEST(Render, LabelsNeitherOverlapNorCrossAndNameWhatIsThere) {
         const Rendering rendering = render({scene}, options);
         const Pane& pane = rendering.panes[0];
         ASSERT_GT(pane.labels.size(), 10U);
-        const auto named = [&](const std::string& start) {
+        const auto has_label = [&](const std::string& start) {
             return std::any_of(pane.labels.begin(), pane.labels.end(), [&](const auto& l) { return l.text.starts_with(start); });
         };
         if (std::string(size) == "900x700") {
-            EXPECT_TRUE(named("a point in front"));
+            EXPECT_TRUE(has_label("a point in front"));
         }
-        EXPECT_FALSE(named("a point behind"));
+        EXPECT_FALSE(has_label("a point behind"));
         const auto side = [](double ax, double ay, double bx, double by, double cx, double cy) {
             return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
         };
@@ -356,15 +357,15 @@ TEST(Render, LabelsNeitherOverlapNorCrossAndNameWhatIsThere) {
         // The line of a region ends on it: the ray through its end hits one of its triangles.
         for (const PaneLabel& label : pane.labels) {
             if (!label.text.starts_with("part number ") || label.text.ends_with("\xE2\x80\xA6")) continue;
-            const std::size_t part = static_cast<std::size_t>(std::stoi(label.text.substr(12)));
+            const std::size_t index = static_cast<std::size_t>(std::stoi(label.text.substr(12)));
             const PictureCamera::Ray ray = pane.camera.ray(label.place_x, label.place_y);
-            const double across = ray.origin.x(), up = ray.origin.z();
-            const Point at(across, -std::sqrt(std::max(0.0, 1 - across * across - up * up)), up);
+            const double x = ray.origin.x(), z = ray.origin.z();
+            const Point point(x, -std::sqrt(std::max(0.0, 1 - x * x - z * z)), z);
             double nearest = 1e9;
-            for (const Index t : scene.labels[part].faces)
+            for (const Index t : scene.labels[index].faces)
                 for (const Index v : scene.mesh.triangles[t]) {
                     const auto& p = scene.mesh.points[v];
-                    nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(at, Point(p[0], p[1], p[2]))));
+                    nearest = std::min(nearest, std::sqrt(CGAL::squared_distance(point, Point(p[0], p[1], p[2]))));
                 }
             EXPECT_LT(nearest, 0.1) << label.text;
         }
@@ -377,10 +378,10 @@ TEST(Render, DocumentsAreTheSameBytesInOneProcess) {
     RenderOptions options = bare();
     options.labels = options.axes = options.contours = true;
     for (const PictureKind kind : {PictureKind::svg, PictureKind::pdf}) {
-        const std::string one = render({scene}, options, kind).document;
-        EXPECT_TRUE(one.starts_with(kind == PictureKind::svg ? "<?xml" : "%PDF-"));
-        EXPECT_EQ(one, render({scene}, options, kind).document);
-        EXPECT_EQ(one.find("CreationDate"), std::string::npos);
+        const std::string document = render({scene}, options, kind).document;
+        EXPECT_TRUE(document.starts_with(kind == PictureKind::svg ? "<?xml" : "%PDF-"));
+        EXPECT_EQ(document, render({scene}, options, kind).document);
+        EXPECT_EQ(document.find("CreationDate"), std::string::npos);
     }
     options.drawing = RenderOptions::Drawing::lines;
     EXPECT_EQ(render({scene}, options, PictureKind::svg).document.find("<image"), std::string::npos) << "nothing but lines";
@@ -391,14 +392,14 @@ TEST(Render, DeepAndFinerPicturesShowTheSame) {
     scene.lines.push_back({{{-1, -1, 1}, {1, -1, 1}}, {0, 200, 0}, 5, true, true});
     RenderOptions options;
     options.size = "200x150";
-    const Picture plain = render({scene}, options).picture;
+    const Picture standard = render({scene}, options).picture;
     options.deep = true;
     const DeepPicture deep = render({scene}, options).deep;
-    ASSERT_EQ(deep.rgba.size(), plain.argb.size());
+    ASSERT_EQ(deep.rgba.size(), standard.argb.size());
     std::set<int> levels;
     for (std::size_t i = 0; i < deep.rgba.size(); ++i)
         for (unsigned k = 0; k < 3; ++k) {
-            EXPECT_NEAR(deep.rgba[i][k] / 257.0, plain.argb[i] >> (16 - 8 * k) & 255U, 2.1);
+            EXPECT_NEAR(deep.rgba[i][k] / 257.0, standard.argb[i] >> (16 - 8 * k) & 255U, 2.1);
             levels.insert(deep.rgba[i][0]);
         }
     EXPECT_GT(levels.size(), 300U) << "more than 8 bits can hold";
@@ -407,12 +408,12 @@ TEST(Render, DeepAndFinerPicturesShowTheSame) {
     double difference = 0;
     const Picture fine = render({scene}, options).picture;
     for (std::size_t i = 0; i < fine.argb.size(); ++i)
-        difference += std::abs(static_cast<double>(fine.argb[i] & 255U) - static_cast<double>(plain.argb[i] & 255U));
+        difference += std::abs(static_cast<double>(fine.argb[i] & 255U) - static_cast<double>(standard.argb[i] & 255U));
     EXPECT_LT(difference / static_cast<double>(fine.argb.size()), 1.0);
     const test::Scratch scratch;
     write_png(scratch / "deep.png", deep);
-    const Picture read = test::read_png(scratch / "deep.png");
-    for (std::size_t i = 0; i < read.argb.size(); ++i) EXPECT_NEAR(read.argb[i] & 255U, plain.argb[i] & 255U, 3.1);
+    const Picture reread = test::read_png(scratch / "deep.png");
+    for (std::size_t i = 0; i < reread.argb.size(); ++i) EXPECT_NEAR(reread.argb[i] & 255U, standard.argb[i] & 255U, 3.1);
 }
 
 TEST(Render, PatchesColourWhereTheirWeightIsLargest) {
@@ -431,17 +432,17 @@ TEST(Render, PatchesColourWhereTheirWeightIsLargest) {
 }
 
 TEST(Render, SeveralObjectsShareTheirScale) {
-    const Scene small = test::moved(test::cube(), 0.5, {9, 9, 9}), large = test::cube();
+    const Scene half_size = test::moved(test::cube(), 0.5, {9, 9, 9}), full_size = test::cube();
     RenderOptions options = bare("600x300");
-    Rendering rendering = render({small, large}, options);
+    Rendering rendering = render({half_size, full_size}, options);
     ASSERT_EQ(rendering.panes.size(), 2U);
     EXPECT_DOUBLE_EQ(rendering.panes[0].pixels_per_unit, rendering.panes[1].pixels_per_unit);
     options.fit = RenderOptions::Fit::each;
-    rendering = render({small, large}, options);
+    rendering = render({half_size, full_size}, options);
     EXPECT_NEAR(rendering.panes[0].pixels_per_unit, 2 * rendering.panes[1].pixels_per_unit, 1e-6);
     options.fit = RenderOptions::Fit::all;
     options.projection = RenderOptions::Projection::perspective;
-    rendering = render({small, large}, options);
+    rendering = render({half_size, full_size}, options);
     EXPECT_NEAR(rendering.panes[0].pixels_per_unit, rendering.panes[1].pixels_per_unit, 1e-9);
 }
 

@@ -24,13 +24,13 @@ double lightness(const Rgb& colour) {
     return 0.2126 * linear(colour.red / 255.0) + 0.7152 * linear(colour.green / 255.0) + 0.0722 * linear(colour.blue / 255.0);
 }
 
-TEST(ColourScale, LightnessGrows) {
+TEST(ColourScale, LightnessIncreases) {
     const ColourScale scale{-1, 3, false, ""};
-    double before = -1;
+    double previous = -1;
     for (int i = 0; i <= 64; ++i) {
-        const double now = lightness(colour_of(scale, -1 + i / 16.0));
-        EXPECT_GT(now, before);
-        before = now;
+        const double current = lightness(colour_of(scale, -1 + i / 16.0));
+        EXPECT_GT(current, previous);
+        previous = current;
     }
     EXPECT_EQ(colour_of(scale, -9), colour_of(scale, -1));
     EXPECT_EQ(colour_of(scale, 99), colour_of(scale, 3));
@@ -44,27 +44,27 @@ TEST(ColourScale, SignedValuesDivergeAboutZero) {
     EXPECT_EQ(scale.maximum, 4);
     EXPECT_GT(lightness(colour_of(scale, 0)), lightness(colour_of(scale, 3)));
     EXPECT_GT(lightness(colour_of(scale, 0)), lightness(colour_of(scale, -3)));
-    const std::vector<double> none{std::numeric_limits<double>::quiet_NaN()};
-    EXPECT_THROW((void)scale_of({&none}, "map"), Error);
+    const std::vector<double> no_values{std::numeric_limits<double>::quiet_NaN()};
+    EXPECT_THROW((void)scale_of({&no_values}, "map"), Error);
 }
 
 TEST(ColourScale, ConstantAndExtremeValues) {
-    const std::vector<double> same{5, 5};
-    EXPECT_NO_THROW((void)colour_of(scale_of({&same}, "map"), 5));
-    EXPECT_EQ(ticks(scale_of({&same}, "map"), 7), std::vector<double>{5});
-    const ColourScale wide{-1.7e308, 1.7e308, true, ""};
-    EXPECT_EQ(colour_of(wide, 0), colour_of(ColourScale{-1, 1, true, ""}, 0));
-    EXPECT_LE(ticks(wide, 7).size(), 29U);
+    const std::vector<double> constant{5, 5};
+    EXPECT_NO_THROW((void)colour_of(scale_of({&constant}, "map"), 5));
+    EXPECT_EQ(ticks(scale_of({&constant}, "map"), 7), std::vector<double>{5});
+    const ColourScale extreme{-1.7e308, 1.7e308, true, ""};
+    EXPECT_EQ(colour_of(extreme, 0), colour_of(ColourScale{-1, 1, true, ""}, 0));
+    EXPECT_LE(ticks(extreme, 7).size(), 29U);
 }
 
 TEST(ColourScale, TicksAreRoundAndInside) {
     for (const auto& [low, high] : {std::pair{0.0, 1.0}, {2.37, 2.41}, {-3.0, 3.0}, {1e-7, 4e-7}, {12345.0, 99999.0}}) {
-        const auto list = ticks({low, high, false, ""}, 7);
-        ASSERT_GE(list.size(), 3U);
-        EXPECT_LE(list.size(), 12U);
-        const double step = list[1] - list[0];
+        const auto positions = ticks({low, high, false, ""}, 7);
+        ASSERT_GE(positions.size(), 3U);
+        EXPECT_LE(positions.size(), 12U);
+        const double step = positions[1] - positions[0];
         EXPECT_NEAR(round_length(step * (1 + 1e-6)) / step, 1, 1e-5);
-        for (const double tick : list) {
+        for (const double tick : positions) {
             EXPECT_GE(tick, low - 1e-9 * step);
             EXPECT_LE(tick, high + 1e-9 * step);
             EXPECT_NEAR(std::remainder(tick, step) / step, 0, 1e-6);
@@ -89,22 +89,22 @@ TEST(ColourScale, RoundLengths) {
 /// CIE L*a*b* of a colour as eyes of one kind see it: `eye` is a matrix on linear red, green and blue (Machado, Oliveira and
 /// Fernandes 2009).
 std::array<double, 3> lab(const Rgb& colour, const std::array<std::array<double, 3>, 3>& eye) {
-    std::array<double, 3> linear{}, seen{};
+    std::array<double, 3> linear{}, perceived{};
     const std::array<int, 3> channels{colour.red, colour.green, colour.blue};
     for (std::size_t k = 0; k < 3; ++k) {
         const double c = channels[k] / 255.0;
         linear[k] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     }
     for (std::size_t i = 0; i < 3; ++i)
-        seen[i] = std::clamp(eye[i][0] * linear[0] + eye[i][1] * linear[1] + eye[i][2] * linear[2], 0.0, 1.0);
+        perceived[i] = std::clamp(eye[i][0] * linear[0] + eye[i][1] * linear[1] + eye[i][2] * linear[2], 0.0, 1.0);
     const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
-    const double x = f((0.4124 * seen[0] + 0.3576 * seen[1] + 0.1805 * seen[2]) / 0.95047),
-                 y = f(0.2126 * seen[0] + 0.7152 * seen[1] + 0.0722 * seen[2]),
-                 z = f((0.0193 * seen[0] + 0.1192 * seen[1] + 0.9505 * seen[2]) / 1.08883);
+    const double x = f((0.4124 * perceived[0] + 0.3576 * perceived[1] + 0.1805 * perceived[2]) / 0.95047),
+                 y = f(0.2126 * perceived[0] + 0.7152 * perceived[1] + 0.0722 * perceived[2]),
+                 z = f((0.0193 * perceived[0] + 0.1192 * perceived[1] + 0.9505 * perceived[2]) / 1.08883);
     return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-TEST(CategoryColours, AreToldApartByColourBlindReaders) {
+TEST(CategoryColours, AreDistinguishableForColourBlindReaders) {
     const std::array<std::array<std::array<double, 3>, 3>, 4> eyes{
         {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
          {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
@@ -116,14 +116,14 @@ TEST(CategoryColours, AreToldApartByColourBlindReaders) {
                 const auto a = lab(category_colour(i), eye), b = lab(category_colour(j), eye);
                 EXPECT_GT(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 15) << i << ' ' << j;
             }
-    std::set<std::array<int, 3>> all;
+    std::set<std::array<int, 3>> colours;
     for (std::size_t i = 0; i < category_count; ++i) {
         const Rgb colour = category_colour(i);
-        all.insert({colour.red, colour.green, colour.blue});
+        colours.insert({colour.red, colour.green, colour.blue});
         // Calm: no channel stands at its end while another is at the other.
         EXPECT_LT(std::max({colour.red, colour.green, colour.blue}) - std::min({colour.red, colour.green, colour.blue}), 110);
     }
-    EXPECT_EQ(all.size(), category_count);
+    EXPECT_EQ(colours.size(), category_count);
     EXPECT_EQ(category_colour(category_count), category_colour(0));
 }
 
@@ -146,16 +146,16 @@ TEST(View, AxesAreRightHandedAndStandardViewsExact) {
     EXPECT_EQ(view_axes(parse_view("0,0"), parse_up("z")).toward, view_axes(parse_view("front"), parse_up("auto")).toward);
 }
 
-TEST(PictureFile, PngComesBackAsItWas) {
+TEST(PictureFile, PngRoundTripIsExact) {
     const test::Scratch folder;
     Picture picture{5, 3, {}};
     for (std::uint32_t i = 0; i < 15; ++i) picture.argb.push_back(i % 3 == 0 ? 0 : 0xFF000000U | i * 0x0F1307U);
     const Path file = folder / "a.png";
     write_png(file, picture);
     EXPECT_EQ(read_file(file).substr(0, 8), "\x89PNG\r\n\x1a\n");
-    const Picture back = test::read_png(file);
-    EXPECT_EQ(back.width, 5);
-    EXPECT_EQ(back.argb, picture.argb);
+    const Picture reread = test::read_png(file);
+    EXPECT_EQ(reread.width, 5);
+    EXPECT_EQ(reread.argb, picture.argb);
 }
 
 std::string npy(const std::string& type, const std::string& shape, const std::string& data) {
@@ -180,13 +180,13 @@ TEST(Values, NumpyArrays) {
     EXPECT_EQ(read_values(file), (std::vector<double>{0.5, 3}));
     write_file(file, npy("<i4", "(2,)", raw<std::int32_t>({-7, 9})));
     EXPECT_EQ(read_values(file), (std::vector<double>{-7, 9}));
-    for (const std::string& bad :
+    for (const std::string& invalid :
          {npy("<f8", "(4,)", raw<double>({1, 2, 3})), npy("<f8", "(1000000000000,)", raw<double>({1})),
           npy("<f8", "(2, 2)", raw<double>({1, 2, 3, 4})), npy("<f8", "()", raw<double>({1})),
           npy(">f8", "(1,)", raw<double>({1})), npy("<c16", "(1,)", raw<double>({1, 2})), npy("<f8", "(1,)", "abc"),
           npy("<f8", "(99999999999999999999,)", ""), npy("<f8", "(1,", ""), std::string("\x93NUMPY"), std::string(),
           npy("<f8", "(1,)", raw<double>({1})).substr(0, 60), npy("<f8", "(x)", "")}) {
-        write_file(file, bad);
+        write_file(file, invalid);
         EXPECT_THROW((void)read_values(file), Error);
     }
 }
@@ -212,11 +212,11 @@ TEST(Values, Text) {
 
 TEST(Values, DamagedFilesGiveNumbersOrAnError) {
     const test::Scratch folder;
-    const std::string good_npy = npy("<f8", "(5,)", raw<double>({1, 2, 3, 4, 5})), good_text = "# map\n1.5\n2\nnan\n-4e3\n";
+    const std::string valid_npy = npy("<f8", "(5,)", raw<double>({1, 2, 3, 4, 5})), valid_text = "# map\n1.5\n2\nnan\n-4e3\n";
     for (std::size_t i = 0; i < 200; ++i)
         for (const bool binary : {true, false}) {
             const Path file =
-                folder.file(std::to_string(i) + (binary ? ".npy" : ".txt"), test::mutate(binary ? good_npy : good_text, i));
+                folder.file(std::to_string(i) + (binary ? ".npy" : ".txt"), test::mutate(binary ? valid_npy : valid_text, i));
             try {
                 EXPECT_LT(read_values(file).size(), 100U);
             } catch (const Error& error) {

@@ -50,9 +50,9 @@ inline Scene cube() {
 }
 inline constexpr std::size_t front_of_cube = 0;  ///< the first of the two triangles
 
-inline Scene moved(Scene scene, double size, const std::array<double, 3>& by) {
+inline Scene moved(Scene scene, double size, const std::array<double, 3>& translation) {
     for (auto& point : scene.mesh.points)
-        for (std::size_t k = 0; k < 3; ++k) point[k] = point[k] * size + by[k];
+        for (std::size_t k = 0; k < 3; ++k) point[k] = point[k] * size + translation[k];
     return scene;
 }
 
@@ -67,11 +67,11 @@ inline double covered(const Picture& picture) {
 inline double differing_pixels(const Picture& a, const Picture& b) {
     double count = 0;
     for (std::size_t i = 0; i < a.argb.size(); ++i) {
-        bool same = true;
+        bool equal = true;
         for (const int shift : {0, 8, 16, 24})
-            same =
-                same && std::abs(static_cast<int>(a.argb[i] >> shift & 0xFF) - static_cast<int>(b.argb[i] >> shift & 0xFF)) <= 8;
-        count += same ? 0 : 1;
+            equal =
+                equal && std::abs(static_cast<int>(a.argb[i] >> shift & 0xFF) - static_cast<int>(b.argb[i] >> shift & 0xFF)) <= 8;
+        count += equal ? 0 : 1;
     }
     return count;
 }

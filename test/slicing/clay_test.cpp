@@ -34,9 +34,9 @@ TriangleSoup cup(double seen, bool closed, Index around = 360) {
             const Index j = (i + 1) % around;
             const auto& a = rings[k];
             const auto& b = rings[k + 1];
-            const auto at = [](const std::vector<Index>& ring, Index n) { return ring.size() == 1 ? ring[0] : ring[n]; };
-            if (b.size() > 1) soup.triangles.push_back({at(a, i), b[i], b[j]});
-            if (a.size() > 1) soup.triangles.push_back({a[i], at(b, j), a[j]});
+            const auto point_of = [](const std::vector<Index>& ring, Index n) { return ring.size() == 1 ? ring[0] : ring[n]; };
+            if (b.size() > 1) soup.triangles.push_back({point_of(a, i), b[i], b[j]});
+            if (a.size() > 1) soup.triangles.push_back({a[i], point_of(b, j), a[j]});
         }
     return soup;
 }
@@ -46,7 +46,7 @@ double disc(double radius, Index around = 360) { return around * radius * radius
 
 SliceFrame upright() { return slice_frame(Point(0, 0, 0), Vector(0, 0, 1)); }
 
-TEST(Clay, BoundsHoldWhatIsNotSeen) {
+TEST(Clay, BoundsIncludeUnseenRegions) {
     for (const bool closed : {true, false}) {
         const ClayVolume clay = clay_volume(build_mesh(cup(10, closed)), upright());
         EXPECT_NEAR(clay.envelope, 40 * disc(10), 1e-6 * clay.envelope);
@@ -60,7 +60,7 @@ TEST(Clay, BoundsHoldWhatIsNotSeen) {
     }
 }
 
-TEST(Clay, ASolidObjectHasNoLeastUnlessAWallIsGiven) {
+TEST(Clay, ASolidObjectHasNoMinimumUnlessAWallIsGiven) {
     const Mesh ball = build_mesh(test::octahedron_sphere(6));
     const ClayVolume unknown = clay_volume(ball, upright());
     EXPECT_NEAR(unknown.maximum, 4 * pi / 3, 2e-3);
@@ -81,7 +81,7 @@ TEST(Clay, ASolidObjectHasNoLeastUnlessAWallIsGiven) {
     EXPECT_EQ(clay_volume(ball, upright(), options).minimum, unknown.maximum);
 }
 
-TEST(Clay, LeastIsABoundForSquares) {
+TEST(Clay, MinimumIsABoundForSquares) {
     // A box of 10 x 10 x 40 whose wall is 1: 36 a slice, and 100 in the first and the last unit of the height.
     const Mesh box =
         build_mesh({{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0, 0, 40}, {10, 0, 40}, {10, 10, 40}, {0, 10, 40}},
@@ -105,36 +105,36 @@ TEST(Clay, LeastIsABoundForSquares) {
     EXPECT_GT(clay.minimum, 0.8 * 1568);
 }
 
-TEST(Clay, ScalesAndPlacesDoNotMatter) {
+TEST(Clay, IsInvariantToScaleAndPosition) {
     const ClayVolume base = clay_volume(build_mesh(cup(10, true)), upright());
     for (const double scale : {1e-5, 1e5}) {
         TriangleSoup soup = cup(10, true);
         for (auto& p : soup.points)
             for (auto& x : p) x = scale * (x + 1000);
-        const ClayVolume other = clay_volume(build_mesh(soup), upright());
-        EXPECT_NEAR(other.maximum / (scale * scale * scale), base.maximum, 1e-7 * base.maximum);
-        EXPECT_NEAR(other.minimum / (scale * scale * scale), base.minimum, 1e-7 * base.minimum);
+        const ClayVolume moved = clay_volume(build_mesh(soup), upright());
+        EXPECT_NEAR(moved.maximum / (scale * scale * scale), base.maximum, 1e-7 * base.maximum);
+        EXPECT_NEAR(moved.minimum / (scale * scale * scale), base.minimum, 1e-7 * base.minimum);
     }
 }
 
-TEST(Clay, LayersWithoutOutlineAreTakenFromTheirNeighbours) {
+TEST(Clay, LayersWithoutOutlineAreInterpolated) {
     // A tube with a slit all along a stretch of its height: there the outer contour is open.
     const Index around = 120;
     TriangleSoup soup = test::grid(around, 40, true, false, [](double u, double v) {
         return std::array<double, 3>{5 * std::cos(2 * pi * u), 5 * std::sin(2 * pi * u), 40 * v};
     });
-    std::vector<std::array<Index, 3>> kept;
+    std::vector<std::array<Index, 3>> triangles;
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
         const std::size_t quad = t / 2, column = quad % around, row = quad / around;
-        if (column != 0 || row < 10 || row >= 20) kept.push_back(soup.triangles[t]);
+        if (column != 0 || row < 10 || row >= 20) triangles.push_back(soup.triangles[t]);
     }
-    soup.triangles = kept;
+    soup.triangles = triangles;
     const ClayVolume clay = clay_volume(build_mesh(soup), upright());
     EXPECT_EQ(clay.without_outline, 100);
     EXPECT_NEAR(clay.maximum, 40 * disc(5, around), 1e-6 * clay.maximum);
 }
 
-TEST(Clay, WhatMakesNoSenseIsRefused) {
+TEST(Clay, RejectsInvalidInput) {
     EXPECT_THROW(clay_volume(Mesh(), upright()), Error);
     ClayOptions options;
     options.wall = -1;
@@ -143,7 +143,7 @@ TEST(Clay, WhatMakesNoSenseIsRefused) {
     EXPECT_TRUE(std::isnan(flat.maximum));
 }
 
-TEST(ClayCommand, SaysBoundsAndWhatTheyRestOn) {
+TEST(ClayCommand, ReportsBoundsAndTheirAssumptions) {
     const test::Scratch scratch;
     write_mesh(scratch / "cup.ply", build_mesh(cup(10, true)));
     const auto result = test::run_command("measure clay --unit cm " + (scratch / "cup.ply").string());

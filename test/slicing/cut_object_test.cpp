@@ -22,7 +22,7 @@ TEST(CutObject, HeightsAreListedSpacedOrInLayers) {
     EXPECT_EQ(places.in(8), (std::vector<double>{3, 1}));
 }
 
-TEST(CutObject, ParallelSlicesKnowTheirFrameAndTheObjectsHeights) {
+TEST(CutObject, ParallelSlicesStoreTheirFrameAndTheHeightRange) {
     const Mesh mesh = build_mesh(moved(box(3), 2, {0, 0, 1}));
     CutObject cut = cut_parallel(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), {2.5, 1.5, 9});
     EXPECT_TRUE(cut.met());

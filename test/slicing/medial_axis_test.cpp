@@ -65,14 +65,15 @@ TEST(MedialAxis, LevelsNestAndDiscsLieInside) {
     ASSERT_EQ(axis.levels.size(), 3U);
     EXPECT_LT(axis.levels[0].length, axis.levels[2].length);
     EXPECT_LT(axis.levels[2].length, axis.levels[1].length);
-    const auto places = [](const MedialAxis::Level& level) {
-        std::vector<std::pair<double, double>> list;
+    const auto sorted_points = [](const MedialAxis::Level& level) {
+        std::vector<std::pair<double, double>> points;
         for (const auto& branch : level.branches)
-            for (const auto& p : branch.points) list.emplace_back(p.x(), p.y());
-        std::sort(list.begin(), list.end());
-        return list;
+            for (const auto& p : branch.points) points.emplace_back(p.x(), p.y());
+        std::sort(points.begin(), points.end());
+        return points;
     };
-    const auto fine = places(axis.levels[1]), middle = places(axis.levels[2]), coarse = places(axis.levels[0]);
+    const auto fine = sorted_points(axis.levels[1]), middle = sorted_points(axis.levels[2]),
+               coarse = sorted_points(axis.levels[0]);
     for (const auto& p : middle) EXPECT_TRUE(std::binary_search(fine.begin(), fine.end(), p));
     for (const auto& p : coarse) EXPECT_TRUE(std::binary_search(middle.begin(), middle.end(), p));
     // No corner lies within a disc.
@@ -81,10 +82,10 @@ TEST(MedialAxis, LevelsNestAndDiscsLieInside) {
             for (const auto& corner : star) EXPECT_GE((corner - branch.points[i]).norm(), branch.radii[i] * (1 - 1e-9));
 }
 
-TEST(MedialAxis, OfNothing) {
-    const auto none = medial_axis(Slice{}, {0.1});
-    ASSERT_EQ(none.levels.size(), 1U);
-    EXPECT_TRUE(none.levels[0].branches.empty());
+TEST(MedialAxis, OfAnEmptySlice) {
+    const auto empty_axis = medial_axis(Slice{}, {0.1});
+    ASSERT_EQ(empty_axis.levels.size(), 1U);
+    EXPECT_TRUE(empty_axis.levels[0].branches.empty());
     EXPECT_THROW((void)medial_axis(Slice{}, {0}), Error);
     EXPECT_THROW((void)medial_axis(Slice{}, {std::nan("")}), Error);
     EXPECT_THROW((void)medial_axis(Slice{}, {0.1}, 3), Error);

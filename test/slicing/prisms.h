@@ -61,10 +61,10 @@ inline Polygon refined(const Polygon& polygon, int pieces) {
     return finer;
 }
 
-inline Polygon transformed(const Polygon& polygon, double scale, double angle, const Eigen::Vector2d& by) {
+inline Polygon transformed(const Polygon& polygon, double scale, double angle, const Eigen::Vector2d& translation) {
     Polygon moved;
     const Eigen::Rotation2Dd rotation(angle);
-    for (const auto& p : polygon) moved.push_back(rotation * (scale * p) + by);
+    for (const auto& p : polygon) moved.push_back(rotation * (scale * p) + translation);
     return moved;
 }
 

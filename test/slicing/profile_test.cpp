@@ -33,7 +33,7 @@ double area(const std::vector<std::vector<Eigen::Vector2d>>& curves) {
 
 }  // namespace
 
-TEST(Silhouette, OfSolidsAndWhatShowsThrough) {
+TEST(Silhouette, OfSolidsAndHoles) {
     const SliceFrame from_above = slice_frame({0, 0, 0}, {0, 0, 1});
     for (const double scale : {1.0, 1e-6, 1e6}) {
         const auto ball = silhouette(build_mesh(moved(octahedron_sphere(5), scale, {9 * scale, 0, 0})), from_above);
@@ -51,7 +51,7 @@ TEST(Silhouette, OfSolidsAndWhatShowsThrough) {
     EXPECT_THROW((void)silhouette(build_mesh(box(1)), from_above, 3), Error);
 }
 
-TEST(Profile, OfATurnedPotWithAHandle) {
+TEST(Profile, OfARevolvedPotWithAHandle) {
     const Mesh pot = build_mesh(
         joined(bowl(ring, 2, 1), moved(octahedron_sphere(3), 0.8, {2 + 7.5 * std::cos(1.0), 1 + 7.5 * std::sin(1.0), 4})));
     const Profile profile = find_profile(pot, slice_frame({2, 1, 0}, {0, 0, 1}));
@@ -84,7 +84,7 @@ TEST(Profile, OfATurnedPotWithAHandle) {
     EXPECT_EQ(find_profile(pot, slice_frame({2, 1, 0}, {0, 0, 1}), 0.3).angle, 0.3);
 }
 
-TEST(Profile, OfWhatIsNotTurnedOrOpen) {
+TEST(Profile, OfObjectsThatAreNotRevolvedOrOpen) {
     const Profile cube = find_profile(build_mesh(box(3)), slice_frame({0.5, 0.5, 0}, {0, 0, 1}));
     EXPECT_EQ(cube.rim_diameter, 0);  // no mouth
     const Profile open = find_profile(build_mesh(tube(60, 10)), slice_frame({0, 0, 0}, {0, 0, 1}));
@@ -93,7 +93,7 @@ TEST(Profile, OfWhatIsNotTurnedOrOpen) {
     EXPECT_THROW((void)find_profile(Mesh(), slice_frame({0, 0, 0}, {0, 0, 1})), Error);
 }
 
-TEST(Profile, OfWhatStandsOutAboveAndBesideTheWall) {
+TEST(Profile, OfPartsThatProtrudeAboveAndBesideTheWall) {
     // A handle like an arch over the rim, no wider than the belly, in the plane at 40 degrees.
     const double turn = 40 * M_PI / 180;
     const TriangleSoup arch = grid(60, 24, false, true, [&](double u, double v) {

@@ -60,33 +60,33 @@ TEST(SliceAxes, OfTooFewSlices) {
     EXPECT_EQ(straightness({}, SliceLine{}).mean, 0);
 }
 
-TEST(SliceAxes, EvennessOfWalls) {
+TEST(SliceAxes, ThicknessHomogeneityOfWalls) {
     // Concentric rings, of walls 1, 2 and 3: even within, not across.
     std::vector<Slice> slices;
     for (const double wall : {1.0, 2.0, 3.0})
         slices.push_back(slice_at(wall, {ellipse(500, 5, 5), reversed(ellipse(500, 5 - wall, 5 - wall))}));
     slices.push_back(slice_at(4, {ellipse(50, 5, 5)}));
-    const auto even = thickness_homogeneity(slices);
-    EXPECT_EQ(even.slices, 3U);
-    EXPECT_EQ(even.beside, 0U);
-    EXPECT_NEAR(even.mean, 2, 1e-3);
-    EXPECT_NEAR(even.within, 0, 1e-3);
-    EXPECT_NEAR(even.across, 1.4826 / 2, 1e-3);
-    EXPECT_NEAR(even.overall, std::sqrt(2.0 / 3) / 2, 1e-3);
-    const auto one = thickness_homogeneity({slices[0]});
-    EXPECT_TRUE(std::isnan(one.across));
-    EXPECT_NEAR(one.overall, 0, 1e-3);
+    const auto homogeneous = thickness_homogeneity(slices);
+    EXPECT_EQ(homogeneous.slices, 3U);
+    EXPECT_EQ(homogeneous.beside, 0U);
+    EXPECT_NEAR(homogeneous.mean, 2, 1e-3);
+    EXPECT_NEAR(homogeneous.within, 0, 1e-3);
+    EXPECT_NEAR(homogeneous.across, 1.4826 / 2, 1e-3);
+    EXPECT_NEAR(homogeneous.overall, std::sqrt(2.0 / 3) / 2, 1e-3);
+    const auto single = thickness_homogeneity({slices[0]});
+    EXPECT_TRUE(std::isnan(single.across));
+    EXPECT_NEAR(single.overall, 0, 1e-3);
     EXPECT_TRUE(std::isnan(thickness_homogeneity({}).mean));
     // No wall at all: the hole covers the outline.
-    const auto none = thickness_homogeneity({slice_at(0, {ellipse(50, 5, 5), reversed(ellipse(50, 5, 5))})});
-    EXPECT_TRUE(std::isnan(none.mean) || none.mean < 1e-12);
+    const auto no_wall = thickness_homogeneity({slice_at(0, {ellipse(50, 5, 5), reversed(ellipse(50, 5, 5))})});
+    EXPECT_TRUE(std::isnan(no_wall.mean) || no_wall.mean < 1e-12);
 }
 
-TEST(SliceAxes, HandlesCrumbsAndAFootDoNotSpoilTheEvenness) {
+TEST(SliceAxes, HandlesCrumbsAndAFootDoNotChangeTheHomogeneity) {
     const auto ring = [](double wall) { return std::vector{ellipse(500, 5, 5), reversed(ellipse(500, 5 - wall, 5 - wall))}; };
     std::vector<Slice> slices;
     for (int i = 0; i < 9; ++i) slices.push_back(slice_at(i, ring(1)));
-    const auto plain = thickness_homogeneity(slices);
+    const auto simple = thickness_homogeneity(slices);
     // A crumb beside the wall; a thick foot.
     auto crumbs = ring(1);
     crumbs.push_back(ellipse(40, 0.1, 0.1, {8, 0})), crumbs.push_back(reversed(ellipse(40, 0.05, 0.05, {8, 0})));
@@ -97,12 +97,12 @@ TEST(SliceAxes, HandlesCrumbsAndAFootDoNotSpoilTheEvenness) {
     handle.push_back(ellipse(80, 1, 1, {8, 0})), handle.push_back(reversed(ellipse(80, 0.2, 0.2, {8, 0})));
     joined[0] = ellipse(500, 9, 6), joined.push_back(reversed(ellipse(80, 1, 1, {7, 0})));
     slices.push_back(slice_at(10, handle)), slices.push_back(slice_at(11, joined));
-    const auto other = thickness_homogeneity(slices);
-    EXPECT_EQ(other.slices, 11U);
-    EXPECT_EQ(other.beside, 2U);
-    EXPECT_NEAR(other.mean, plain.mean, 1e-9);
-    EXPECT_NEAR(other.within, plain.within, 1e-9);
-    EXPECT_NEAR(other.across, 0, 1e-9);
+    const auto disturbed = thickness_homogeneity(slices);
+    EXPECT_EQ(disturbed.slices, 11U);
+    EXPECT_EQ(disturbed.beside, 2U);
+    EXPECT_NEAR(disturbed.mean, simple.mean, 1e-9);
+    EXPECT_NEAR(disturbed.within, simple.within, 1e-9);
+    EXPECT_NEAR(disturbed.across, 0, 1e-9);
 }
 
 TEST(SliceAxes, TheTubeBetweenFeetAndHead) {
@@ -127,8 +127,8 @@ TEST(SliceAxes, TheTubeBetweenFeetAndHead) {
     EXPECT_FALSE(tubular_part({}, {}).found);
     EXPECT_THROW((void)tubular_part(stack, {}), Error);
     // All the same: one group.
-    SliceStack even;
-    for (int i = 0; i < 5; ++i) even.slices.push_back(slice_at(i, {ellipse(40, 1, 1)}));
-    const Tube whole = tubular_part(even, describe_slices(even.slices));
-    EXPECT_TRUE(whole.found && whole.first == 0 && whole.last == 4);
+    SliceStack uniform;
+    for (int i = 0; i < 5; ++i) uniform.slices.push_back(slice_at(i, {ellipse(40, 1, 1)}));
+    const Tube uniform_tube = tubular_part(uniform, describe_slices(uniform.slices));
+    EXPECT_TRUE(uniform_tube.found && uniform_tube.first == 0 && uniform_tube.last == 4);
 }

@@ -27,7 +27,7 @@ void expect_fails(const std::string& line, int code, const std::string& words) {
 
 }  // namespace
 
-TEST(SliceCommand, EverythingIntoAFolder) {
+TEST(SliceCommand, WritesEveryOutputIntoAFolder) {
     const Scratch scratch;
     const std::string folder = (scratch / "cut").string();
     const auto result = run_command("slice " + vase + "--count 12 --medial-axis 0.02,0.1 --output " + folder);
@@ -121,7 +121,7 @@ TEST(SliceCommand, DirectionsHeightsAndReports) {
     EXPECT_EQ(count_files(scratch / "bent"), 5U);  // no profile
 }
 
-TEST(SliceCommand, ARawRangeMapIsNoPotAndAShortArcIsNotHalfThere) {
+TEST(SliceCommand, RangeMapsAndShortArcsAreNotVessels) {
     // The front of a vase as a scanner sees it from one side; then a wall of 4.6 degrees of the turn.
     const test::Scratch scratch;
     for (const double degrees : {150.0, 4.6}) {
@@ -148,7 +148,7 @@ TEST(SliceCommand, ARawRangeMapIsNoPotAndAShortArcIsNotHalfThere) {
     EXPECT_TRUE(std::filesystem::exists(scratch / "whole" / "profile.svg"));
 }
 
-TEST(SliceCommand, OpenScansAndPartsAreSaidToBeOpen) {
+TEST(SliceCommand, ReportsOpenScansAndParts) {
     const Scratch scratch;
     const std::string open = (scratch / "open.ply").string(), json = (scratch / "o.json").string();
     write_triangles(open, grid(60, 10, false, false, [](double u, double v) {
@@ -166,13 +166,13 @@ TEST(SliceCommand, OpenScansAndPartsAreSaidToBeOpen) {
     EXPECT_TRUE(slice["descriptors"].HasMember("fitted_radius"));
     EXPECT_FALSE(slice["contours"][0]["closed"].GetBool());
     // A handle alone: its slices end where the body begins.
-    const auto part =
+    const auto handle =
         run_command("slice --json " + data + "teapot.ply " + data + "teapot.ant.json --annotation handle --count 8");
-    ASSERT_EQ(part.code, 0) << part.err;
-    EXPECT_EQ(parse_json(part.out, "report")["result"]["slices"].Size(), 8U);
+    ASSERT_EQ(handle.code, 0) << handle.err;
+    EXPECT_EQ(parse_json(handle.out, "report")["result"]["slices"].Size(), 8U);
 }
 
-TEST(SliceCommand, BadInputIsSaidAndWritesNothing) {
+TEST(SliceCommand, InvalidInputIsReportedAndWritesNothing) {
     const Scratch scratch;
     const std::string file = (scratch / "o.json").string();
     const auto missed =
@@ -207,7 +207,7 @@ TEST(SliceCommand, BadInputIsSaidAndWritesNothing) {
     EXPECT_EQ(count_files(scratch.path()), 1U);
 }
 
-TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
+TEST(SliceCommand, ReportsInvalidNumbers) {
     const auto fails = [](const std::string& flags, const std::string& words) {
         expect_fails("slice " + vase + flags, 2, words);
     };
@@ -219,11 +219,11 @@ TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
         fails(std::string("--profile-angle ") + angle, "profile-angle is ");
     for (const char* spacing : {"nan", "inf", "0", "-1", "1e300", "x"}) fails(std::string("--spacing ") + spacing, "spacing is ");
     // How many it would be, and what is reasonable.
-    const auto many = run_command("slice " + vase + "--spacing 1e-9");
-    EXPECT_EQ(many.code, 2);
-    EXPECT_NE(many.err.find("2.589e+11 slices"), std::string::npos) << many.err;
-    EXPECT_NE(many.err.find("use at least 0.000259"), std::string::npos) << many.err;
-    EXPECT_EQ(many.err.find("0.000000"), std::string::npos) << many.err;
+    const auto too_many = run_command("slice " + vase + "--spacing 1e-9");
+    EXPECT_EQ(too_many.code, 2);
+    EXPECT_NE(too_many.err.find("2.589e+11 slices"), std::string::npos) << too_many.err;
+    EXPECT_NE(too_many.err.find("use at least 0.000259"), std::string::npos) << too_many.err;
+    EXPECT_EQ(too_many.err.find("0.000000"), std::string::npos) << too_many.err;
     for (const char* heights : {"nan", "1e300", "10,inf"}) {
         const auto result = run_command("slice " + vase + "--heights " + heights);
         EXPECT_EQ(result.code, 2);
@@ -241,7 +241,7 @@ TEST(SliceCommand, NumbersThatMakeNoSenseAreNamed) {
     EXPECT_NE(missed.err.find("heights over it go from -1000"), std::string::npos) << missed.err;
 }
 
-TEST(SliceCommand, OutputsThatCannotBe) {
+TEST(SliceCommand, RejectsInvalidOutputs) {
     expect_fails("slice " + vase + "--count 3 --output ''", 2, "output is empty");
     expect_fails("slice " + vase + "--count 3 --profile ''", 2, "profile is empty");
     expect_fails("slice " + vase + "--count 3 --output /dev/full", 2, "is a file");
@@ -270,7 +270,7 @@ TEST(SliceCommand, SlicesOfNothingAreEmpty) {
     EXPECT_NE(read_file(Path(folder) / "slices.csv").find("\n2,mm,1000,0,0,,,,,,,"), std::string::npos);
 }
 
-TEST(SliceCommand, PartsThatCrossOrAreTurnedAreSaid) {
+TEST(SliceCommand, ReportsIntersectingAndReversedParts) {
     const Scratch scratch;
     const auto run = [&](const std::string& name, const TriangleSoup& soup) {
         const std::string mesh = (scratch / (name + ".ply")).string();
@@ -303,8 +303,8 @@ TEST(SliceCommand, PartsThatCrossOrAreTurnedAreSaid) {
     const auto clay = run_command("measure clay " + (scratch / "crossing.ply").string());
     EXPECT_EQ(clay.code, 0);
     EXPECT_NE(clay.err.find("contours that cross"), std::string::npos) << clay.err;
-    const auto turned = run_command("measure clay " + (scratch / "cavity.ply").string());
-    EXPECT_NE(turned.err.find("against their nesting"), std::string::npos) << turned.err;
+    const auto reversed = run_command("measure clay " + (scratch / "cavity.ply").string());
+    EXPECT_NE(reversed.err.find("against their nesting"), std::string::npos) << reversed.err;
 }
 
 TEST(SliceCommand, MeshesWithoutSurfaceOrSkeleton) {
@@ -320,7 +320,7 @@ TEST(SliceCommand, MeshesWithoutSurfaceOrSkeleton) {
     expect_fails("slice " + flat + " --direction skeleton", 3, "slice along another --direction");
 }
 
-TEST(SliceCommand, AProfileIsOfTurnedObjects) {
+TEST(SliceCommand, ProfilesRequireSurfacesOfRevolution) {
     const Scratch scratch;
     const std::string cube = (scratch / "cube.ply").string(), folder = (scratch / "cut").string();
     write_triangles(cube, box(3));
@@ -328,26 +328,26 @@ TEST(SliceCommand, AProfileIsOfTurnedObjects) {
     EXPECT_EQ(left_out.code, 0) << left_out.err;
     EXPECT_NE(left_out.err.find("not a turned object"), std::string::npos) << left_out.err;
     EXPECT_FALSE(std::filesystem::exists(Path(folder) / "profile.svg"));
-    const auto asked =
+    const auto requested =
         run_command("slice --count 4 " + cube + " --title 'A box of mine' --profile " + (scratch / "p.svg").string());
-    EXPECT_EQ(asked.code, 0);
-    EXPECT_NE(asked.err.find("not a turned object"), std::string::npos) << asked.err;
+    EXPECT_EQ(requested.code, 0);
+    EXPECT_NE(requested.err.find("not a turned object"), std::string::npos) << requested.err;
     EXPECT_TRUE(std::filesystem::exists(scratch / "p.svg"));
-    const auto turned = run_command("slice --count 4 " + vase + "--output " + folder);
-    EXPECT_EQ(turned.err.find("not a turned object"), std::string::npos) << turned.err;
+    const auto revolved = run_command("slice --count 4 " + vase + "--output " + folder);
+    EXPECT_EQ(revolved.err.find("not a turned object"), std::string::npos) << revolved.err;
     EXPECT_TRUE(std::filesystem::exists(Path(folder) / "profile.svg"));
 }
 
 TEST(SliceCommand, DirectionsInWords) {
-    const auto same = [](const std::string& words, const std::string& numbers) {
+    const auto expect_same_output = [](const std::string& words, const std::string& numbers) {
         const auto a = run_command("slice " + vase + "--count 3 " + words),
                    b = run_command("slice " + vase + "--count 3 " + numbers);
         EXPECT_EQ(a.code, 0) << a.err;
         EXPECT_EQ(a.out, b.out) << words;
     };
-    same("--up y", "--up 0,1,0");
-    same("--up -z", "--up 0,0,-1");
-    same("--direction -x", "--direction -1,0,0");
+    expect_same_output("--up y", "--up 0,1,0");
+    expect_same_output("--up -z", "--up 0,0,-1");
+    expect_same_output("--direction -x", "--direction -1,0,0");
     expect_fails("slice " + vase + "--up w", 2, "x, y, z, -x, -y, -z");
     expect_fails("slice " + vase + "--direction diagonal", 2, "up, principal, rotation, skeleton");
     const auto rotation = run_command("slice " + data + "vase.ply --count 3 --direction rotation");
@@ -355,14 +355,14 @@ TEST(SliceCommand, DirectionsInWords) {
     EXPECT_EQ(run_command("slice " + vase + "--count 3 --direction rotation").err.find("give --up"), std::string::npos);
 }
 
-TEST(SliceCommand, WhatTwoSlicesAndSkeletonsTell) {
-    const auto two = run_command("slice " + vase + "--heights 60,120");
-    EXPECT_EQ(two.code, 0);
-    EXPECT_NE(two.out.find("two places are always in line"), std::string::npos) << two.out;
-    EXPECT_NE(two.out.find("2 of 2 slices show the wall alone"), std::string::npos) << two.out;
-    const auto one = run_command("slice " + vase + "--heights 60");
-    EXPECT_NE(one.out.find("one slice tells nothing"), std::string::npos) << one.out;
-    EXPECT_EQ(one.out.find("along the curve"), std::string::npos);
+TEST(SliceCommand, ReportsOfTwoSlicesAndSkeletons) {
+    const auto pair = run_command("slice " + vase + "--heights 60,120");
+    EXPECT_EQ(pair.code, 0);
+    EXPECT_NE(pair.out.find("two barycentres are always collinear"), std::string::npos) << pair.out;
+    EXPECT_NE(pair.out.find("2 of 2 slices show the wall alone"), std::string::npos) << pair.out;
+    const auto single = run_command("slice " + vase + "--heights 60");
+    EXPECT_NE(single.out.find("one slice tells nothing"), std::string::npos) << single.out;
+    EXPECT_EQ(single.out.find("along the curve"), std::string::npos);
     const auto curve = run_command("slice " + vase + "--direction skeleton --count 4");
     EXPECT_NE(curve.out.find("along the curve"), std::string::npos) << curve.out;
     EXPECT_NE(curve.err.find("the object is hollow"), std::string::npos) << curve.err;

@@ -98,7 +98,7 @@ TEST(SliceDescriptors, AnLShape) {
     EXPECT_EQ(d.components, 1);
 }
 
-TEST(SliceDescriptors, CirclesAndEllipsesAreApproachedQuadratically) {
+TEST(SliceDescriptors, ConvergeQuadraticallyOnCirclesAndEllipses) {
     // Each as a limit of polygons with n corners, whose error falls with n^-2.
     const double a = 3, b = 2, h = std::pow((a - b) / (a + b), 2);
     // Perimeter: Gauss and Kummer's series; mean distances by the periodic trapezoid rule, which is exact for so many nodes.
@@ -117,7 +117,7 @@ TEST(SliceDescriptors, CirclesAndEllipsesAreApproachedQuadratically) {
         double (*value)(const SliceDescriptors&);
         double limit;
     };
-    const std::vector<Expected> all{
+    const std::vector<Expected> cases{
         {"area", [](const SliceDescriptors& d) { return d.area; }, M_PI * a * b},
         {"perimeter", [](const SliceDescriptors& d) { return d.perimeter; }, perimeter},
         {"compactness", [](const SliceDescriptors& d) { return d.compactness; }, 4 * M_PI * M_PI * a * b / perimeter / perimeter},
@@ -128,15 +128,16 @@ TEST(SliceDescriptors, CirclesAndEllipsesAreApproachedQuadratically) {
         {"roundness", [](const SliceDescriptors& d) { return d.roundness_equivalent; }, roundness / length},
         {"rectangular variance", [](const SliceDescriptors& d) { return d.rectangular_variance; },
          box / length * M_PI / (4 * a * b)}};
-    for (const auto& entry : all) {
-        double before = 0;
+    for (const auto& expected : cases) {
+        double previous_error = 0;
         for (const int n : {64, 256, 1024}) {
-            const double error = std::abs(entry.value(describe({ellipse(n, a, b, {10, -4})})) - entry.limit);
+            const double error = std::abs(expected.value(describe({ellipse(n, a, b, {10, -4})})) - expected.limit);
             if (n == 1024) {
-                EXPECT_LT(error, 1e-4 * std::abs(entry.limit)) << entry.name;
-                EXPECT_NEAR(std::log(before / error) / std::log(4), 2, 0.5) << entry.name << " " << before << " " << error;
+                EXPECT_LT(error, 1e-4 * std::abs(expected.limit)) << expected.name;
+                EXPECT_NEAR(std::log(previous_error / error) / std::log(4), 2, 0.5)
+                    << expected.name << " " << previous_error << " " << error;
             }
-            before = error;
+            previous_error = error;
         }
     }
     // A circle: everything round is zero in the limit, in n^-2.
@@ -184,7 +185,7 @@ TEST(SliceDescriptors, Rings) {
     }
 }
 
-TEST(SliceDescriptors, DoNotMoveWithTheFigureNorWithItsUnit) {
+TEST(SliceDescriptors, AreInvariantToMotionAndScale) {
     const std::vector<std::vector<Polygon>> figures{{rectangle(5, 2)},
                                                     {ellipse(60, 3, 2)},
                                                     {ellipse(100, 3, 3), reversed(ellipse(80, 1, 1.2, {0.5, 0.3}))},
@@ -192,26 +193,26 @@ TEST(SliceDescriptors, DoNotMoveWithTheFigureNorWithItsUnit) {
                                                     {{{0, 0}, {4, 0}, {3, 1}, {5, 3}, {1, 4}}, {{10, 0}, {11, 0}, {10, 1}}}};
     for (std::size_t f = 0; f < figures.size(); ++f) {
         SCOPED_TRACE(f);
-        const auto plain = describe(figures[f]);
+        const auto reference = describe(figures[f]);
         for (const double scale : {1.0, 1e-6, 1e6})
             for (const double angle : {0.0, 0.7, 2.9}) {
                 std::vector<Polygon> moved;
                 for (const auto& polygon : figures[f])
                     moved.push_back(transformed(polygon, scale, angle, {7 * scale, -2 * scale}));
                 // The walls are a unit high, whatever the scale: the plane passes through no vertex.
-                expect_same(plain, describe(moved), scale, 1e-9);
+                expect_same(reference, describe(moved), scale, 1e-9);
             }
         // Far away, coordinates have fewer digits.
         std::vector<Polygon> far;
         for (const auto& polygon : figures[f]) far.push_back(transformed(polygon, 1, 0.4, {1e5, 2e5}));
-        expect_same(plain, describe(far), 1, 1e-8);
+        expect_same(reference, describe(far), 1, 1e-8);
         // Sides cut into pieces.
         std::vector<Polygon> finer;
         for (const auto& polygon : figures[f]) finer.push_back(refined(polygon, 7));
         const auto fine = describe(finer);
-        expect_same(plain, fine, 1, 1e-9, false);
-        if (!std::isnan(plain.thickness_mean)) {
-            EXPECT_NEAR(fine.thickness_mean, plain.thickness_mean, 1e-5 * plain.thickness_mean);
+        expect_same(reference, fine, 1, 1e-9, false);
+        if (!std::isnan(reference.thickness_mean)) {
+            EXPECT_NEAR(fine.thickness_mean, reference.thickness_mean, 1e-5 * reference.thickness_mean);
         }
     }
 }
@@ -222,23 +223,23 @@ TEST(SliceDescriptors, OfTheMeshMovedRigidly) {
     const Eigen::Matrix3d rotation =
         (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()) * Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitX()))
             .toRotationMatrix();
-    TriangleSoup turned = soup;
-    for (auto& p : turned.points) {
+    TriangleSoup moved_soup = soup;
+    for (auto& p : moved_soup.points) {
         const Eigen::Vector3d q = rotation * Eigen::Vector3d(p[0], p[1], p[2]) + Eigen::Vector3d(3, -2, 1);
         p = {q.x(), q.y(), q.z()};
     }
     const Eigen::Vector3d n(0.3, -0.2, 1), m = rotation * n;
     const auto heights = slice_heights(-0.9, 0.9, 20);
-    const auto before = describe_slices(slice_mesh(mesh, slice_frame({0, 0, 0}, {n.x(), n.y(), n.z()}), heights).slices);
-    const auto after =
-        describe_slices(slice_mesh(build_mesh(turned), slice_frame({3, -2, 1}, {m.x(), m.y(), m.z()}), heights).slices);
+    const auto original = describe_slices(slice_mesh(mesh, slice_frame({0, 0, 0}, {n.x(), n.y(), n.z()}), heights).slices);
+    const auto moved_descriptors =
+        describe_slices(slice_mesh(build_mesh(moved_soup), slice_frame({3, -2, 1}, {m.x(), m.y(), m.z()}), heights).slices);
     for (std::size_t i = 0; i < heights.size(); ++i) {
         SCOPED_TRACE(i);
-        expect_same(before[i], after[i], 1, 1e-9);
+        expect_same(original[i], moved_descriptors[i], 1, 1e-9);
     }
 }
 
-TEST(SliceDescriptors, WhatOpenContoursHave) {
+TEST(SliceDescriptors, OfOpenContours) {
     const auto arc = [](double from, double to, double radius) {
         return build_mesh(grid(400, 1, false, false, [&](double s, double t) {
             const double a = from + s * (to - from);
@@ -269,8 +270,8 @@ TEST(SliceDescriptors, WhatOpenContoursHave) {
     // An inner wall runs clockwise: it is no outline.
     EXPECT_TRUE(std::isnan(describe_slice(slice_mesh(arc(4, 0, 2), frame, {0.4}).slices[0]).fitted_radius));
     // Nothing at all.
-    const auto none = describe_slice(slice_mesh(arc(0, 4, 2), frame, {4}).slices[0]);
-    for (const auto& [name, value] : numbers(none)) {
+    const auto nothing = describe_slice(slice_mesh(arc(0, 4, 2), frame, {4}).slices[0]);
+    for (const auto& [name, value] : numbers(nothing)) {
         if (name != "euler number") {
             EXPECT_TRUE(std::isnan(value)) << name;
         }
@@ -279,17 +280,17 @@ TEST(SliceDescriptors, WhatOpenContoursHave) {
     EXPECT_TRUE(thickness_profile(Slice{}).empty());
 }
 
-TEST(SliceDescriptors, CirclesOfWhatIsNotRound) {
+TEST(SliceDescriptors, CirclesOfShapesThatAreNotRound) {
     // The circle that fits a bar best is nearly a line: the equivalent one stands for it.
     const auto bar = describe({rectangle(20, 1)});
     EXPECT_EQ(bar.roundness_fitted, bar.roundness_equivalent);
     EXPECT_NEAR(bar.fitted_radius, std::sqrt(20 / M_PI), 1e-9);
     EXPECT_GT(bar.roundness_fitted_relative, 0.5);
     // Handles beside a body do not make it less round.
-    const auto alone = describe({ellipse(80, 3, 2.9)}), handled = describe({ellipse(80, 3, 2.9), ellipse(20, 0.5, 0.5, {5, 0})});
-    EXPECT_EQ(handled.roundness_fitted, alone.roundness_fitted);
-    EXPECT_EQ(handled.circular_variance, alone.circular_variance);
-    EXPECT_LT(handled.eccentricity, alone.eccentricity);
+    const auto body = describe({ellipse(80, 3, 2.9)}), handled = describe({ellipse(80, 3, 2.9), ellipse(20, 0.5, 0.5, {5, 0})});
+    EXPECT_EQ(handled.roundness_fitted, body.roundness_fitted);
+    EXPECT_EQ(handled.circular_variance, body.circular_variance);
+    EXPECT_LT(handled.eccentricity, body.eccentricity);
     // The fitted circle is no worse than the equivalent one in the mean square, and is where the arc is, not where the area is.
     const auto egg = describe({{{-2, 0}, {-1, -1.6}, {0, -2}, {1, -1.9}, {3, 0}, {1, 1.9}, {0, 2}, {-1, 1.6}}});
     EXPECT_LT(egg.roundness_fitted_relative, 0.2);

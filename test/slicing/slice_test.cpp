@@ -96,16 +96,16 @@ TEST(SliceMesh, TheSameBitsForAnyNumberOfThreads) {
     const SliceFrame frame = slice_frame(Point(0, 0, -1), Vector(0.1, 0.2, 1));
     const auto heights = slice_heights(0, 2, 40);
     set_threads(1);
-    const SliceStack one = slice_mesh(mesh, frame, heights);
+    const SliceStack sequential = slice_mesh(mesh, frame, heights);
     set_threads(3);
-    const SliceStack three = slice_mesh(mesh, frame, heights);
+    const SliceStack parallel = slice_mesh(mesh, frame, heights);
     set_threads(0);
     for (std::size_t i = 0; i < heights.size(); ++i) {
-        ASSERT_EQ(one.slices[i].contours.size(), three.slices[i].contours.size());
-        for (std::size_t c = 0; c < one.slices[i].contours.size(); ++c) {
-            EXPECT_EQ(one.slices[i].contours[c].points, three.slices[i].contours[c].points);
-            EXPECT_EQ(one.slices[i].contours[c].faces, three.slices[i].contours[c].faces);
-            EXPECT_EQ(one.slices[i].contours[c].parent, three.slices[i].contours[c].parent);
+        ASSERT_EQ(sequential.slices[i].contours.size(), parallel.slices[i].contours.size());
+        for (std::size_t c = 0; c < sequential.slices[i].contours.size(); ++c) {
+            EXPECT_EQ(sequential.slices[i].contours[c].points, parallel.slices[i].contours[c].points);
+            EXPECT_EQ(sequential.slices[i].contours[c].faces, parallel.slices[i].contours[c].faces);
+            EXPECT_EQ(sequential.slices[i].contours[c].parent, parallel.slices[i].contours[c].parent);
         }
     }
 }
@@ -186,31 +186,31 @@ TEST(SliceMesh, PlanesNearTheBaseInAnyOrder) {
 
 TEST(SliceMesh, ATorusHasAHoleAcrossAndTwoDiscsAlong) {
     const Mesh mesh = build_mesh(torus(200, 100));
-    const Slice across = cut(mesh, 0);
-    ASSERT_EQ(across.contours.size(), 2U);
-    EXPECT_FALSE(across.contours[0].hole);
-    EXPECT_TRUE(across.contours[1].hole);
-    EXPECT_EQ(across.contours[1].parent, 0);
-    EXPECT_EQ(across.contours[1].depth, 1);
-    EXPECT_NEAR(area(across), 8 * M_PI, 0.02);
-    EXPECT_EQ(components(across).size(), 1U);
-    const Slice along = cut(mesh, 0, {1, 0, 0});
-    ASSERT_EQ(along.contours.size(), 2U);
-    EXPECT_EQ(along.contours[1].parent, -1);
-    EXPECT_FALSE(along.contours[1].hole);
-    EXPECT_NEAR(area(along), 2 * M_PI, 0.01);
-    EXPECT_EQ(components(along).size(), 2U);
+    const Slice horizontal = cut(mesh, 0);
+    ASSERT_EQ(horizontal.contours.size(), 2U);
+    EXPECT_FALSE(horizontal.contours[0].hole);
+    EXPECT_TRUE(horizontal.contours[1].hole);
+    EXPECT_EQ(horizontal.contours[1].parent, 0);
+    EXPECT_EQ(horizontal.contours[1].depth, 1);
+    EXPECT_NEAR(area(horizontal), 8 * M_PI, 0.02);
+    EXPECT_EQ(components(horizontal).size(), 1U);
+    const Slice vertical = cut(mesh, 0, {1, 0, 0});
+    ASSERT_EQ(vertical.contours.size(), 2U);
+    EXPECT_EQ(vertical.contours[1].parent, -1);
+    EXPECT_FALSE(vertical.contours[1].hole);
+    EXPECT_NEAR(area(vertical), 2 * M_PI, 0.01);
+    EXPECT_EQ(components(vertical).size(), 2U);
 }
 
 TEST(SliceMesh, AreasConvergeQuadratically) {
-    double before = 0;
+    double previous_error = 0;
     for (int level = 3; level <= 6; ++level) {
         const Mesh mesh = build_mesh(octahedron_sphere(level));
         const double error = std::abs(area(cut(mesh, 0.31, {0.2, 0.5, 1})) - M_PI * (1 - 0.31 * 0.31));
         if (level > 3) {
-            EXPECT_NEAR(std::log2(before / error), 2, 0.3) << level;
+            EXPECT_NEAR(std::log2(previous_error / error), 2, 0.3) << level;
         }
-        before = error;
+        previous_error = error;
     }
 }
 
@@ -301,14 +301,14 @@ TEST(SliceMesh, OpenScansStayOpen) {
     std::vector<Index> half;
     for (const Face f : ball.faces())
         if (centroid(ball, f).x() > 0) half.push_back(f.idx());
-    const Slice part = slice_mesh(ball, slice_frame({0, 0, 0}, {0, 0, 1}), {0.3}, half).slices[0];
-    ASSERT_EQ(part.contours.size(), 1U);
-    EXPECT_FALSE(part.contours[0].closed);
-    EXPECT_NEAR(part.completeness.angle(), M_PI, 0.2);
-    for (const Index f : part.contours[0].faces) EXPECT_TRUE(std::binary_search(half.begin(), half.end(), f));
+    const Slice half_slice = slice_mesh(ball, slice_frame({0, 0, 0}, {0, 0, 1}), {0.3}, half).slices[0];
+    ASSERT_EQ(half_slice.contours.size(), 1U);
+    EXPECT_FALSE(half_slice.contours[0].closed);
+    EXPECT_NEAR(half_slice.completeness.angle(), M_PI, 0.2);
+    for (const Index f : half_slice.contours[0].faces) EXPECT_TRUE(std::binary_search(half.begin(), half.end(), f));
 }
 
-TEST(Completeness, OfAnArcIsWhatItShowsOfItsCircle) {
+TEST(Completeness, OfAnArcIsItsFractionOfTheCircle) {
     const auto wall = [](double degrees, double noise) {
         Random random(7);
         return build_mesh(grid(300, 2, false, false, [&](double s, double t) {
@@ -332,11 +332,11 @@ TEST(Completeness, OfAnArcIsWhatItShowsOfItsCircle) {
     // Half a turn over two: the ends of a straight wall say nothing of the rest, those of three sides of a square hardly more.
     for (const std::vector<std::array<double, 2>>& line :
          {std::vector<std::array<double, 2>>{{0, 0}, {5, 0}}, {{5, 0}, {5, 5}, {0, 5}, {0, 0}}}) {
-        const auto pieces = static_cast<Index>(line.size() - 1);
-        const Completeness none =
-            cut(build_mesh(grid(40 * pieces, 2, false, false,
+        const auto sides = static_cast<Index>(line.size() - 1);
+        const Completeness straight =
+            cut(build_mesh(grid(40 * sides, 2, false, false,
                                 [&](double s, double t) {
-                                    const double at = std::min(s * pieces, pieces - 1e-9);
+                                    const double at = std::min(s * sides, sides - 1e-9);
                                     const auto k = static_cast<std::size_t>(at);
                                     const double u = at - double(k);
                                     return std::array<double, 3>{(1 - u) * line[k][0] + u * line[k + 1][0],
@@ -344,35 +344,35 @@ TEST(Completeness, OfAnArcIsWhatItShowsOfItsCircle) {
                                 })),
                 0.3)
                 .completeness;
-        EXPECT_TRUE(std::isnan(none.share)) << pieces;
-        EXPECT_TRUE(std::isnan(none.angle()));
-        EXPECT_NEAR(none.share_at_most, pieces == 1 ? 0.5 : 0.75, 1e-3);
+        EXPECT_TRUE(std::isnan(straight.share)) << sides;
+        EXPECT_TRUE(std::isnan(straight.angle()));
+        EXPECT_NEAR(straight.share_at_most, sides == 1 ? 0.5 : 0.75, 1e-3);
     }
 }
 
-TEST(SliceMesh, InsideOutAndThroughItself) {
+TEST(SliceMesh, InsideOutAndSelfIntersecting) {
     TriangleSoup soup = box(4);
     for (auto& t : soup.triangles) std::swap(t[1], t[2]);
-    const Mesh turned = build_mesh(soup);
-    const SliceStack stack = slice_mesh(turned, slice_frame({0, 0, 0}, {0, 0, 1}), {0.4});
+    const Mesh reversed_mesh = build_mesh(soup);
+    const SliceStack stack = slice_mesh(reversed_mesh, slice_frame({0, 0, 0}, {0, 0, 1}), {0.4});
     EXPECT_TRUE(stack.reversed);
     EXPECT_NEAR(area(stack.slices[0]), 1, 1e-12);
-    expect_sound(turned, stack);
+    expect_sound(reversed_mesh, stack);
     const Mesh crossed = build_mesh(joined(octahedron_sphere(4), moved(octahedron_sphere(4), 1, {1, 0.1, 0.05})));
     const Slice slice = cut(crossed, 0.1);
     ASSERT_EQ(slice.contours.size(), 2U);
     for (const auto& contour : slice.contours) EXPECT_FALSE(contour.hole || contour.parent >= 0);
 }
 
-TEST(SliceMesh, RefusesWhatMakesNoSense) {
+TEST(SliceMesh, RejectsInvalidInput) {
     const Mesh mesh = build_mesh(box(1));
     const SliceFrame frame = slice_frame({0, 0, 0}, {0, 0, 1});
     EXPECT_THROW(slice_mesh(Mesh(), frame, {0}), Error);
     EXPECT_THROW(slice_mesh(mesh, frame, {std::nan("")}), Error);
     EXPECT_THROW(slice_mesh(mesh, frame, {0}, {12}), Error);
-    SliceFrame left = frame;
-    std::swap(left.u, left.v);
-    EXPECT_THROW(slice_mesh(mesh, left, {0}), Error);
+    SliceFrame left_handed = frame;
+    std::swap(left_handed.u, left_handed.v);
+    EXPECT_THROW(slice_mesh(mesh, left_handed, {0}), Error);
     EXPECT_THROW(slice_frame({0, 0, 0}, {0, 0, 0}), Error);
     EXPECT_THROW(slice_heights(1, 0, 3), Error);
     EXPECT_THROW(slice_heights(0, 1, 0), Error);
@@ -386,7 +386,7 @@ TEST(SliceMesh, RefusesWhatMakesNoSense) {
     EXPECT_EQ(slice_frame({0, 0, 0}, {0, 0, 7}).v, Vector(0, 1, 0));
 }
 
-TEST(SliceMesh, TheReferenceSections) {
+TEST(SliceMesh, MatchesReferenceSections) {
     const Path folder = Path(OSTRAKA_SHARED_DATA) / "reference-sections";
     if (!std::filesystem::exists(folder / "sections.tsv")) GTEST_SKIP() << "NOT CHECKED: " << folder << " is not there";
     std::ifstream table(folder / "sections.tsv");
@@ -403,9 +403,9 @@ TEST(SliceMesh, TheReferenceSections) {
         // The table names some folders as they once were.
         Path path = Path(OSTRAKA_SHARED_DATA) / file;
         if (!std::filesystem::exists(path)) {
-            const auto at = file.find("-dev/");
-            ASSERT_NE(at, std::string::npos) << file;
-            path = Path(OSTRAKA_SHARED_DATA) / (file.substr(0, at) + file.substr(at + 4));
+            const auto suffix_start = file.find("-dev/");
+            ASSERT_NE(suffix_start, std::string::npos) << file;
+            path = Path(OSTRAKA_SHARED_DATA) / (file.substr(0, suffix_start) + file.substr(suffix_start + 4));
         }
         ASSERT_TRUE(std::filesystem::exists(path)) << path;
         SCOPED_TRACE(line);
@@ -414,9 +414,9 @@ TEST(SliceMesh, TheReferenceSections) {
         EXPECT_NEAR(std::abs(area(slice)) / expected_area, 1, 1e-9);
         EXPECT_NEAR(length(slice) / expected_perimeter, 1, 1e-9);
         EXPECT_EQ(slice.contours.size(), loops);
-        std::size_t pieces = 0;
-        for (const auto& contour : slice.contours) pieces += contour.faces.size();
-        EXPECT_EQ(pieces, segments);
+        std::size_t segment_count = 0;
+        for (const auto& contour : slice.contours) segment_count += contour.faces.size();
+        EXPECT_EQ(segment_count, segments);
         ++rows;
     }
     EXPECT_EQ(rows, 24U);

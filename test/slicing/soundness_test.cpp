@@ -25,10 +25,10 @@ Slice cut(const Mesh& mesh, double height, const Vector& normal = {0, 0, 1}) {
 }
 double area(const Slice& slice) { return describe_slice(slice).area; }
 
-TriangleSoup turned(TriangleSoup soup, double angle, double scale, const std::array<double, 3>& by) {
+TriangleSoup turned(TriangleSoup soup, double angle, double scale, const std::array<double, 3>& translation) {
     for (auto& p : soup.points) {
         const double x = std::cos(angle) * p[0] - std::sin(angle) * p[1], y = std::sin(angle) * p[0] + std::cos(angle) * p[1];
-        p = {scale * (x + by[0]), scale * (y + by[1]), scale * (p[2] + by[2])};
+        p = {scale * (x + translation[0]), scale * (y + translation[1]), scale * (p[2] + translation[2])};
     }
     return soup;
 }
@@ -76,9 +76,9 @@ TEST(SliceSoundness, AContourThatCrossesItself) {
     ASSERT_EQ(bow.contours.size(), 1U);
     EXPECT_EQ(bow.completeness.crossing, 1);
     EXPECT_FALSE(bow.completeness.has_areas());
-    const Slice plain = cut(walls({{{0, 0}, {4, 0.1}, {4, 2}, {0, 2.2}, {-1, 1}}}), 0.5);
-    EXPECT_EQ(plain.completeness.crossing, 0);
-    EXPECT_EQ(plain.completeness.doubtful, 0);
+    const Slice convex = cut(walls({{{0, 0}, {4, 0.1}, {4, 2}, {0, 2.2}, {-1, 1}}}), 0.5);
+    EXPECT_EQ(convex.completeness.crossing, 0);
+    EXPECT_EQ(convex.completeness.doubtful, 0);
 }
 
 TEST(SliceSoundness, CrossingThroughVerticesAndWithoutThem) {
@@ -101,15 +101,17 @@ TEST(SliceSoundness, CrossingThroughVerticesAndWithoutThem) {
     EXPECT_EQ(sheet.completeness.turned, 0);
 }
 
-TEST(SliceSoundness, WhatTouchesDoesNotCross) {
+TEST(SliceSoundness, TouchingContoursDoNotCross) {
     for (const double angle : {0.0, 0.1, 1.0, 2.5})
         for (const double scale : {1e-5, 1.0, 1e5}) {
-            const auto at = [&](const Polygon& polygon) { return transformed(polygon, scale, angle, {7 * scale, -3 * scale}); };
+            const auto placed = [&](const Polygon& polygon) {
+                return transformed(polygon, scale, angle, {7 * scale, -3 * scale});
+            };
             const Polygon outer = rectangle(4, 4);
             for (const Polygon& other :
                  {rectangle(2, 2, {3, 3}), rectangle(2, 2, {3, 0}), refined(rectangle(2, 2, {3, 0.3}), 5),
                   reversed(rectangle(2, 2, {1, 0})), reversed(refined(rectangle(2, 2, {1, 0.1}), 3)), rectangle(2, 9, {3, 0})}) {
-                const Slice slice = cut(walls({at(outer), at(other)}), 0.5);
+                const Slice slice = cut(walls({placed(outer), placed(other)}), 0.5);
                 EXPECT_EQ(slice.completeness.crossing, 0);
                 EXPECT_EQ(slice.completeness.turned, 0);
                 EXPECT_EQ(slice.completeness.doubtful, 0);
@@ -123,7 +125,7 @@ TEST(SliceSoundness, WhatTouchesDoesNotCross) {
     }
 }
 
-TEST(SliceSoundness, AShellWithinAnotherIsReadByItsNesting) {
+TEST(SliceSoundness, NestedShellsAreOrientedByTheirNesting) {
     const double outer = area(cut(build_mesh(octahedron_sphere(4)), 0.1)),
                  inner = area(cut(build_mesh(moved(octahedron_sphere(4), 0.5, {0, 0, 0})), 0.1));
     const TriangleSoup big = octahedron_sphere(4), small = moved(octahedron_sphere(4), 0.5, {0, 0, 0});
@@ -132,14 +134,14 @@ TEST(SliceSoundness, AShellWithinAnotherIsReadByItsNesting) {
         int turned;
         bool reversed;
     };
-    for (const Case& each :
+    for (const Case& expected :
          {Case{joined(big, inside_out(small)), 0, false}, Case{joined(big, small), 1, false},
           Case{joined(inside_out(big), small), 0, true}, Case{joined(inside_out(big), inside_out(small)), 1, true}}) {
-        const Mesh mesh = build_mesh(each.soup);
+        const Mesh mesh = build_mesh(expected.soup);
         const SliceStack stack = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), {0.1, 0.7});
         const Slice& slice = stack.slices[0];
-        EXPECT_EQ(stack.reversed, each.reversed);
-        EXPECT_EQ(slice.completeness.turned, each.turned);
+        EXPECT_EQ(stack.reversed, expected.reversed);
+        EXPECT_EQ(slice.completeness.turned, expected.turned);
         EXPECT_EQ(slice.completeness.crossing, 0);
         ASSERT_EQ(slice.contours.size(), 2U);
         EXPECT_FALSE(slice.contours[0].hole);
@@ -165,33 +167,33 @@ TEST(SliceSoundness, TheSameBitsForAnyNumberOfThreads) {
                                         moved(octahedron_sphere(3), 0.2, {-0.5, 0, 0})));
     const auto heights = slice_heights(-1, 1, 31);
     set_threads(1);
-    const SliceStack one = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), heights);
+    const SliceStack sequential = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), heights);
     set_threads(3);
-    const SliceStack three = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), heights);
+    const SliceStack parallel = slice_mesh(mesh, slice_frame({0, 0, 0}, {0, 0, 1}), heights);
     set_threads(0);
     for (std::size_t i = 0; i < heights.size(); ++i) {
-        EXPECT_EQ(one.slices[i].completeness.doubtful, three.slices[i].completeness.doubtful);
-        EXPECT_EQ(one.slices[i].completeness.turned, three.slices[i].completeness.turned);
-        ASSERT_EQ(one.slices[i].contours.size(), three.slices[i].contours.size());
-        for (std::size_t c = 0; c < one.slices[i].contours.size(); ++c)
-            EXPECT_EQ(one.slices[i].contours[c].points, three.slices[i].contours[c].points);
+        EXPECT_EQ(sequential.slices[i].completeness.doubtful, parallel.slices[i].completeness.doubtful);
+        EXPECT_EQ(sequential.slices[i].completeness.turned, parallel.slices[i].completeness.turned);
+        ASSERT_EQ(sequential.slices[i].contours.size(), parallel.slices[i].contours.size());
+        for (std::size_t c = 0; c < sequential.slices[i].contours.size(); ++c)
+            EXPECT_EQ(sequential.slices[i].contours[c].points, parallel.slices[i].contours[c].points);
     }
 }
 
-TEST(SliceSoundness, ACurveIsCutAsPlanesAre) {
+TEST(SliceSoundness, SlicesAlongACurveMatchPlanes) {
     // Along a straight curve the planes are those of slice_mesh; the ends are faces of a box, one of them its lowest place.
     const Mesh mesh = build_mesh(joined(box(6), moved(box(4), 0.4, {0.3, 0.3, 0.3})));
-    for (const std::vector<Index>& part :
+    for (const std::vector<Index>& faces :
          {std::vector<Index>{}, std::vector<Index>{0, 1, 2, 30, 31, 32, 70, 71, 100, 101, 150}}) {
-        const CurveSlices across = slice_along(mesh, {{0.5, 0.5, 0}, {0.5, 0.5, 0.4}, {0.5, 0.5, 1}}, 12, part);
+        const CurveSlices across = slice_along(mesh, {{0.5, 0.5, 0}, {0.5, 0.5, 0.4}, {0.5, 0.5, 1}}, 12, faces);
         ASSERT_EQ(across.slices.size(), 12U);
         for (std::size_t i = 0; i < across.slices.size(); ++i) {
-            const Slice plain = slice_mesh(mesh, across.frames[i], {0}, part).slices[0];
-            std::vector<std::vector<Eigen::Vector2d>> all;
-            for (const auto& contour : plain.contours) all.push_back(contour.points);
+            const Slice parallel = slice_mesh(mesh, across.frames[i], {0}, faces).slices[0];
+            std::vector<std::vector<Eigen::Vector2d>> contours;
+            for (const auto& contour : parallel.contours) contours.push_back(contour.points);
             for (const auto& contour : across.slices[i].contours)
-                EXPECT_NE(std::find(all.begin(), all.end(), contour.points), all.end()) << i;
-            EXPECT_EQ(across.slices[i].contours.empty(), plain.contours.empty()) << i;
+                EXPECT_NE(std::find(contours.begin(), contours.end(), contour.points), contours.end()) << i;
+            EXPECT_EQ(across.slices[i].contours.empty(), parallel.contours.empty()) << i;
         }
     }
     // On the lowest plane the base counts; a plane below meets nothing.
@@ -216,21 +218,21 @@ TEST(ClaySoundness, CrossingShellsAreNotCountedTwice) {
     EXPECT_GE(clay.maximum, 2 * ball - 5 * M_PI / 12);  // less what is in both
     EXPECT_LT(clay.maximum, 2 * ball);
     EXPECT_TRUE(std::isnan(clay.envelope));
-    const ClayVolume all = clay_volume(build_mesh(joined(tube(90, 5), moved(tube(90, 5), 1, {0.5, 0, 0}))), upright);
-    EXPECT_EQ(all.crossing, all.slices);
-    EXPECT_NEAR(all.maximum, 3 * (M_PI + 1), 0.02);  // the hull
-    EXPECT_EQ(all.without_outline, 0);
+    const ClayVolume tubes = clay_volume(build_mesh(joined(tube(90, 5), moved(tube(90, 5), 1, {0.5, 0, 0}))), upright);
+    EXPECT_EQ(tubes.crossing, tubes.slices);
+    EXPECT_NEAR(tubes.maximum, 3 * (M_PI + 1), 0.02);  // the hull
+    EXPECT_EQ(tubes.without_outline, 0);
     // A cavity oriented outwards, and all of it inside out.
     const TriangleSoup big = octahedron_sphere(4), small = moved(octahedron_sphere(4), 0.5, {0, 0, 0});
-    const ClayVolume right = clay_volume(build_mesh(joined(big, inside_out(small))), upright);
+    const ClayVolume reference = clay_volume(build_mesh(joined(big, inside_out(small))), upright);
     for (const TriangleSoup& soup : {joined(big, small), joined(inside_out(big), small)}) {
-        const ClayVolume wrong = clay_volume(build_mesh(soup), upright);
-        EXPECT_NEAR(wrong.maximum, right.maximum, 1e-12);
-        EXPECT_NEAR(wrong.minimum, right.minimum, 1e-12);
-        EXPECT_NEAR(wrong.envelope, right.envelope, 1e-12);
-        EXPECT_TRUE(wrong.reversed || wrong.turned > 0);
+        const ClayVolume other = clay_volume(build_mesh(soup), upright);
+        EXPECT_NEAR(other.maximum, reference.maximum, 1e-12);
+        EXPECT_NEAR(other.minimum, reference.minimum, 1e-12);
+        EXPECT_NEAR(other.envelope, reference.envelope, 1e-12);
+        EXPECT_TRUE(other.reversed || other.turned > 0);
     }
-    EXPECT_FALSE(right.reversed);
-    EXPECT_EQ(right.turned, 0);
-    EXPECT_EQ(right.crossing, 0);
+    EXPECT_FALSE(reference.reversed);
+    EXPECT_EQ(reference.turned, 0);
+    EXPECT_EQ(reference.crossing, 0);
 }
