@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs a build into a tree of its own, builds the consumer against that tree and runs it.
+# Installs a build into a tree of its own, builds the consumer and the example of doc/operations.md against that tree and runs both.
 # usage: run.sh BUILD SCRATCH [cmake options of the consumer...]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -15,4 +15,5 @@ cmake -S "$here" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release --no
     { cat "$scratch/configure.log" >&2; exit 1; }
 cmake --build "$scratch/consumer"
 "$scratch/consumer/consumer"
+"$scratch/consumer/add_operation"
 rm -rf "$scratch"

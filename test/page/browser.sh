@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pages built anew are those that are kept, and they work in a real browser; 77 (skipped) where Node, the packages of web/ or the
+# The stored pages are what their sources build, and they work in a real browser; 77 (skipped) where Node, the packages of web/ or the
 # browser are missing.
 # usage: browser.sh PROJECT COMMAND built|report|workbench
 set -euo pipefail
@@ -10,13 +10,13 @@ command -v node >/dev/null || skip "Node is missing"
 [ -d "$project/web/node_modules/three" ] || skip "the packages of web/ are missing"
 cd "$project/web"
 if [ "$what" = built ]; then
-    npx tsc --noEmit
+    npm run check --silent
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
     npx vite build --outDir "$folder" --emptyOutDir >/dev/null
     npx vite build --mode workbench --outDir "$folder" --emptyOutDir false >/dev/null
-    cmp "$folder/report.html" viewer.html || { echo "web/viewer.html is not what its sources make: npm run build" >&2; exit 1; }
-    cmp "$folder/workbench.page.html" workbench.html || { echo "web/workbench.html is not what its sources make: npm run build" >&2; exit 1; }
+    cmp "$folder/report.html" viewer.html || { echo "web/viewer.html differs from what its sources build: run npm run build in web/" >&2; exit 1; }
+    cmp "$folder/workbench.page.html" workbench.html || { echo "web/workbench.html differs from what its sources build: run npm run build in web/" >&2; exit 1; }
     exit
 fi
 export OSTRAKA_CHROMIUM=${OSTRAKA_CHROMIUM:-$(command -v chromium || true)}

@@ -42,7 +42,8 @@ export function Index() {
   const isShown = (i: number) => {
     const one = entries[i];
     if (tag.value && !one.tags.includes(tag.value)) return false;
-    if (wanted && !one.name.toLocaleLowerCase().includes(wanted) && !one.tags.some((t) => t.toLocaleLowerCase().includes(wanted))) return false;
+    if (wanted && !one.name.toLocaleLowerCase().includes(wanted) && !one.tags.some((t) => t.toLocaleLowerCase().includes(wanted)))
+      return false;
     if (!values || (Number.isNaN(low) && Number.isNaN(high))) return true;
     const value = values.get(i);
     return value !== undefined && !(value < low) && !(value > high);
@@ -93,11 +94,23 @@ export function Index() {
               <>
                 <label>
                   {word("atLeast")}{" "}
-                  <input type="number" step="any" class="narrow" value={from.value} onInput={(event) => (from.value = event.currentTarget.value)} />
+                  <input
+                    type="number"
+                    step="any"
+                    class="narrow"
+                    value={from.value}
+                    onInput={(event) => (from.value = event.currentTarget.value)}
+                  />
                 </label>
                 <label>
                   {word("upTo")}{" "}
-                  <input type="number" step="any" class="narrow" value={to.value} onInput={(event) => (to.value = event.currentTarget.value)} />
+                  <input
+                    type="number"
+                    step="any"
+                    class="narrow"
+                    value={to.value}
+                    onInput={(event) => (to.value = event.currentTarget.value)}
+                  />
                 </label>
               </>
             )}

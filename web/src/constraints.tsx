@@ -83,7 +83,8 @@ export function Constraints() {
             <li key={i} class={one.members.includes(chosen.value) ? "chosen" : ""} data-verdict={verdict}>
               <Verdict answer={verdict} /> <strong>{one.type}</strong>: <Members members={one.members} />{" "}
               <span class="quiet">
-                {word("before")}: {one.before}, {word("after")}: {one.verdict}; {one.hard ? word("hard") : `${word("weight")} ${numberText(one.weight)}`}
+                {word("before")}: {one.before}, {word("after")}: {one.verdict};{" "}
+                {one.hard ? word("hard") : `${word("weight")} ${numberText(one.weight)}`}
               </span>
               {one.text && <div>{one.text}</div>}
               {one.deviations.length > 0 && (

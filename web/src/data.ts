@@ -261,7 +261,7 @@ export function readRuns(bytes: Uint8Array): Uint32Array {
       if (byte < 128) return value;
     }
   };
-  for (let face = 0; place < bytes.length; ) {
+  for (let face = 0; place < bytes.length;) {
     face += next();
     for (let run = next(); run > 0; --run) list.push(face++);
   }

@@ -22,7 +22,14 @@ export async function readShape(bytes: Uint8Array): Promise<Shape> {
     const packed = file.bufferViews[file.accessors[accessor].bufferView].extensions.EXT_meshopt_compression;
     const made = new Uint8Array(packed.count * packed.byteStride);
     const begin = binary + (packed.byteOffset ?? 0);
-    MeshoptDecoder.decodeGltfBuffer(made, packed.count, packed.byteStride, bytes.subarray(begin, begin + packed.byteLength), packed.mode, packed.filter);
+    MeshoptDecoder.decodeGltfBuffer(
+      made,
+      packed.count,
+      packed.byteStride,
+      bytes.subarray(begin, begin + packed.byteLength),
+      packed.mode,
+      packed.filter,
+    );
     return { made, stride: packed.byteStride as number, count: packed.count as number };
   };
   const points = unpacked(primitive.attributes.POSITION);
@@ -99,7 +106,11 @@ function setsOf(triangles: number, regions: (Uint32Array | undefined)[]): { of: 
 }
 
 /** Duplicates vertices so that each one has one colour: one per vertex and set of regions that meets there. */
-function splitVertices(vertices: number, triangles: Uint32Array, sets: Uint32Array): { source: Uint32Array; set: Uint32Array; index: Uint32Array } {
+function splitVertices(
+  vertices: number,
+  triangles: Uint32Array,
+  sets: Uint32Array,
+): { source: Uint32Array; set: Uint32Array; index: Uint32Array } {
   const first = new Int32Array(vertices).fill(-1);
   const source: number[] = [];
   const set: number[] = [];
@@ -259,7 +270,11 @@ function bandsOf(slice: Slice, points: Float32Array, begin: number, half: number
   const [origin, u, v] = [slice.origin, slice.u, slice.v].map((x) => new THREE.Vector3(...x));
   const normal = u.clone().cross(v).normalize();
   const corners: number[] = [];
-  const at = (i: number) => origin.clone().addScaledVector(u, points[2 * i]).addScaledVector(v, points[2 * i + 1]);
+  const at = (i: number) =>
+    origin
+      .clone()
+      .addScaledVector(u, points[2 * i])
+      .addScaledVector(v, points[2 * i + 1]);
   const band = (a: THREE.Vector3, b: THREE.Vector3, across: THREE.Vector3) => {
     const [p, q, r, s] = [a.clone().sub(across), a.clone().add(across), b.clone().add(across), b.clone().sub(across)];
     for (const one of [p, q, r, p, r, s]) corners.push(one.x, one.y, one.z);
@@ -333,7 +348,13 @@ export class DrawnObject {
     this.top = new Int32Array(triangles.length / 3);
     this.group.add(this.mesh, this.pins, this.chosen);
     about.annotations.forEach((one, i) => {
-      const mark = one.curves ? this.curves(one.curves, one.colour, one.type) : one.lines ? this.line(one.lines, one.colour) : one.points ? this.dots(one.points, one.colour) : undefined;
+      const mark = one.curves
+        ? this.curves(one.curves, one.colour, one.type)
+        : one.lines
+          ? this.line(one.lines, one.colour)
+          : one.points
+            ? this.dots(one.points, one.colour)
+            : undefined;
       if (!mark) return;
       this.marks.set(i, mark);
       this.group.add(mark);
@@ -398,7 +419,10 @@ export class DrawnObject {
     }
     const { slices } = this.about;
     if (!slices || level === undefined || !slices.levels[level]) return;
-    this.slice = new THREE.Mesh(bandsOf(slices.levels[level], this.slicePoints(), this.firstPoint(level), 0.0025 * Math.hypot(...this.about.size)), cut);
+    this.slice = new THREE.Mesh(
+      bandsOf(slices.levels[level], this.slicePoints(), this.firstPoint(level), 0.0025 * Math.hypot(...this.about.size)),
+      cut,
+    );
     this.slice.frustumCulled = false;
     this.slice.renderOrder = 1;
     this.group.add(this.slice);
@@ -436,7 +460,8 @@ export class DrawnObject {
     }
     const group = new THREE.Group();
     const material = flatMaterial(type === "region" ? (colour.map((x) => Math.round(0.5 * x)) as [number, number, number]) : colour);
-    for (const one of curves) group.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(one.map((p) => new THREE.Vector3(...p))), material));
+    for (const one of curves)
+      group.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(one.map((p) => new THREE.Vector3(...p))), material));
     return group;
   }
 

@@ -65,7 +65,11 @@ export function Legend() {
   const only = () => {
     const wanted = new Set(below(chosen.value));
     show(object.value, all, true);
-    show(object.value, all.filter((i) => !wanted.has(i)), false);
+    show(
+      object.value,
+      all.filter((i) => !wanted.has(i)),
+      false,
+    );
   };
   return (
     <section aria-labelledby="legend-title">

@@ -16,7 +16,17 @@ async function start() {
   window.addEventListener("hashchange", () => void readAddress());
   render(<App />, document.getElementById("app")!);
   // For tests of this page, which query positions on the screen.
-  Object.defineProperty(window, "ostraka", { value: { state, get view() { return view; }, get objects() { return drawn; } } });
+  Object.defineProperty(window, "ostraka", {
+    value: {
+      state,
+      get view() {
+        return view;
+      },
+      get objects() {
+        return drawn;
+      },
+    },
+  });
 }
 
 void start();

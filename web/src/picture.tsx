@@ -73,8 +73,7 @@ function labelPlaces(width: number, height: number): Label[] {
       const room = Math.max(1, Math.floor((height - 16) / row));
       const kept = column.filter((one, i) => one.strong || i < room).slice(0, room);
       kept.forEach((one, i) => (one.y = Math.max(one.atY, i === 0 ? 12 : kept[i - 1].y + row)));
-      for (let i = kept.length - 1; i >= 0; --i)
-        kept[i].y = Math.min(kept[i].y, i === kept.length - 1 ? height - 8 : kept[i + 1].y - row);
+      for (let i = kept.length - 1; i >= 0; --i) kept[i].y = Math.min(kept[i].y, i === kept.length - 1 ? height - 8 : kept[i + 1].y - row);
       for (const one of kept) one.x = side === 0 ? pane * share * width + 8 : (pane + 1) * share * width - 8;
       list.push(...kept.map((one) => ({ ...one, side })));
     }
@@ -90,7 +89,8 @@ function rulers(): { from: { x: number; y: number }; to: { x: number; y: number 
     for (let i = 1; i < pins.length; ++i) {
       const from = view!.place(drawn[o], pins[i - 1]);
       const to = view!.place(drawn[o], pins[i]);
-      if (from && to) list.push({ from, to, text: i === Math.ceil((pins.length - 1) / 2) ? text : "", ends: [i === 1, i === pins.length - 1] });
+      if (from && to)
+        list.push({ from, to, text: i === Math.ceil((pins.length - 1) / 2) ? text : "", ends: [i === 1, i === pins.length - 1] });
     }
   };
   const one = page.objects[state.object.value]?.annotations[state.chosen.value];
@@ -126,9 +126,7 @@ function drawOverlay(svg: SVGSVGElement) {
     const end = one.side === 0 ? one.x + 4 + one.text.length * 6.4 : one.x - 4 - one.text.length * 6.4;
     made.push(element("line", { class: css, x1: end, y1: one.y, x2: one.atX, y2: one.atY }));
     made.push(element("circle", { class: css, cx: one.atX, cy: one.atY, r: 2.2 }));
-    made.push(
-      element("text", { class: css, x: one.x, y: one.y + 4, "text-anchor": one.side === 0 ? "start" : "end" }, one.text),
-    );
+    made.push(element("text", { class: css, x: one.x, y: one.y + 4, "text-anchor": one.side === 0 ? "start" : "end" }, one.text));
   }
   for (const { from, to, text, ends } of rulers()) {
     made.push(element("line", { class: "ruler", x1: from.x, y1: from.y, x2: to.x, y2: to.y }));
@@ -188,8 +186,7 @@ export function repaint() {
     const of = drawn[o];
     if (!of) return; // another content is being loaded
     const map = state.map.value;
-    if (map >= 0 && map < of.about.maps.length)
-      of.paintMap(map, (share) => colourOf(share, of.about.maps[map].colours));
+    if (map >= 0 && map < of.about.maps.length) of.paintMap(map, (share) => colourOf(share, of.about.maps[map].colours));
     else of.paint((i) => state.isShown(o, i), o === state.object.value ? chosen : -1);
     if (of.cage) of.cage.visible = state.cage.value;
   }
@@ -245,22 +242,30 @@ export function Picture() {
     // The canvas outlives the components around it.
     const listens = new AbortController();
     const { signal } = listens;
-    canvas.addEventListener("pointermove", (event) => {
-      if (event.buttons !== 0 || waiting) return;
-      waiting = true;
-      const place = at(event);
-      requestAnimationFrame(() => {
-        waiting = false;
-        hover(place.x, place.y);
-      });
-    }, { signal });
+    canvas.addEventListener(
+      "pointermove",
+      (event) => {
+        if (event.buttons !== 0 || waiting) return;
+        waiting = true;
+        const place = at(event);
+        requestAnimationFrame(() => {
+          waiting = false;
+          hover(place.x, place.y);
+        });
+      },
+      { signal },
+    );
     canvas.addEventListener("pointerleave", () => (state.hovered.value = undefined), { signal });
     canvas.addEventListener("pointerdown", (event) => (down = at(event)), { signal });
-    canvas.addEventListener("click", (event) => {
-      const place = at(event);
-      if (Math.hypot(place.x - down.x, place.y - down.y) > 4) return;
-      click(place.x, place.y);
-    }, { signal });
+    canvas.addEventListener(
+      "click",
+      (event) => {
+        const place = at(event);
+        if (Math.hypot(place.x - down.x, place.y - down.y) > 4) return;
+        click(place.x, place.y);
+      },
+      { signal },
+    );
     canvas.addEventListener("keydown", onKey, { signal });
     return () => {
       stops.forEach((stop) => stop());

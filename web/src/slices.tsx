@@ -33,9 +33,23 @@ function Plot({ slices }: { slices: Data }) {
   const current = known.find((one) => one.i === level.value);
   const label = `${shown.title}${shown.unit ? ` (${shown.unit})` : ""}`;
   return (
-    <svg class="plot" width={width} height={high} role="img" aria-label={`${label} – ${word("height")}`} onPointerDown={choose} onPointerMove={choose}>
+    <svg
+      class="plot"
+      width={width}
+      height={high}
+      role="img"
+      aria-label={`${label} – ${word("height")}`}
+      onPointerDown={choose}
+      onPointerMove={choose}
+    >
       {slices.tube && (
-        <rect class="tube" x={edge.left} y={y(slices.tube[1])} width={width - edge.left - edge.right} height={Math.max(1, y(slices.tube[0]) - y(slices.tube[1]))}>
+        <rect
+          class="tube"
+          x={edge.left}
+          y={y(slices.tube[1])}
+          width={width - edge.left - edge.right}
+          height={Math.max(1, y(slices.tube[0]) - y(slices.tube[1]))}
+        >
           <title>{word("tube")}</title>
         </rect>
       )}

@@ -32,7 +32,12 @@ function TableView({ table }: { table: Table }) {
               const o = table.objects?.[r] ?? -1;
               const current = isRowChosen(table, r);
               return (
-                <tr key={r} class={current ? "chosen" : o >= 0 ? "linked" : ""} data-row={r} onClick={() => (page.collection ? (marked.value = { table: table.name, row: r }) : go(r))}>
+                <tr
+                  key={r}
+                  class={current ? "chosen" : o >= 0 ? "linked" : ""}
+                  data-row={r}
+                  onClick={() => (page.collection ? (marked.value = { table: table.name, row: r }) : go(r))}
+                >
                   {row.map((cell, c) => {
                     const text = cell === null ? "–" : typeof cell === "number" ? numberText(cell) : cell;
                     return (
@@ -61,10 +66,7 @@ function TableView({ table }: { table: Table }) {
 
 function DrawingView({ drawing, blobs }: { drawing: Drawing; blobs: Blobs }) {
   // As an image: scripts and links in an SVG are inactive.
-  const address = useMemo(
-    () => URL.createObjectURL(new Blob([blobs.get(drawing.blob) as BlobPart], { type: "image/svg+xml" })),
-    [drawing],
-  );
+  const address = useMemo(() => URL.createObjectURL(new Blob([blobs.get(drawing.blob) as BlobPart], { type: "image/svg+xml" })), [drawing]);
   useEffect(() => () => URL.revokeObjectURL(address), [address]);
   return (
     <figure class="drawing">

@@ -184,7 +184,7 @@ export class View {
     let most = 0;
     for (const one of this.panes.length > 0 ? this.panes : this.objects.slice(0, 1))
       for (let corner = 0; corner < 8; ++corner) {
-        const at = new THREE.Vector3(...one.about.size.map((x, k) => (corner >> k) % 2 * x));
+        const at = new THREE.Vector3(...one.about.size.map((x, k) => ((corner >> k) % 2) * x));
         one.group.localToWorld(at);
         most = Math.max(most, Math.abs(at.dot(right)) / x, Math.abs(at.dot(up)) / y);
       }

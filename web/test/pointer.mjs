@@ -44,8 +44,13 @@ async function gesture(page, name, act, { turns = false, moves = false, zooms = 
   const before = await look(page);
   await act(await page.locator(canvas).first().boundingBox());
   const after = await look(page);
-  assert.equal(distance(before.direction, after.direction) > 0.1, turns, `${name}: turned by ${distance(before.direction, after.direction)}`);
-  if (!zooms) assert.equal(distance(before.target, after.target) > 0.02, moves, `${name}: moved by ${distance(before.target, after.target)}`);
+  assert.equal(
+    distance(before.direction, after.direction) > 0.1,
+    turns,
+    `${name}: turned by ${distance(before.direction, after.direction)}`,
+  );
+  if (!zooms)
+    assert.equal(distance(before.target, after.target) > 0.02, moves, `${name}: moved by ${distance(before.target, after.target)}`);
   assert.equal(Math.abs(Math.log(after.zoom / before.zoom)) > 0.05, zooms, `${name}: zoom ${before.zoom} became ${after.zoom}`);
   assert.notEqual(before.pixels, after.pixels, `${name}: the picture is the same`);
   return { before, after };
@@ -90,7 +95,11 @@ export async function turnsByHand(page) {
   const pinched = await gesture(
     page,
     "two fingers apart",
-    (box) => touch([[inside(box, 0.45, 0.5), inside(box, 0.3, 0.5)], [inside(box, 0.55, 0.5), inside(box, 0.7, 0.5)]]),
+    (box) =>
+      touch([
+        [inside(box, 0.45, 0.5), inside(box, 0.3, 0.5)],
+        [inside(box, 0.55, 0.5), inside(box, 0.7, 0.5)],
+      ]),
     { zooms: true },
   );
   assert.ok(pinched.after.zoom > pinched.before.zoom);

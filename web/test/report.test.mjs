@@ -17,7 +17,15 @@ const require = createRequire(import.meta.url);
 
 const browser = await chromium.launch({
   executablePath: process.env.OSTRAKA_CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
+  args: [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+  ],
 });
 
 const failures = [];
@@ -139,7 +147,10 @@ try {
       return { points: Array.from(objects[0].shape.positions, (x, i) => x + origin[i % 3]), step: Math.max(...size) / 65535 };
     });
     ostraka("mesh", "convert", at("pot.ply"), at("pot.obj"));
-    const given = readFileSync(at("pot.obj"), "utf8").split("\n").filter((l) => l.startsWith("v ")).flatMap((l) => l.split(" ").slice(1, 4).map(Number));
+    const given = readFileSync(at("pot.obj"), "utf8")
+      .split("\n")
+      .filter((l) => l.startsWith("v "))
+      .flatMap((l) => l.split(" ").slice(1, 4).map(Number));
     assert.equal(shown.points.length, given.length);
     for (let i = 0; i < given.length; ++i)
       assert.ok(Math.abs(shown.points[i] - given[i]) <= 0.51 * shown.step, `coordinate ${i}: ${shown.points[i]} for ${given[i]}`);
@@ -171,7 +182,10 @@ try {
 
   await test("the slider moves vertices to where they belong", async () => {
     ostraka("mesh", "convert", at("pot.ply"), at("rest.obj"));
-    const taller = readFileSync(at("rest.obj"), "utf8").replace(/^v (\S+) (\S+) (\S+)/gm, (_, x, y, z) => `v ${+x + 5} ${y} ${1.3 * z - 20}`);
+    const taller = readFileSync(at("rest.obj"), "utf8").replace(
+      /^v (\S+) (\S+) (\S+)/gm,
+      (_, x, y, z) => `v ${+x + 5} ${y} ${1.3 * z - 20}`,
+    );
     writeFileSync(at("taller.obj"), taller);
     ostraka("report", at("rest.obj"), at("taller.obj"), at("two.html"));
     const { page, told, close } = await open(at("two.html"));
@@ -190,7 +204,13 @@ try {
         const at = mesh.index.getX(i);
         most = Math.max(most, Math.abs(target.getX(at) - v.x), Math.abs(target.getY(at) - v.y), Math.abs(target.getZ(at) - v.z));
       }
-      return { most, blend: state.blend.value, partner: state.blendPartner.value, apart: Math.hypot(...apart), size: Math.hypot(...other.about.size) };
+      return {
+        most,
+        blend: state.blend.value,
+        partner: state.blendPartner.value,
+        apart: Math.hypot(...apart),
+        size: Math.hypot(...other.about.size),
+      };
     });
     assert.ok(far.most < 1e-6 * far.size && far.apart > 0.05 * far.size, JSON.stringify(far));
     assert.deepEqual([far.blend, far.partner], [1, 1]);
@@ -235,15 +255,21 @@ try {
       const band = objects[0].group.children.find((one) => one.renderOrder === 1).geometry.getAttribute("position");
       const points = [];
       // Four corners of a band lie around each end of a segment.
-      for (let i = 0; i < band.count; i += 6) points.push([0, 1, 2].map((k) => (band.getComponent(i, k) + band.getComponent(i + 1, k)) / 2 + about.origin[k]));
+      for (let i = 0; i < band.count; i += 6)
+        points.push([0, 1, 2].map((k) => (band.getComponent(i, k) + band.getComponent(i + 1, k)) / 2 + about.origin[k]));
       return { at: state.level.value, points };
     });
     assert.equal(seen.at, 4);
     const { origin, u, v, normal } = level.frame;
-    const wanted = level.contours.flatMap((c) => c.points.map(([x, y]) => [0, 1, 2].map((k) => origin[k] + level.height * normal[k] + x * u[k] + y * v[k])));
+    const wanted = level.contours.flatMap((c) =>
+      c.points.map(([x, y]) => [0, 1, 2].map((k) => origin[k] + level.height * normal[k] + x * u[k] + y * v[k])),
+    );
     assert.equal(seen.points.length, 2 * wanted.length);
     for (let i = 0; i < wanted.length; ++i)
-      assert.ok(Math.hypot(...wanted[i].map((x, k) => x - seen.points[2 * i][k])) < 1e-3 * level.height, `corner ${i}: ${seen.points[2 * i]} for ${wanted[i]}`);
+      assert.ok(
+        Math.hypot(...wanted[i].map((x, k) => x - seen.points[2 * i][k])) < 1e-3 * level.height,
+        `corner ${i}: ${seen.points[2 * i]} for ${wanted[i]}`,
+      );
     const box = await page.locator("svg.plot").first().boundingBox();
     await page.mouse.click(box.x + box.width / 2, box.y + 10);
     assert.equal(await page.evaluate(() => globalThis.ostraka.state.level.value), 8);
@@ -253,10 +279,31 @@ try {
 
   await test("constraints are shown with their verdicts and choose their parts", async () => {
     const evil = `</script><img src=x onerror="globalThis.broken=1">`;
-    const constraint = (verdict, extra) => ({ id: 1, type: "same level", parts: ["flower 1", "flower 2"], weight: 1, hard: true, before: "holds", verdict, text: evil,
-      deviations: [{ quantity: evil, before: 0, value: 3.25, tolerance: 1, unit: evil }], residual: { mean: 0.5, max: 2 }, ...extra });
-    writeFileSync(at("moved.json"), JSON.stringify({ format: "ostraka-report", command: "deform", result: {
-      constraints: [constraint("holds"), constraint("fails", { id: 2, type: evil }), constraint("unknown", { id: 3 })], conflicts: [{ id: 2, freed: [1] }], rounds: 3 } }));
+    const constraint = (verdict, extra) => ({
+      id: 1,
+      type: "same level",
+      parts: ["flower 1", "flower 2"],
+      weight: 1,
+      hard: true,
+      before: "holds",
+      verdict,
+      text: evil,
+      deviations: [{ quantity: evil, before: 0, value: 3.25, tolerance: 1, unit: evil }],
+      residual: { mean: 0.5, max: 2 },
+      ...extra,
+    });
+    writeFileSync(
+      at("moved.json"),
+      JSON.stringify({
+        format: "ostraka-report",
+        command: "deform",
+        result: {
+          constraints: [constraint("holds"), constraint("fails", { id: 2, type: evil }), constraint("unknown", { id: 3 })],
+          conflicts: [{ id: 2, freed: [1] }],
+          rounds: 3,
+        },
+      }),
+    );
     ostraka("report", at("pot.ply"), at("pot.ant.json"), at("moved.json"), at("moved.html"));
     const { page, told, close } = await open(at("moved.html"));
     const verdicts = await page.locator(".constraints > li").evaluateAll((list) => list.map((one) => one.dataset.verdict));
@@ -282,8 +329,14 @@ try {
     await page.keyboard.press("ArrowRight");
     const moved = await page.evaluate(() => globalThis.ostraka.state.chosen.value);
     assert.notEqual(moved, 2);
-    const place = await page.locator(`.scatter circle[data-row="${moved}"]`).first().evaluate((one) => [one.getAttribute("cx"), one.getAttribute("cy")]);
-    const mark = await page.locator(".scatter circle.chosen").first().evaluate((one) => [one.getAttribute("cx"), one.getAttribute("cy")]);
+    const place = await page
+      .locator(`.scatter circle[data-row="${moved}"]`)
+      .first()
+      .evaluate((one) => [one.getAttribute("cx"), one.getAttribute("cy")]);
+    const mark = await page
+      .locator(".scatter circle.chosen")
+      .first()
+      .evaluate((one) => [one.getAttribute("cx"), one.getAttribute("cy")]);
     assert.deepEqual(mark, place);
     await close();
   });
@@ -292,13 +345,37 @@ try {
     const lines = (name) => readFileSync(at(name), "utf8").split("\n");
     ostraka("mesh", "make", "teapot", at("part.ply"), "--vertices", "2000");
     ostraka("mesh", "convert", at("part.ply"), at("part.obj"));
-    const points = lines("part.obj").filter((l) => l.startsWith("v ")).map((l) => l.split(" ").slice(1, 4).map(Number));
-    const faces = lines("part.obj").filter((l) => l.startsWith("f ")).map((l) => l.split(" ").slice(1, 4).map((x) => parseInt(x) - 1));
+    const points = lines("part.obj")
+      .filter((l) => l.startsWith("v "))
+      .map((l) => l.split(" ").slice(1, 4).map(Number));
+    const faces = lines("part.obj")
+      .filter((l) => l.startsWith("f "))
+      .map((l) =>
+        l
+          .split(" ")
+          .slice(1, 4)
+          .map((x) => parseInt(x) - 1),
+      );
     const all = [...points, ...points.map(([x, y, z]) => [x, y, z + 130])];
     const both = [...faces.map((f) => [f, 1]), ...faces.map((f) => [f.map((v) => v + points.length), 2])];
-    writeFileSync(at("two-parts.ply"), ["ply", "format ascii 1.0", `element vertex ${all.length}`, "property double x", "property double y", "property double z",
-      `element face ${both.length}`, "property list uchar int vertex_indices", "property int label", "end_header",
-      ...all.map((p) => p.join(" ")), ...both.map(([f, l]) => `3 ${f.join(" ")} ${l}`), ""].join("\n"));
+    writeFileSync(
+      at("two-parts.ply"),
+      [
+        "ply",
+        "format ascii 1.0",
+        `element vertex ${all.length}`,
+        "property double x",
+        "property double y",
+        "property double z",
+        `element face ${both.length}`,
+        "property list uchar int vertex_indices",
+        "property int label",
+        "end_header",
+        ...all.map((p) => p.join(" ")),
+        ...both.map(([f, l]) => `3 ${f.join(" ")} ${l}`),
+        "",
+      ].join("\n"),
+    );
     ostraka("report", at("two-parts.ply"), at("apart.html"));
     const { page, told, close } = await open(at("apart.html"));
     const before = await page.evaluate(() => globalThis.ostraka.objects[0].vertex(0).toArray());
@@ -308,17 +385,46 @@ try {
     const places = await probe(page, 12);
     assert.equal(places.length, 12);
     const hits = await page.evaluate((list) => list.map(({ x, y }) => globalThis.ostraka.view.pick(x, y)?.face ?? -1), places);
-    assert.deepEqual(hits, places.map((one) => one.face));
+    assert.deepEqual(
+      hits,
+      places.map((one) => one.face),
+    );
     assert.deepEqual(told, []);
     await close();
   });
 
   await test("categories have names and swatches", async () => {
     // What fit writes: labels say observed, interpolated, hypothesis.
-    const faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    writeFileSync(at("completed.ply"), ["ply", "format ascii 1.0", "element vertex 4", "property double x", "property double y", "property double z", "element face 4",
-      "property list uchar int vertex_indices", "property int label", "property int fragment", "property double distance", "property double confidence", "end_header",
-      "0 0 0", "1 0 0", "0 1 0", "0 0 1", ...faces.map((f, i) => `3 ${f.join(" ")} ${i % 3} 0 ${0.1 * i} ${1 - 0.2 * i}`), ""].join("\n"));
+    const faces = [
+      [0, 2, 1],
+      [0, 1, 3],
+      [1, 2, 3],
+      [2, 0, 3],
+    ];
+    writeFileSync(
+      at("completed.ply"),
+      [
+        "ply",
+        "format ascii 1.0",
+        "element vertex 4",
+        "property double x",
+        "property double y",
+        "property double z",
+        "element face 4",
+        "property list uchar int vertex_indices",
+        "property int label",
+        "property int fragment",
+        "property double distance",
+        "property double confidence",
+        "end_header",
+        "0 0 0",
+        "1 0 0",
+        "0 1 0",
+        "0 0 1",
+        ...faces.map((f, i) => `3 ${f.join(" ")} ${i % 3} 0 ${0.1 * i} ${1 - 0.2 * i}`),
+        "",
+      ].join("\n"),
+    );
     ostraka("report", at("completed.ply"), at("completed.html"));
     const { page, close } = await open(at("completed.html"), { hash: "#map=0" });
     const names = await page.locator(".categories li").allInnerTexts();
@@ -332,7 +438,17 @@ try {
     for (const name of ["pot", "part"]) ostraka("mesh", "convert", at(`${name}.ply`), at(`in-${name}.ply`));
     writeFileSync(at("in-pot.ant.json"), readFileSync(at("pot.ant.json")));
     ostraka("mesh", "convert", at("part.ply"), at(`${evil}.ply`));
-    ostraka("report", at("in-pot.ply"), at("in-part.ply"), at(`${evil}.ply`), at("all.html"), "--beside", at("all objects"), "--title", evil);
+    ostraka(
+      "report",
+      at("in-pot.ply"),
+      at("in-part.ply"),
+      at(`${evil}.ply`),
+      at("all.html"),
+      "--beside",
+      at("all objects"),
+      "--title",
+      evil,
+    );
     const { page, told, close } = await open(at("all.html"));
     assert.equal(await page.locator(".card").count(), 3);
     await page.waitForFunction(() => [...document.images].every((one) => one.naturalWidth > 0));
@@ -377,7 +493,8 @@ try {
     };
     visit(manifest);
     assert.deepEqual(ids, []);
-    for (const name of ["model.glb", "thumbnail.png", "index.html", "annotations.jsonld"]) assert.ok(readFileSync(at(`published/${name}`)).length > 1000);
+    for (const name of ["model.glb", "thumbnail.png", "index.html", "annotations.jsonld"])
+      assert.ok(readFileSync(at(`published/${name}`)).length > 1000);
     // The box of the model as glTF shows it: in metres, y up.
     const [scene] = manifest.items;
     const set = JSON.parse(readFileSync(at("pot.ant.json"), "utf8"));
@@ -393,17 +510,29 @@ try {
       assert.ok(Math.hypot(x, y, z) <= reach, `${x} ${y} ${z}`);
     }
     const knob = comments.find((one) => one.body.value.startsWith("top of the knob")).target.selector[0];
-    assert.ok(comments.every((one) => one.target.selector[0].y <= knob.y + 1e-9), "y is up");
+    assert.ok(
+      comments.every((one) => one.target.selector[0].y <= knob.y + 1e-9),
+      "y is up",
+    );
   });
 
   await test("axe finds nothing serious, in each language and theme", async () => {
     const source = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
-    for (const [locale, colorScheme, file] of [["en-GB", "light", "cut.html"], ["de-DE", "dark", "moved.html"], ["it-IT", "light", "all.html"]]) {
+    for (const [locale, colorScheme, file] of [
+      ["en-GB", "light", "cut.html"],
+      ["de-DE", "dark", "moved.html"],
+      ["it-IT", "light", "all.html"],
+    ]) {
       const { page, close } = await open(at(file), { locale, colorScheme });
       assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
       await page.evaluate(source);
-      const found = await page.evaluate(async () => (await globalThis.axe.run()).violations.map((v) => `${v.impact} ${v.id}: ${v.nodes[0].html}`));
-      assert.deepEqual(found.filter((line) => /^(serious|critical)/.test(line)), []);
+      const found = await page.evaluate(async () =>
+        (await globalThis.axe.run()).violations.map((v) => `${v.impact} ${v.id}: ${v.nodes[0].html}`),
+      );
+      assert.deepEqual(
+        found.filter((line) => /^(serious|critical)/.test(line)),
+        [],
+      );
       await close();
     }
   });
@@ -420,9 +549,20 @@ try {
     set.unit = evil;
     writeFileSync(at("evil.ant.json"), JSON.stringify(set));
     writeFileSync(at("evil.csv"), `"${evil.replaceAll('"', '""')}",b\n"${evil.replaceAll('"', '""')}",2\n`);
-    writeFileSync(at("<img src=x onerror=globalThis.broken=1>.svg"),
-      `<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><script>globalThis.broken=1</script><rect width="9" height="9" onload="globalThis.broken=1"/></svg>`);
-    ostraka("report", at("pot.ply"), at("evil.ant.json"), at("evil.csv"), at("<img src=x onerror=globalThis.broken=1>.svg"), at("evil.html"), "--title", evil);
+    writeFileSync(
+      at("<img src=x onerror=globalThis.broken=1>.svg"),
+      `<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><script>globalThis.broken=1</script><rect width="9" height="9" onload="globalThis.broken=1"/></svg>`,
+    );
+    ostraka(
+      "report",
+      at("pot.ply"),
+      at("evil.ant.json"),
+      at("evil.csv"),
+      at("<img src=x onerror=globalThis.broken=1>.svg"),
+      at("evil.html"),
+      "--title",
+      evil,
+    );
     const { page, told, close } = await open(at("evil.html"));
     await page.locator("canvas").focus();
     await page.keyboard.press("n");
@@ -436,7 +576,12 @@ try {
   await test("no script runs but the viewer's own", async () => {
     for (const name of ["pot.html", "all.html"]) {
       const injected = `<script>globalThis.broken = 1</script><script type="module">globalThis.broken = 2</script><img src=x onerror="globalThis.broken = 3"><svg onload="globalThis.broken = 4"></svg><a id="trap" href="javascript:globalThis.broken = 5">x</a><iframe srcdoc="<script>parent.broken = 6</script>"></iframe>`;
-      writeFileSync(at("injected.html"), readFileSync(at(name), "utf8").replace("<title>", `<script>globalThis.broken = 7</script><title>`).replace('<div id="app">', () => injected + '<div id="app">'));
+      writeFileSync(
+        at("injected.html"),
+        readFileSync(at(name), "utf8")
+          .replace("<title>", `<script>globalThis.broken = 7</script><title>`)
+          .replace('<div id="app">', () => injected + '<div id="app">'),
+      );
       const { page, told, close } = await open(at("injected.html"));
       await page.locator("#trap").dispatchEvent("click");
       await page.evaluate(() => {

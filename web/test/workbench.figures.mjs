@@ -34,7 +34,11 @@ const browser = await chromium.launch({
 async function open(address) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 860 } });
   await page.goto(address);
-  await page.waitForFunction(() => performance.getEntriesByName("scene shown").length > 0 && performance.getEntriesByName("first picture").length > 0, undefined, { timeout: 120000 });
+  await page.waitForFunction(
+    () => performance.getEntriesByName("scene shown").length > 0 && performance.getEntriesByName("first picture").length > 0,
+    undefined,
+    { timeout: 120000 },
+  );
   return page;
 }
 
@@ -52,13 +56,27 @@ try {
     const server = await serve(at("scan.ply"));
     child = server.child;
     page = await open(server.address);
-    const inPage = await page.evaluate(() => ({ first: performance.getEntriesByName("first picture")[0].startTime, asked: performance.getEntriesByName("scene asked")[0].startTime, there: performance.getEntriesByName("scene there")[0].startTime, shown: performance.getEntriesByName("scene shown")[0].startTime, origin: performance.timeOrigin }));
+    const inPage = await page.evaluate(() => ({
+      first: performance.getEntriesByName("first picture")[0].startTime,
+      asked: performance.getEntriesByName("scene asked")[0].startTime,
+      there: performance.getEntriesByName("scene there")[0].startTime,
+      shown: performance.getEntriesByName("scene shown")[0].startTime,
+      origin: performance.timeOrigin,
+    }));
     const started = performance.timeOrigin + began;
     const since = (mark) => (inPage.origin + mark - started) / 1000;
-    opened.push({ server: server.seconds, asked: since(inPage.asked), there: since(inPage.there), shown: since(inPage.shown), picture: since(inPage.first) });
+    opened.push({
+      server: server.seconds,
+      asked: since(inPage.asked),
+      there: since(inPage.there),
+      shown: since(inPage.shown),
+      picture: since(inPage.first),
+    });
   }
   const faces = await page.evaluate(() => ostraka.page.page.objects[0].faces);
-  console.log(`${faces} triangles: after the command was started: ${["server", "asked", "there", "shown", "picture"].map((k) => `${k} ${text(median(opened.map((o) => o[k])))} s`).join(", ")}`);
+  console.log(
+    `${faces} triangles: after the command was started: ${["server", "asked", "there", "shown", "picture"].map((k) => `${k} ${text(median(opened.map((o) => o[k])))} s`).join(", ")}`,
+  );
   const picking = await page.evaluate(() => {
     const { view } = ostraka;
     view.pick(300, 300);
@@ -102,7 +120,22 @@ try {
   ostraka("annotation", "apply", at("pot.ply"), join(project, "data/teapot.recipe.json"), at("pot.ant.json"));
   ostraka("cage", "make", at("pot.ply"), at("pot.cage.ply"), "--vertices", "200");
   ostraka("cage", "weights", at("pot.ply"), at("pot.cage.ply"), at("pot.npy"));
-  ostraka("relation", "add", at("pot.ply"), at("pot.ant.json"), at("pot.graph.json"), "--constraint", "--relation", "same level: flower 1, flower 2, flower 3, flower 4, flower 5", "--relation", "keep shape: lid", "--relation", "keep shape: spout", "--relation", "co-axiality: lid, base");
+  ostraka(
+    "relation",
+    "add",
+    at("pot.ply"),
+    at("pot.ant.json"),
+    at("pot.graph.json"),
+    "--constraint",
+    "--relation",
+    "same level: flower 1, flower 2, flower 3, flower 4, flower 5",
+    "--relation",
+    "keep shape: lid",
+    "--relation",
+    "keep shape: spout",
+    "--relation",
+    "co-axiality: lid, base",
+  );
   const pot = await serve(at("pot.ply"));
   page = await open(pot.address);
   const drags = async (constraints) =>
@@ -114,7 +147,12 @@ try {
       const answer = await ostraka.model.link.ask("grab", { handles: [...ostraka.deform.handles.value], constraints });
       const grabbed = performance.now() - began;
       const of = ostraka.objects[ostraka.page.object.value];
-      const rest = answer.result.handles.map((i) => ostraka.deform.control(of, i).toArray().map((x, k) => x + of.about.origin[k]));
+      const rest = answer.result.handles.map((i) =>
+        ostraka.deform
+          .control(of, i)
+          .toArray()
+          .map((x, k) => x + of.about.origin[k]),
+      );
       const [alone, server, shown] = [[], [], []];
       const wait = () => {
         const gl = ostraka.view.renderer.getContext();
@@ -122,7 +160,9 @@ try {
       };
       wait();
       for (let frame = 0; frame < 60; ++frame)
-        alone.push(1000 * (await ostraka.model.link.ask("drag", { places: rest.map((p) => [p[0], p[1] + 0.2 * frame, p[2]]) })).result.seconds);
+        alone.push(
+          1000 * (await ostraka.model.link.ask("drag", { places: rest.map((p) => [p[0], p[1] + 0.2 * frame, p[2]]) })).result.seconds,
+        );
       for (let frame = 0; frame < 60; ++frame) {
         const sent = performance.now();
         const { result, bytes } = await ostraka.model.link.ask("drag", { places: rest.map((p) => [p[0], p[1] + 0.2 * frame, p[2]]) });

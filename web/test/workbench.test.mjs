@@ -19,7 +19,16 @@ const patience = Number(process.env.PATIENCE ?? 60000);
 
 const browser = await chromium.launch({
   executablePath: process.env.OSTRAKA_CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run", ...(process.env.PAGE ? ["--disable-features=LocalNetworkAccessChecks"] : [])],
+  args: [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    ...(process.env.PAGE ? ["--disable-features=LocalNetworkAccessChecks"] : []),
+  ],
 });
 
 const failures = [];
@@ -72,11 +81,15 @@ async function open(address, options = {}, script) {
   if (script) await page.addInitScript(script);
   // A page that was built since the command was.
   if (process.env.PAGE)
-    await page.route((url) => url.pathname === "/", async (route) => {
-      const response = await route.fetch();
-      const { "content-security-policy": ofTheCommandsPage, ...headers } = response.headers();
-      await route.fulfill({ response, headers, body: readFileSync(process.env.PAGE, "utf8") });
-    });
+    await page.route(
+      (url) => url.pathname === "/",
+      async (route) => {
+        const response = await route.fetch();
+        const headers = response.headers();
+        delete headers["content-security-policy"];
+        await route.fulfill({ response, headers, body: readFileSync(process.env.PAGE, "utf8") });
+      },
+    );
   await page.goto(address);
   await settled(page).catch((error) => {
     throw new Error(`${error.message}\n${told.join("\n")}`);
@@ -86,7 +99,14 @@ async function open(address, options = {}, script) {
 
 /** Nothing is under way, and the picture is drawn. */
 const settled = (page) =>
-  page.waitForFunction(() => globalThis.ostraka?.model.connected.value && globalThis.ostraka.model.operations.value.length > 0 && globalThis.ostraka.model.busy.value === "", undefined, { timeout: patience });
+  page.waitForFunction(
+    () =>
+      globalThis.ostraka?.model.connected.value &&
+      globalThis.ostraka.model.operations.value.length > 0 &&
+      globalThis.ostraka.model.busy.value === "",
+    undefined,
+    { timeout: patience },
+  );
 /** Waits for what is asked of the page; what it says is wrong ends the wait. */
 async function until(page, what, condition, argument) {
   const wrong = () => page.evaluate(() => globalThis.ostraka?.model.problem.value?.problem);
@@ -95,7 +115,10 @@ async function until(page, what, condition, argument) {
     if (await page.evaluate(`(${condition})(${JSON.stringify(argument)}) && ostraka.model.busy.value === ""`)) return;
     const problem = await wrong();
     if (problem) throw new Error(`${what}: ${problem}`);
-    if (Date.now() > end) throw new Error(`${what}: nothing happened; at step ${await page.evaluate(() => ostraka.model.place.value)}, ${await page.evaluate(() => ostraka.model.busy.value)}`);
+    if (Date.now() > end)
+      throw new Error(
+        `${what}: nothing happened; at step ${await page.evaluate(() => ostraka.model.place.value)}, ${await page.evaluate(() => ostraka.model.busy.value)}`,
+      );
     await page.waitForTimeout(50);
   }
 }
@@ -108,7 +131,8 @@ async function drag(page, from, to, between = 4) {
   const box = await page.locator(".canvas canvas").boundingBox();
   await page.mouse.move(box.x + from[0], box.y + from[1]);
   await page.mouse.down();
-  for (let i = 1; i <= between; ++i) await page.mouse.move(box.x + from[0] + ((to[0] - from[0]) * i) / between, box.y + from[1] + ((to[1] - from[1]) * i) / between);
+  for (let i = 1; i <= between; ++i)
+    await page.mouse.move(box.x + from[0] + ((to[0] - from[0]) * i) / between, box.y + from[1] + ((to[1] - from[1]) * i) / between);
   await page.mouse.up();
 }
 const useTool = (page, name) => page.locator(`[data-tool="${name}"]`).click();
@@ -154,10 +178,12 @@ try {
     await drag(page, [0.45 * w, 0.6 * h], [0.55 * w, 0.6 * h], 8);
     await selected(page);
     // As drawn: through the triangles, and a line is drawn there.
-    assert.ok(await page.evaluate(() => {
-      const at = ostraka.page.page.objects[0].annotations.findIndex((one) => one.tag === "lid");
-      return ostraka.page.page.objects[0].annotations[at].curves?.[0].length > 10 && ostraka.objects[0].marks.has(at);
-    }));
+    assert.ok(
+      await page.evaluate(() => {
+        const at = ostraka.page.page.objects[0].annotations.findIndex((one) => one.tag === "lid");
+        return ostraka.page.page.objects[0].annotations[at].curves?.[0].length > 10 && ostraka.objects[0].marks.has(at);
+      }),
+    );
     await page.locator(".annotate input").first().fill("belly");
     await page.locator(".annotate button[type=submit]").first().click();
     await steps(page, 3);
@@ -207,7 +233,10 @@ try {
       const one = ostraka.page.page.objects[ostraka.page.object.value];
       return { vertices: one.vertices, tags: one.annotations.map((a) => a.tag), relations: one.relations.length };
     });
-    await page.locator("header select").first().evaluate((select) => select.options.length);
+    await page
+      .locator("header select")
+      .first()
+      .evaluate((select) => select.options.length);
     await page.evaluate(() => ostraka.model.refresh());
     await page.locator("header select").first().selectOption("saved/saved.template.json");
     await steps(page, 12);
@@ -224,7 +253,10 @@ try {
     const again = serve(at("pot.ply"));
     const second = await open(await again.address);
     await steps(second.page, 12);
-    assert.deepEqual(await second.page.evaluate(() => ostraka.page.page.objects[ostraka.page.object.value].annotations.map((a) => a.tag)), before.tags);
+    assert.deepEqual(
+      await second.page.evaluate(() => ostraka.page.page.objects[ostraka.page.object.value].annotations.map((a) => a.tag)),
+      before.tags,
+    );
     await second.close();
     await again.stop();
     assert.deepEqual(told, []);
@@ -270,7 +302,10 @@ try {
     await page.evaluate(() => (ostraka.selection.visible.value = false));
     await useTool(page, "handles");
     await drag(page, [2, 2], [w - 2, h - 2]);
-    assert.equal(await page.evaluate(() => ostraka.deform.handles.value.size), await page.evaluate(() => ostraka.page.page.objects[0].cage.vertices));
+    assert.equal(
+      await page.evaluate(() => ostraka.deform.handles.value.size),
+      await page.evaluate(() => ostraka.page.page.objects[0].cage.vertices),
+    );
     await useTool(page, "stretch");
     await drag(page, [0.5 * w, 0.7 * h], [0.5 * w, 0.62 * h], 6);
     await steps(page, 4);
@@ -282,7 +317,15 @@ try {
       ostraka("mesh", "convert", name, at("measured.obj"));
       const lines = readFileSync(at("measured.obj"), "utf8").split("\n");
       const points = lines.filter((one) => one.startsWith("v ")).map((one) => one.slice(2).trim().split(/\s+/).map(Number));
-      const faces = lines.filter((one) => one.startsWith("f ")).map((one) => one.slice(2).trim().split(/\s+/).map((i) => parseInt(i) - 1));
+      const faces = lines
+        .filter((one) => one.startsWith("f "))
+        .map((one) =>
+          one
+            .slice(2)
+            .trim()
+            .split(/\s+/)
+            .map((i) => parseInt(i) - 1),
+        );
       return { points, faces };
     };
     const deformed = await page.evaluate(() => ostraka.model.object.value.parts.deformed);
@@ -304,7 +347,12 @@ try {
     assert.ok(Math.max(...heights) - Math.min(...heights) < 1e-3, heights.join(", "));
     // Edges of the flowers are as long as they were; those of the body are longer.
     const length = (points, a, b) => Math.hypot(...points[a].map((x, k) => x - points[b][k]));
-    const strain = (label) => Math.max(...before.faces.filter((_, f) => labels[f] === label).map(([a, b]) => Math.abs(length(after.points, a, b) / length(before.points, a, b) - 1)));
+    const strain = (label) =>
+      Math.max(
+        ...before.faces
+          .filter((_, f) => labels[f] === label)
+          .map(([a, b]) => Math.abs(length(after.points, a, b) / length(before.points, a, b) - 1)),
+      );
     assert.ok(strain(6) < 0.05, `${strain(6)}`);
     assert.ok(strain(0) > 0.1, `${strain(0)}`);
     await picture(page, "workbench-flowers.png");
@@ -356,7 +404,10 @@ try {
     // Nothing that comes into the page later runs.
     assert.deepEqual(told, []);
     await page.evaluate(() => {
-      document.body.insertAdjacentHTML("beforeend", `<img src=x onerror="globalThis.broken = 1"><svg onload="globalThis.broken = 2"></svg>`);
+      document.body.insertAdjacentHTML(
+        "beforeend",
+        `<img src=x onerror="globalThis.broken = 1"><svg onload="globalThis.broken = 2"></svg>`,
+      );
       const script = document.createElement("script");
       script.textContent = "globalThis.broken = 3";
       document.body.append(script);
@@ -377,7 +428,10 @@ try {
     // The annotations alone are a recipe.
     const recipe = JSON.parse(readFileSync(join(session, "session.json"))).steps[2].state.objects[0].parts.recipe;
     ostraka("annotation", "apply", at("pot.ply"), join(session, recipe), at("again.ant.json"));
-    assert.equal(sha(at("again.ant.json")), sha(join(session, JSON.parse(readFileSync(join(session, "session.json"))).steps[2].state.objects[0].parts.annotations)));
+    assert.equal(
+      sha(at("again.ant.json")),
+      sha(join(session, JSON.parse(readFileSync(join(session, "session.json"))).steps[2].state.objects[0].parts.annotations)),
+    );
   });
   await test("fragments: opened, fitted by a template, completed, one taken out", async () => {
     mkdirSync(at("find"));
@@ -385,8 +439,24 @@ try {
     ostraka("mesh", "make", "statuette", find("whole.ply"), "--vertices", "4000");
     ostraka("annotation", "apply", find("whole.ply"), join(project, "data/statuette.recipe.json"), find("whole.ant.json"));
     ostraka("template", "pack", find("whole.template.json"), "--mesh", find("whole.ply"), "--annotations", find("whole.ant.json"));
-    for (const [name, part] of [["upper", "head"], ["lower", "base"]])
-      ostraka("mesh", "break", find("whole.ply"), find(`${name}.ply`), "--annotations", find("whole.ant.json"), "--annotations-out", find(`${name}.ant.json`), "--share", "0.25", "--at", part);
+    for (const [name, part] of [
+      ["upper", "head"],
+      ["lower", "base"],
+    ])
+      ostraka(
+        "mesh",
+        "break",
+        find("whole.ply"),
+        find(`${name}.ply`),
+        "--annotations",
+        find("whole.ant.json"),
+        "--annotations-out",
+        find(`${name}.ant.json`),
+        "--share",
+        "0.25",
+        "--at",
+        part,
+      );
     const server = serve(at("find"));
     const { page, told, close } = await open(await server.address);
     let n = 0;
@@ -407,7 +477,13 @@ try {
     // The whole is in the list as a template's file: it is packed once more, as the session has it.
     await page.locator(".layer input").first().check();
     await steps(page, ++n);
-    await page.evaluate(() => ostraka.model.run({ operation: "template pack", title: "pack", with: { mesh: { part: "mesh", object: 0 }, annotations: { part: "annotations", object: 0 }, copy: true } }));
+    await page.evaluate(() =>
+      ostraka.model.run({
+        operation: "template pack",
+        title: "pack",
+        with: { mesh: { part: "mesh", object: 0 }, annotations: { part: "annotations", object: 0 }, copy: true },
+      }),
+    );
     await steps(page, ++n);
     await tab(page, "fragments");
     await page.locator("#panel details").first().locator("summary").click();
@@ -415,7 +491,11 @@ try {
     await page.locator("#input-template").selectOption({ index: 1 });
     await page.getByRole("button", { name: "Run fit" }).click();
     await steps(page, ++n);
-    const done = await page.evaluate(() => ({ objects: ostraka.model.objects.value.map((one) => one.name), text: ostraka.model.outcome.value.text, maps: ostraka.page.page.objects[ostraka.page.object.value].maps.map((one) => one.name) }));
+    const done = await page.evaluate(() => ({
+      objects: ostraka.model.objects.value.map((one) => one.name),
+      text: ostraka.model.outcome.value.text,
+      maps: ostraka.page.page.objects[ostraka.page.object.value].maps.map((one) => one.name),
+    }));
     assert.ok(done.objects.includes("completed"), JSON.stringify(done.objects));
     assert.ok(done.maps.length > 0, "what is observed and what is hypothesis is a map");
     await page.evaluate(() => (ostraka.page.map.value = 0));
@@ -435,7 +515,10 @@ try {
 
   await test("a pick of the page is that of the command, also far from the origin and turned", async () => {
     ostraka("mesh", "convert", at("pot.ply"), at("near.obj"));
-    const far = readFileSync(at("near.obj"), "utf8").replace(/^v (\S+) (\S+) (\S+)/gm, (_, x, y, z) => `v ${+z + 20000} ${+x - 30000} ${+y + 10000}`);
+    const far = readFileSync(at("near.obj"), "utf8").replace(
+      /^v (\S+) (\S+) (\S+)/gm,
+      (_, x, y, z) => `v ${+z + 20000} ${+x - 30000} ${+y + 10000}`,
+    );
     writeFileSync(at("far.obj"), far);
     const server = serve(at("far.obj"));
     const { page, told, close } = await open(await server.address);
@@ -506,7 +589,8 @@ try {
       for (let y = 20; y < view.canvas.clientHeight; y += 7)
         for (let x = 20; x < view.canvas.clientWidth; x += 7) {
           const hit = view.pick(x, y);
-          if (hit && ostraka.objects[0].annotationsOn(hit.face).length > 1) return { x, y, list: ostraka.objects[0].annotationsOn(hit.face) };
+          if (hit && ostraka.objects[0].annotationsOn(hit.face).length > 1)
+            return { x, y, list: ostraka.objects[0].annotationsOn(hit.face) };
         }
     });
     const box = await page.locator(".canvas canvas").boundingBox();
@@ -536,14 +620,22 @@ try {
         if (language !== "en" && name !== "annotating") continue;
         const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
         const serious = found.violations.filter((one) => one.impact === "serious" || one.impact === "critical");
-        assert.deepEqual(serious.map((one) => `${name}: ${one.id}: ${one.nodes[0].html}`), []);
+        assert.deepEqual(
+          serious.map((one) => `${name}: ${one.id}: ${one.nodes[0].html}`),
+          [],
+        );
       }
     }
     await page.evaluate(() => ostraka.page.setLanguage("en"));
     await tab(page, "annotating");
     // Every control is reached by Tab, and the focus is seen.
     await page.evaluate(() => document.activeElement.blur());
-    const wanted = await page.evaluate(() => [...document.querySelectorAll("button:not(:disabled), select, input:not(:disabled), summary, [tabindex='0']")].filter((one) => one.offsetParent !== null && !(one.type === "radio" && !one.checked)).length);
+    const wanted = await page.evaluate(
+      () =>
+        [...document.querySelectorAll("button:not(:disabled), select, input:not(:disabled), summary, [tabindex='0']")].filter(
+          (one) => one.offsetParent !== null && !(one.type === "radio" && !one.checked),
+        ).length,
+    );
     const reached = new Set();
     for (let i = 0; i < 2 * wanted && reached.size < wanted; ++i) {
       await page.keyboard.press("Tab");
@@ -562,7 +654,9 @@ try {
     // What goes wrong is told, with what to do about it.
     await page.evaluate(() => ostraka.commands.linkCage());
     await page.waitForFunction(() => document.querySelector("[role=alert]")?.textContent.includes("make a cage first"));
-    await page.evaluate(() => ostraka.model.run({ operation: "mesh simplify", title: "x", with: { input: { part: "mesh" }, vertices: -1 } }));
+    await page.evaluate(() =>
+      ostraka.model.run({ operation: "mesh simplify", title: "x", with: { input: { part: "mesh" }, vertices: -1 } }),
+    );
     await page.waitForFunction(() => document.querySelector("[role=alert]")?.textContent.includes("vertices"));
     assert.deepEqual(told, []);
     await close();
@@ -576,15 +670,22 @@ try {
     ostraka("cage", "make", at("vr.ply"), at("vr.cage.ply"), "--vertices", "80");
     ostraka("cage", "weights", at("vr.ply"), at("vr.cage.ply"), at("vr.npy"));
     const server = serve(at("vr.ply"));
-    const headset = readFileSync(require.resolve("iwer/build/iwer.min.js"), "utf8") + ";globalThis.headset = new IWER.XRDevice(IWER.metaQuest3); headset.installRuntime({ forceInstall: true });";
+    const headset =
+      readFileSync(require.resolve("iwer/build/iwer.min.js"), "utf8") +
+      ";globalThis.headset = new IWER.XRDevice(IWER.metaQuest3); headset.installRuntime({ forceInstall: true });";
     const { page, told, close } = await open(await server.address, {}, headset);
     await steps(page, 1);
     await page.getByRole("button", { name: "Enter VR" }).click();
-    const frames = (n) => page.evaluate((n) => new Promise((done) => {
-      const end = ostraka.xr.frames.value + n;
-      const wait = () => (ostraka.xr.frames.value >= end ? done() : requestAnimationFrame(wait));
-      wait();
-    }), n);
+    const frames = (n) =>
+      page.evaluate(
+        (n) =>
+          new Promise((done) => {
+            const end = ostraka.xr.frames.value + n;
+            const wait = () => (ostraka.xr.frames.value >= end ? done() : requestAnimationFrame(wait));
+            wait();
+          }),
+        n,
+      );
     await until(page, "entering", "() => ostraka.xr.isInside() && ostraka.xr.frames.value > 3");
     // The head turns to a control point that is not behind others.
     const gaze = await page.evaluate(() => {
@@ -614,9 +715,17 @@ try {
     // A hand takes it and moves it.
     const before = await page.evaluate(async (i) => {
       const answer = await ostraka.model.link.ask("influence", { handles: [i] });
-      const weights = [...new Float32Array(answer.bytes.buffer, answer.bytes.byteOffset + answer.result.values[0], answer.result.values[1] / 4)];
+      const weights = [
+        ...new Float32Array(answer.bytes.buffer, answer.bytes.byteOffset + answer.result.values[0], answer.result.values[1] / 4),
+      ];
       const about = ostraka.page.page.objects[0];
-      return { weights, rest: [...ostraka.objects[0].shape.positions], origin: about.origin, diagonal: Math.hypot(...about.size), scale: ostraka.objects[0].group.matrixWorld.elements };
+      return {
+        weights,
+        rest: [...ostraka.objects[0].shape.positions],
+        origin: about.origin,
+        diagonal: Math.hypot(...about.size),
+        scale: ostraka.objects[0].group.matrixWorld.elements,
+      };
     }, gaze.i);
     await page.evaluate(({ x, y, z }) => headset.controllers.right.position.set(x, y, z), gaze.p);
     await frames(4);
@@ -640,7 +749,9 @@ try {
     let worst = 0;
     let most = 0;
     before.weights.forEach((w, v) => {
-      const off = [0, 1, 2].map((k) => after.positions[3 * v + k] + after.origin[k] - before.rest[3 * v + k] - before.origin[k] - w * way[k]);
+      const off = [0, 1, 2].map(
+        (k) => after.positions[3 * v + k] + after.origin[k] - before.rest[3 * v + k] - before.origin[k] - w * way[k],
+      );
       worst = Math.max(worst, Math.hypot(...off));
       most = Math.max(most, w);
     });
@@ -681,10 +792,14 @@ try {
     assert.ok(await page.evaluate(() => ostraka.commands.say("level two")));
     const shownNow = await page.evaluate(() => {
       const about = ostraka.page.page.objects[ostraka.page.object.value];
-      return about.annotations.map((one, i) => [i, ostraka.page.isShown(ostraka.page.object.value, i)]).filter(([, is]) => is).map(([i]) => ostraka.commands.depthOf(i));
+      return about.annotations
+        .map((one, i) => [i, ostraka.page.isShown(ostraka.page.object.value, i)])
+        .filter(([, is]) => is)
+        .map(([i]) => ostraka.commands.depthOf(i));
     });
     assert.ok(shownNow.length > 0 && shownNow.every((depth) => depth === 2), JSON.stringify(shownNow));
-    for (const said of ["hide cage", "hide CPs", "show cage", "show CPs"]) assert.ok(await page.evaluate((said) => ostraka.commands.say(said), said), said);
+    for (const said of ["hide cage", "hide CPs", "show cage", "show CPs"])
+      assert.ok(await page.evaluate((said) => ostraka.commands.say(said), said), said);
     assert.ok(!(await page.evaluate(() => ostraka.commands.say("make coffee"))));
     await page.evaluate(() => ostraka.page.setLanguage("de"));
     assert.ok(await page.evaluate(() => ostraka.commands.say("Ebene eins")));

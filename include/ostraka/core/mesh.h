@@ -82,6 +82,7 @@ std::string mesh_checksum(const Mesh& mesh);
 }  // namespace ostraka
 
 // Compiled once, with the library.
+/// @cond
 extern template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh();
 extern template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh(const CGAL::Surface_mesh<ostraka::Point>&);
 extern template CGAL::Surface_mesh<ostraka::Point>::Surface_mesh(CGAL::Surface_mesh<ostraka::Point>&&);
@@ -99,3 +100,4 @@ extern template class std::vector<ostraka::Point>;
 extern template class std::vector<ostraka::Vertex>;
 extern template class std::vector<ostraka::Halfedge>;
 extern template class std::vector<ostraka::Face>;
+/// @endcond

@@ -13,7 +13,16 @@ import { canEnter, enter } from "./xr";
 
 const tabs = ["annotating", "relating", "deforming", "fragments", "slicing", "everything", "results", "history"] as const;
 export const tab = signal<(typeof tabs)[number]>("annotating");
-const panels = { annotating: Annotating, relating: Relations, deforming: Deforming, fragments: Fragments, slicing: Slicing, everything: Everything, results: Results, history: History };
+const panels = {
+  annotating: Annotating,
+  relating: Relations,
+  deforming: Deforming,
+  fragments: Fragments,
+  slicing: Slicing,
+  everything: Everything,
+  results: Results,
+  history: History,
+};
 
 function Header() {
   const [name, setName] = useState("");
@@ -108,7 +117,14 @@ function Tools() {
         <div class="group" key={name}>
           {name !== "look" && <span class="quiet">{text(name)}</span>}
           {list.map((one) => (
-            <button key={one} type="button" data-tool={one} aria-pressed={tool.value === one} title={text(`${one}Help` as Key)} onClick={() => choose(one)}>
+            <button
+              key={one}
+              type="button"
+              data-tool={one}
+              aria-pressed={tool.value === one}
+              title={text(`${one}Help` as Key)}
+              onClick={() => choose(one)}
+            >
               {text(one as Key)}
             </button>
           ))}
@@ -116,7 +132,15 @@ function Tools() {
       ))}
       {tool.value === "brush" && of && (
         <label>
-          {text("radius")} <input type="number" step="any" min="0" placeholder={String(brushRadius(of))} value={radius.value || ""} onInput={(event) => (radius.value = +event.currentTarget.value)} />
+          {text("radius")}{" "}
+          <input
+            type="number"
+            step="any"
+            min="0"
+            placeholder={String(brushRadius(of))}
+            value={radius.value || ""}
+            onInput={(event) => (radius.value = +event.currentTarget.value)}
+          />
         </label>
       )}
       {["ruler", "tape", "bounding"].includes(tool.value) && (
@@ -142,7 +166,13 @@ function Layers() {
       {objects.value.map((one, i) => (
         <span key={one.name} class="layer">
           <label>
-            <input type="radio" name="active" checked={i === active.value} onChange={() => void model.change("activate", "activate", { object: i })} /> {one.name}
+            <input
+              type="radio"
+              name="active"
+              checked={i === active.value}
+              onChange={() => void model.change("activate", "activate", { object: i })}
+            />{" "}
+            {one.name}
           </label>
           {i !== active.value && (
             <label>
@@ -159,14 +189,23 @@ function Layers() {
               {text("showWith")}
             </label>
           )}
-          <button type="button" aria-label={`${text("close")}: ${one.name}`} onClick={() => void model.change("close", "close", { object: i })}>
+          <button
+            type="button"
+            aria-label={`${text("close")}: ${one.name}`}
+            onClick={() => void model.change("close", "close", { object: i })}
+          >
             ×
           </button>
         </span>
       ))}
       {model.shown.value.length > 1 && (
         <label>
-          <input type="checkbox" checked={page.sideBySide.value} onChange={(event) => (page.sideBySide.value = event.currentTarget.checked)} /> {page.word("sideBySide")}
+          <input
+            type="checkbox"
+            checked={page.sideBySide.value}
+            onChange={(event) => (page.sideBySide.value = event.currentTarget.checked)}
+          />{" "}
+          {page.word("sideBySide")}
         </label>
       )}
     </fieldset>
@@ -206,7 +245,15 @@ function ViewBar() {
         ))}
       </span>
       <label class="slider">
-        {page.word("clip")} <input type="range" min={-1} max={1} step={0.01} value={page.clip.value} onInput={(event) => (page.clip.value = +event.currentTarget.value)} />
+        {page.word("clip")}{" "}
+        <input
+          type="range"
+          min={-1}
+          max={1}
+          step={0.01}
+          value={page.clip.value}
+          onInput={(event) => (page.clip.value = +event.currentTarget.value)}
+        />
       </label>
       <label>
         {page.word("clipAxis")}{" "}
@@ -417,13 +464,25 @@ export function App() {
         <aside tabIndex={0} aria-label={text("panels")}>
           <div class="tabs" role="tablist">
             {tabs.map((one) => (
-              <button key={one} type="button" role="tab" id={`tab-${one}`} aria-selected={tab.value === one} aria-controls="panel" onClick={() => (tab.value = one)}>
+              <button
+                key={one}
+                type="button"
+                role="tab"
+                id={`tab-${one}`}
+                aria-selected={tab.value === one}
+                aria-controls="panel"
+                onClick={() => (tab.value = one)}
+              >
                 {text(one)}
               </button>
             ))}
           </div>
           <div id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
-            {page.page.objects.length > 0 || tab.value === "history" || tab.value === "everything" ? <Panel key={`${tab.value} ${turn}`} /> : <p class="quiet">{text("nothingOpen")}</p>}
+            {page.page.objects.length > 0 || tab.value === "history" || tab.value === "everything" ? (
+              <Panel key={`${tab.value} ${turn}`} />
+            ) : (
+              <p class="quiet">{text("nothingOpen")}</p>
+            )}
           </div>
         </aside>
       </main>

@@ -37,7 +37,11 @@ export function showLevel(level: number) {
   const { annotations } = page.page.objects[page.object.value];
   const all = annotations.map((_, i) => i);
   page.show(page.object.value, all, true);
-  page.show(page.object.value, all.filter((i) => depthOf(i) !== level), false);
+  page.show(
+    page.object.value,
+    all.filter((i) => depthOf(i) !== level),
+    false,
+  );
   levelShown.value = level;
 }
 export const levelShown = signal(-1);
@@ -72,18 +76,39 @@ export const commands: Command[] = [
   { id: "withdraw", words: "withdraw", action: () => void change("withdraw", "withdraw") },
   { id: "finish", words: "finishPicks", key: "Enter", action: () => void finish() },
   { id: "whole", words: "whole", key: "0", action: () => view?.home() },
-  ...(["look", "rectangle", "lasso", "closed", "brush", "path", "points", "ruler", "tape", "bounding", "handles", "move", "rotate", "scale", "stretch"] as Tool[]).map(
-    (which): Command => ({ id: `tool-${which}`, words: which as Key, action: useTool(which) }),
-  ),
+  ...(
+    [
+      "look",
+      "rectangle",
+      "lasso",
+      "closed",
+      "brush",
+      "path",
+      "points",
+      "ruler",
+      "tape",
+      "bounding",
+      "handles",
+      "move",
+      "rotate",
+      "scale",
+      "stretch",
+    ] as Tool[]
+  ).map((which): Command => ({ id: `tool-${which}`, words: which as Key, action: useTool(which) })),
   { id: "make-cage", words: "makeCage", action: () => void makeCage() },
   { id: "link-cage", words: "linkCage", action: () => void linkCage() },
   { id: "extract", words: "extract", action: () => void extract() },
 ];
 
-export const makeCage = (vertices = 100) => run({ operation: "cage make", title: text("makeCage"), with: { mesh: part("mesh"), vertices } });
+export const makeCage = (vertices = 100) =>
+  run({ operation: "cage make", title: text("makeCage"), with: { mesh: part("mesh"), vertices } });
 /** Makes a cage that is denser around the constraints' parts. */
 export const makeCageFor = (vertices: number) =>
-  run({ operation: "cage make", title: text("makeCageFor"), with: { mesh: part("mesh"), annotations: part("annotations"), for: part("graph"), vertices } });
+  run({
+    operation: "cage make",
+    title: text("makeCageFor"),
+    with: { mesh: part("mesh"), annotations: part("annotations"), for: part("graph"), vertices },
+  });
 export async function linkCage(): Promise<boolean> {
   const linked = await run({ operation: "cage weights", title: text("linkCage"), with: { mesh: part("mesh"), cage: part("cage") } });
   if (linked && has("graph") && has("coordinates")) await deform.askReach();
@@ -97,12 +122,31 @@ export const extract = () =>
   });
 
 const numbers: Record<string, number> = {
-  zero: 0, one: 1, two: 2, three: 3, four: 4, five: 5, null: 0, eins: 1, zwei: 2, drei: 3, vier: 4, "fünf": 5, uno: 1, due: 2, tre: 3, quattro: 4, cinque: 5,
+  zero: 0,
+  one: 1,
+  two: 2,
+  three: 3,
+  four: 4,
+  five: 5,
+  null: 0,
+  eins: 1,
+  zwei: 2,
+  drei: 3,
+  vier: 4,
+  fünf: 5,
+  uno: 1,
+  due: 2,
+  tre: 3,
+  quattro: 4,
+  cinque: 5,
 };
 
 /** Executes a spoken or typed command; false if no command has this name. */
 export function say(said: string): boolean {
-  const words = said.trim().toLocaleLowerCase().replace(/[.!?]$/, "");
+  const words = said
+    .trim()
+    .toLocaleLowerCase()
+    .replace(/[.!?]$/, "");
   for (const one of commands) {
     const called = text(one.words).toLocaleLowerCase();
     if (words === called) {
@@ -145,7 +189,20 @@ export function attachKeys() {
 
 export const listening = signal(false);
 export const heard = signal("");
-type Recogniser = { lang: string; continuous: boolean; onresult: (event: any) => void; onend: () => void; onerror: (event: any) => void; start(): void; stop(): void };
+/** The part of the Web Speech API that is used; TypeScript's library does not declare it. */
+interface Recogniser {
+  lang: string;
+  continuous: boolean;
+  onresult: (event: { results: ArrayLike<ArrayLike<{ transcript: string }>> }) => void;
+  onend: () => void;
+  onerror: (event: { error: string }) => void;
+  start(): void;
+  stop(): void;
+}
+interface SpeechWindow {
+  SpeechRecognition?: new () => Recogniser;
+  webkitSpeechRecognition?: new () => Recogniser;
+}
 let recogniser: Recogniser | undefined;
 export const canListen = () => "webkitSpeechRecognition" in window || "SpeechRecognition" in window;
 
@@ -155,13 +212,14 @@ export function listen(on: boolean) {
     listening.value = false;
     return;
   }
-  const Maker = (window as any).SpeechRecognition ?? (window as any).webkitSpeechRecognition;
+  const speech = window as SpeechWindow;
+  const Maker = speech.SpeechRecognition ?? speech.webkitSpeechRecognition;
   if (!Maker) return;
-  recogniser = new Maker() as Recogniser;
+  recogniser = new Maker();
   recogniser.lang = { en: "en-US", de: "de-DE", it: "it-IT" }[page.language.value];
   recogniser.continuous = true;
   recogniser.onresult = (event) => {
-    const said = event.results[event.results.length - 1][0].transcript as string;
+    const said = event.results[event.results.length - 1][0].transcript;
     heard.value = said;
     say(said);
   };
@@ -170,4 +228,3 @@ export function listen(on: boolean) {
   recogniser.start();
   listening.value = true;
 }
-

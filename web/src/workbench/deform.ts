@@ -50,7 +50,10 @@ export function mark() {
     const seen = list.filter((p) => view!.sees(of, p));
     const behind = list.filter((p) => !view!.sees(of, p));
     chosenMark = new THREE.Group();
-    for (const [some, colour] of [[seen, [214, 40, 40]], [behind, [235, 190, 0]]] as [THREE.Vector3[], [number, number, number]][])
+    for (const [some, colour] of [
+      [seen, [214, 40, 40]],
+      [behind, [235, 190, 0]],
+    ] as [THREE.Vector3[], [number, number, number]][])
       if (some.length > 0) chosenMark.add(new THREE.Points(new THREE.BufferGeometry().setFromPoints(some), flatMaterial(colour, 12, true)));
     of.group.add(chosenMark);
   }
@@ -77,8 +80,10 @@ export function pick(from: { x: number; y: number }, to: { x: number; y: number 
       const off = Math.hypot(at.x - from.x, at.y - from.y);
       if (off < nearest && (!visibleOnly || view.sees(of, point))) [nearest, found[0]] = [off, i];
     } else if (
-      at.x >= Math.min(from.x, to.x) && at.x <= Math.max(from.x, to.x) &&
-      at.y >= Math.min(from.y, to.y) && at.y <= Math.max(from.y, to.y) &&
+      at.x >= Math.min(from.x, to.x) &&
+      at.x <= Math.max(from.x, to.x) &&
+      at.y >= Math.min(from.y, to.y) &&
+      at.y <= Math.max(from.y, to.y) &&
       (!visibleOnly || view.sees(of, point))
     )
       found.push(i);
@@ -163,8 +168,16 @@ async function grabWhole(of: DrawnObject, motion: Motion, from: { x: number; y: 
   of.follows(weights);
   const centre = new THREE.Vector3(...of.about.size).multiplyScalar(0.5);
   now = {
-    of, motion, list: [], rest: [], centre, from,
-    edit: { steps: [] }, constrained: false, asked: 0, next: undefined,
+    of,
+    motion,
+    list: [],
+    rest: [],
+    centre,
+    from,
+    edit: { steps: [] },
+    constrained: false,
+    asked: 0,
+    next: undefined,
   };
   return true;
 }
@@ -177,8 +190,16 @@ async function begin(of: DrawnObject, motion: Motion, from: { x: number; y: numb
     const centre = rest.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(rest.length);
     of.follows(numbersIn(answer, answer.result.weights));
     now = {
-      of, motion, list, rest, centre, from,
-      edit: answer.result.edit, constrained: answer.result.constrained, asked: 0, next: undefined,
+      of,
+      motion,
+      list,
+      rest,
+      centre,
+      from,
+      edit: answer.result.edit,
+      constrained: answer.result.constrained,
+      asked: 0,
+      next: undefined,
     };
     if (ended) await release(ended);
   });
@@ -189,14 +210,22 @@ function frameOf(of: DrawnObject) {
   const inverse = of.group.matrixWorld.clone().invert();
   const width = view!.canvas.clientWidth / Math.max(1, page.panes.value.length);
   const unit = (view!.camera.right - view!.camera.left) / view!.camera.zoom / width / of.group.scale.x;
-  const own = (x: number, y: number, z: number) => new THREE.Vector3(x, y, z).transformDirection(view!.camera.matrixWorld).transformDirection(inverse);
+  const own = (x: number, y: number, z: number) =>
+    new THREE.Vector3(x, y, z).transformDirection(view!.camera.matrixWorld).transformDirection(inverse);
   return { unit, right: own(1, 0, 0), up: own(0, 1, 0), toward: own(0, 0, 1) };
 }
 
 const plain = (v: THREE.Vector3) => v.toArray().map((x) => Number(x.toPrecision(9)));
 
+/** A step of an edit that moves a region: the map that the edit file names. */
+export type Step =
+  | { translate: number[] }
+  | { rotate: { axis: number[]; angle: number; centre?: number[] } }
+  | { scale: { factor: number; centre?: number[] } }
+  | { stretch: { direction: number[]; factor: number; from?: string } };
+
 /** Converts a pointer movement to a step of an edit, a map x -> A x + t relative to the box. */
-function motionTo(drag: Drag, to: { x: number; y: number }): object {
+function motionTo(drag: Drag, to: { x: number; y: number }): Step {
   const { unit, right, up, toward } = frameOf(drag.of);
   const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
   const along = right.clone().multiplyScalar(dx).addScaledVector(up, -dy);
@@ -215,18 +244,31 @@ function motionTo(drag: Drag, to: { x: number; y: number }): object {
 }
 
 /** The same map as a matrix and a vector. */
-export function affine(step: any, centre: THREE.Vector3): { linear: THREE.Matrix3; shift: THREE.Vector3 } {
+export function affine(step: Step, centre: THREE.Vector3): { linear: THREE.Matrix3; shift: THREE.Vector3 } {
   const linear = new THREE.Matrix3();
-  if (step.translate) return { linear, shift: new THREE.Vector3(...(step.translate as [number, number, number])) };
-  if (step.rotate) {
-    const turn = new THREE.Matrix4().makeRotationAxis(new THREE.Vector3(...(step.rotate.axis as [number, number, number])).normalize(), (step.rotate.angle * Math.PI) / 180);
+  if ("translate" in step) return { linear, shift: new THREE.Vector3(...(step.translate as [number, number, number])) };
+  if ("rotate" in step) {
+    const turn = new THREE.Matrix4().makeRotationAxis(
+      new THREE.Vector3(...(step.rotate.axis as [number, number, number])).normalize(),
+      (step.rotate.angle * Math.PI) / 180,
+    );
     linear.setFromMatrix4(turn);
-  } else if (step.scale) {
+  } else if ("scale" in step) {
     linear.multiplyScalar(step.scale.factor);
   } else {
     const d = new THREE.Vector3(...(step.stretch.direction as [number, number, number])).normalize();
     const more = step.stretch.factor - 1;
-    linear.set(1 + more * d.x * d.x, more * d.x * d.y, more * d.x * d.z, more * d.y * d.x, 1 + more * d.y * d.y, more * d.y * d.z, more * d.z * d.x, more * d.z * d.y, 1 + more * d.z * d.z);
+    linear.set(
+      1 + more * d.x * d.x,
+      more * d.x * d.y,
+      more * d.x * d.z,
+      more * d.y * d.x,
+      1 + more * d.y * d.y,
+      more * d.y * d.z,
+      more * d.z * d.x,
+      more * d.z * d.y,
+      1 + more * d.z * d.z,
+    );
   }
   return { linear, shift: centre.clone().sub(centre.clone().applyMatrix3(linear)) };
 }
@@ -236,7 +278,7 @@ export function drag(to: { x: number; y: number }) {
   apply(now, motionTo(now, to));
 }
 
-function apply(one: Drag, step: any) {
+function apply(one: Drag, step: Step) {
   const { linear, shift } = affine(step, one.centre);
   const moved = one.rest.map((p) => p.clone().applyMatrix3(linear).add(shift));
   if (one.constrained) {
@@ -278,7 +320,11 @@ function pump(one: Drag) {
       if (now !== one) return;
       one.of.moveVertices(numbersIn(answer, answer.result.positions));
       const cage = numbersIn(answer, answer.result.cage);
-      moveControls(one.of, Array.from({ length: cage.length / 3 }, (_, i) => i), Array.from({ length: cage.length / 3 }, (_, i) => new THREE.Vector3().fromArray(cage, 3 * i)));
+      moveControls(
+        one.of,
+        Array.from({ length: cage.length / 3 }, (_, i) => i),
+        Array.from({ length: cage.length / 3 }, (_, i) => new THREE.Vector3().fromArray(cage, 3 * i)),
+      );
       view?.draw();
       requestAnimationFrame(() => (latency.value = [...latency.value.slice(-199), performance.now() - began]));
       pump(one);
@@ -302,7 +348,7 @@ export async function release(to: { x: number; y: number }): Promise<boolean> {
   return finishWith(one, motionTo(one, to));
 }
 
-async function finishWith(one: Drag, step: object): Promise<boolean> {
+async function finishWith(one: Drag, step: Step): Promise<boolean> {
   now = undefined;
   ended = undefined;
   if (one.list.length === 0) return finishWhole(one, step);
@@ -320,12 +366,18 @@ async function finishWith(one: Drag, step: object): Promise<boolean> {
     keep.push("annotations-out");
   }
   if (constrained) Object.assign(given, { graph: part("graph"), space: space.value });
-  const done = await run({ operation: "deform", title: text("deformedBy", text(one.motion), one.list.length), with: given, keep, as: "deformed" });
+  const done = await run({
+    operation: "deform",
+    title: text("deformedBy", text(one.motion), one.list.length),
+    with: given,
+    keep,
+    as: "deformed",
+  });
   still(one.of);
   return done;
 }
 
-async function finishWhole(one: Drag, step: object): Promise<boolean> {
+async function finishWhole(one: Drag, step: Step): Promise<boolean> {
   const edit = object.value?.parts.edit;
   const before = edit ? JSON.parse(new TextDecoder().decode((await link.ask("file", { file: edit })).bytes)).steps : [];
   const given: Record<string, unknown> = {
@@ -333,7 +385,13 @@ async function finishWhole(one: Drag, step: object): Promise<boolean> {
     edit: { document: { format: "ostraka-edit", version: 1, steps: [...before, { select: { all: true }, ...step }] } },
   };
   if (has("annotations")) given.annotations = part("annotations");
-  const done = await run({ operation: "deform", title: text("movedWhole", text(one.motion)), with: given, keep: has("annotations") ? ["annotations-out"] : [], as: "deformed" });
+  const done = await run({
+    operation: "deform",
+    title: text("movedWhole", text(one.motion)),
+    with: given,
+    keep: has("annotations") ? ["annotations-out"] : [],
+    as: "deformed",
+  });
   still(one.of);
   return done;
 }
@@ -343,12 +401,12 @@ export async function hold(motion: Motion): Promise<boolean> {
   const of = subject();
   return of !== undefined && handles.value.size > 0 && begin(of, motion, { x: 0, y: 0 });
 }
-export function follow(step: object) {
+export function follow(step: Step) {
   if (!now) return;
   apply(now, step);
 }
 export const held = () => now;
-export const letGoWith = (step: object) => (now ? finishWith(now, step) : Promise.resolve(false));
+export const letGoWith = (step: Step) => (now ? finishWith(now, step) : Promise.resolve(false));
 
 function still(of: DrawnObject) {
   shared.bend.value.set(0, 0, 0, 0, 0, 0, 0, 0, 0);

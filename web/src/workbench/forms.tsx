@@ -49,7 +49,12 @@ function Field({ option, value, onChange }: { option: OperationOption; value: un
         {option.name}
       </label>
       {option.type === "boolean" ? (
-        <input id={id} type="checkbox" checked={(value ?? option.default) === true} onChange={(event) => onChange(event.currentTarget.checked)} />
+        <input
+          id={id}
+          type="checkbox"
+          checked={(value ?? option.default) === true}
+          onChange={(event) => onChange(event.currentTarget.checked)}
+        />
       ) : option.type === "choice" ? (
         <select id={id} value={String(value ?? option.default ?? "")} onChange={(event) => onChange(event.currentTarget.value)}>
           {option.default === undefined && <option value="" />}
@@ -94,10 +99,16 @@ function valueOf(option: OperationOption, raw: unknown): unknown {
     case "number":
       return Number(raw);
     case "texts":
-      return raw.split(";").map((one) => one.trim()).filter((one) => one !== "");
+      return raw
+        .split(";")
+        .map((one) => one.trim())
+        .filter((one) => one !== "");
     case "integers":
     case "numbers":
-      return raw.split(/[\s,;]+/).filter((one) => one !== "").map(Number);
+      return raw
+        .split(/[\s,;]+/)
+        .filter((one) => one !== "")
+        .map(Number);
     default:
       return raw;
   }
@@ -116,7 +127,9 @@ function Form({ of }: { of: Declaration }) {
     const all: Record<string, unknown> = {};
     for (const input of of.inputs) {
       const list = offers(input.kind);
-      const found = chosen(input).map((key) => list.find((one) => one.key === key)?.value).filter((one) => one !== undefined);
+      const found = chosen(input)
+        .map((key) => list.find((one) => one.key === key)?.value)
+        .filter((one) => one !== undefined);
       if (found.length > 0) all[input.name] = input.repeated ? found : found[0];
     }
     for (const option of of.options) if (values[option.name] !== undefined) all[option.name] = valueOf(option, values[option.name]);
@@ -155,7 +168,12 @@ function Form({ of }: { of: Declaration }) {
       {of.options
         .filter((one) => one.name !== "force-mesh")
         .map((option) => (
-          <Field key={option.name} option={option} value={values[option.name]} onChange={(value) => setValues({ ...values, [option.name]: value })} />
+          <Field
+            key={option.name}
+            option={option}
+            value={values[option.name]}
+            onChange={(value) => setValues({ ...values, [option.name]: value })}
+          />
         ))}
       {of.outputs
         .filter((one) => !one.required)

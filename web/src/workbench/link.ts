@@ -12,6 +12,7 @@ export class RequestError extends Error {
 }
 
 export interface Answer {
+  // eslint-disable-next-line @typescript-eslint/no-explicit-any -- its members depend on the request
   result: any;
   /** Binary data to which `result` refers by [first byte, number of bytes]. */
   bytes: Uint8Array;
@@ -31,6 +32,7 @@ export class Link {
   private socket: WebSocket | undefined;
   private number = 0;
   private readonly waiting = new Map<number, Waiting>();
+  // eslint-disable-next-line @typescript-eslint/no-explicit-any -- its members depend on the kind of event
   onEvent: (event: any) => void = () => {};
   onState: (open: boolean) => void = () => {};
 

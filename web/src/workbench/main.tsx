@@ -16,7 +16,10 @@ import { text } from "./words";
 import "./workbench.css";
 import * as xr from "./xr";
 
-page.setContent({ data: { version: 1, title: "Ostraka", notes: [], provenance: "", objects: [], tables: [], drawings: [], blobs: [] }, blobs: undefined as never });
+page.setContent({
+  data: { version: 1, title: "Ostraka", notes: [], provenance: "", objects: [], tables: [], drawings: [], blobs: [] },
+  blobs: undefined as never,
+});
 
 model.link.onState = (open) => {
   model.connected.value = open;
@@ -51,5 +54,21 @@ effect(() => {
 
 // For tests of this page, which query positions on the screen.
 Object.defineProperty(window, "ostraka", {
-  value: { page, camera, model, selection, tools, deform, commands, xr, shared, get view() { return view; }, get objects() { return drawn; } },
+  value: {
+    page,
+    camera,
+    model,
+    selection,
+    tools,
+    deform,
+    commands,
+    xr,
+    shared,
+    get view() {
+      return view;
+    },
+    get objects() {
+      return drawn;
+    },
+  },
 });

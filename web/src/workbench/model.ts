@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { knownShapes, showContent } from "../content";
 import { Blobs, type PageData } from "../data";
 import * as page from "../state";
-import { Link, RequestError } from "./link";
+import { Link, RequestError, type Answer } from "./link";
 import { text, type Key } from "./words";
 
 export interface OperationInput {
@@ -76,7 +76,7 @@ export const drawnAs = signal<"surface" | "edges" | "points">("surface");
 /** Called when another content is displayed. */
 export const onShown: (() => void)[] = [];
 
-function takeSession(result: any) {
+function takeSession(result: Answer["result"]) {
   objects.value = result.state.objects;
   files.value = result.state.files;
   active.value = result.state.active;
@@ -117,7 +117,9 @@ export async function refresh() {
     if (same && before) {
       page.chosen.value = next.annotations.findIndex((one) => one.id === before.chosen);
       const hidden = new Set<string>();
-      data.objects.forEach((one, o) => one.annotations.forEach((a, i) => before.hidden.includes(`${o}/${a.id}`) && hidden.add(`${o}/${i}`)));
+      data.objects.forEach((one, o) =>
+        one.annotations.forEach((a, i) => before.hidden.includes(`${o}/${a.id}`) && hidden.add(`${o}/${i}`)),
+      );
       page.hidden.value = hidden;
       page.sideBySide.value = before.sideBySide;
     }
@@ -134,7 +136,8 @@ export async function attempt(what: string, work: () => Promise<unknown>): Promi
     await work();
     return true;
   } catch (error) {
-    problem.value = error instanceof RequestError ? { problem: error.about.problem, remedy: error.about.remedy } : { problem: String(error), remedy: "" };
+    problem.value =
+      error instanceof RequestError ? { problem: error.about.problem, remedy: error.about.remedy } : { problem: String(error), remedy: "" };
     return false;
   } finally {
     busy.value = "";

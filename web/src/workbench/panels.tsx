@@ -10,7 +10,22 @@ import { Tables } from "../tables";
 import { extract, linkCage, makeCage, makeCageFor } from "./commands";
 import * as deform from "./deform";
 import { helpOf, Operations } from "./forms";
-import { change, download, files, goTo, has, history, object, objects, operations, outcome, part, place, run, words as vocabulary } from "./model";
+import {
+  change,
+  download,
+  files,
+  goTo,
+  has,
+  history,
+  object,
+  objects,
+  operations,
+  outcome,
+  part,
+  place,
+  run,
+  words as vocabulary,
+} from "./model";
 import { cutPlane } from "./camera";
 import * as selection from "./selection";
 import { text, type Key } from "./words";
@@ -50,7 +65,11 @@ export function annotate(action: "make" | "replace" | "add to" | "remove from", 
 function edit(title: string, more: Record<string, unknown>) {
   const one = chosenAnnotation();
   if (!one) return;
-  void run({ operation: "annotation edit", title: `${title}: ${one.tag}`, with: { mesh: part("mesh"), annotations: part("annotations"), annotation: String(one.id), ...more } });
+  void run({
+    operation: "annotation edit",
+    title: `${title}: ${one.tag}`,
+    with: { mesh: part("mesh"), annotations: part("annotations"), annotation: String(one.id), ...more },
+  });
 }
 
 export function Annotating() {
@@ -72,17 +91,40 @@ export function Annotating() {
         </p>
         <div class="buttons">
           <label>
-            <input type="checkbox" checked={selection.visible.value} onChange={(event) => (selection.visible.value = event.currentTarget.checked)} /> {text("visibleOnly")}
+            <input
+              type="checkbox"
+              checked={selection.visible.value}
+              onChange={(event) => (selection.visible.value = event.currentTarget.checked)}
+            />{" "}
+            {text("visibleOnly")}
           </label>
           <label>
-            <input type="checkbox" checked={selection.asDrawn.value} onChange={(event) => (selection.asDrawn.value = event.currentTarget.checked)} /> {text("asDrawn")}
+            <input
+              type="checkbox"
+              checked={selection.asDrawn.value}
+              onChange={(event) => (selection.asDrawn.value = event.currentTarget.checked)}
+            />{" "}
+            {text("asDrawn")}
           </label>
           <label>
-            <input type="checkbox" checked={selection.erases.value} onChange={(event) => (selection.erases.value = event.currentTarget.checked)} /> {text("erase")}
+            <input
+              type="checkbox"
+              checked={selection.erases.value}
+              onChange={(event) => (selection.erases.value = event.currentTarget.checked)}
+            />{" "}
+            {text("erase")}
           </label>
           <Button name="invert" disabled={!chosen} onClick={() => void selection.setSelection({ invert: selection.expression.value! })} />
-          <Button name="grow" disabled={!chosen} onClick={() => void selection.setSelection({ grow: { of: selection.expression.value!, rings: 1 } })} />
-          <Button name="shrink" disabled={!chosen} onClick={() => void selection.setSelection({ shrink: { of: selection.expression.value!, rings: 1 } })} />
+          <Button
+            name="grow"
+            disabled={!chosen}
+            onClick={() => void selection.setSelection({ grow: { of: selection.expression.value!, rings: 1 } })}
+          />
+          <Button
+            name="shrink"
+            disabled={!chosen}
+            onClick={() => void selection.setSelection({ shrink: { of: selection.expression.value!, rings: 1 } })}
+          />
           <Button name="selectAll" onClick={() => void selection.setSelection({ all: true })} />
           <Button name="clearSelection" disabled={!chosen} onClick={selection.clear} />
         </div>
@@ -186,7 +228,13 @@ export function Relations() {
           name="check"
           title={helpOf("relation check")}
           disabled={!has("graph")}
-          onClick={() => void run({ operation: "relation check", title: text("check"), with: { mesh: part("mesh"), annotations: part("annotations"), graph: part("graph") } })}
+          onClick={() =>
+            void run({
+              operation: "relation check",
+              title: text("check"),
+              with: { mesh: part("mesh"), annotations: part("annotations"), graph: part("graph") },
+            })
+          }
         />
       </div>
       <Graph />
@@ -199,8 +247,15 @@ export function Relations() {
               <button type="button" class="link" onClick={() => page.choose(one.members[0])}>
                 {one.type}: {one.members.map((m) => about.annotations[m]?.tag).join(", ")}
               </button>
-              {one.constraint && <strong> {text("constraint")}, {one.weight}</strong>}
-              {one.holds !== undefined && <span class={one.holds ? "verdict holds" : "verdict broken"}> {text(one.holds ? "holds" : "broken")}</span>}{" "}
+              {one.constraint && (
+                <strong>
+                  {" "}
+                  {text("constraint")}, {one.weight}
+                </strong>
+              )}
+              {one.holds !== undefined && (
+                <span class={one.holds ? "verdict holds" : "verdict broken"}> {text(one.holds ? "holds" : "broken")}</span>
+              )}{" "}
               <button
                 type="button"
                 aria-label={`${text("remove")}: ${one.type} ${i}`}
@@ -224,7 +279,13 @@ export function Relations() {
           class="operation"
           onSubmit={(event) => {
             event.preventDefault();
-            const given: Record<string, unknown> = { mesh: part("mesh"), annotations: part("annotations"), type, annotation: members, constraint: constrains };
+            const given: Record<string, unknown> = {
+              mesh: part("mesh"),
+              annotations: part("annotations"),
+              type,
+              annotation: members,
+              constraint: constrains,
+            };
             if (has("graph")) given.graph = part("graph");
             if (constrains) given.weight = Number(weight);
             if (parameters.trim()) given.parameters = parameters;
@@ -243,7 +304,12 @@ export function Relations() {
           </label>
           <label class="field">
             {text("members")}{" "}
-            <select multiple size={6} required onChange={(event) => setMembers([...event.currentTarget.selectedOptions].map((one) => one.value))}>
+            <select
+              multiple
+              size={6}
+              required
+              onChange={(event) => setMembers([...event.currentTarget.selectedOptions].map((one) => one.value))}
+            >
               {about.annotations.map((one) => (
                 <option key={one.id} value={String(one.id)} selected={members.includes(String(one.id))}>
                   {one.tag || `#${one.id}`}
@@ -252,15 +318,22 @@ export function Relations() {
             </select>
           </label>
           <label class="field">
-            <input type="checkbox" checked={constrains} onChange={(event) => setConstrains(event.currentTarget.checked)} /> {text("constraint")}
+            <input type="checkbox" checked={constrains} onChange={(event) => setConstrains(event.currentTarget.checked)} />{" "}
+            {text("constraint")}
           </label>
           {constrains && (
             <label class="field">
-              {text("weight")} <input type="number" min="0" step="any" value={weight} onInput={(event) => setWeight(event.currentTarget.value)} />
+              {text("weight")}{" "}
+              <input type="number" min="0" step="any" value={weight} onInput={(event) => setWeight(event.currentTarget.value)} />
             </label>
           )}
           <label class="field">
-            {text("parameters")} <input value={parameters} placeholder='{"min": 0.9, "max": 1.1}' onInput={(event) => setParameters(event.currentTarget.value)} />
+            {text("parameters")}{" "}
+            <input
+              value={parameters}
+              placeholder='{"min": 0.9, "max": 1.1}'
+              onInput={(event) => setParameters(event.currentTarget.value)}
+            />
           </label>
           <button type="submit" title={helpOf("relation add")}>
             {text("addRelation")}
@@ -303,11 +376,13 @@ export function Deforming() {
       <section aria-labelledby="cage-title">
         <h2 id="cage-title">{text("cage")}</h2>
         <p class="quiet">
-          {about?.cage ? text("cageOf", about.cage.vertices) : text("noCage")} {has("coordinates") ? text("linked") : about?.cage ? text("notLinked") : ""}
+          {about?.cage ? text("cageOf", about.cage.vertices) : text("noCage")}{" "}
+          {has("coordinates") ? text("linked") : about?.cage ? text("notLinked") : ""}
         </p>
         <div class="buttons">
           <label>
-            {text("controlPoints")} <input type="number" min="4" max="100000" value={vertices} onInput={(event) => setVertices(event.currentTarget.value)} />
+            {text("controlPoints")}{" "}
+            <input type="number" min="4" max="100000" value={vertices} onInput={(event) => setVertices(event.currentTarget.value)} />
           </label>
           <Button name="makeCage" title={helpOf("cage make")} onClick={() => void makeCage(Number(vertices))} />
           <Button
@@ -327,7 +402,11 @@ export function Deforming() {
         </p>
         <div class="buttons">
           <Button name="ofAnnotation" disabled={!one || !has("coordinates")} onClick={() => one && void deform.ofAnnotation(one.id)} />
-          <Button name="discardAnnotation" disabled={!one || !has("coordinates")} onClick={() => one && void deform.ofAnnotation(one.id, true)} />
+          <Button
+            name="discardAnnotation"
+            disabled={!one || !has("coordinates")}
+            onClick={() => one && void deform.ofAnnotation(one.id, true)}
+          />
           <Button name="clearSelection" disabled={deform.handles.value.size === 0} onClick={() => deform.set([])} />
           <Button name="influence" disabled={deform.handles.value.size === 0} onClick={() => void deform.showInfluence()} />
           <label>
@@ -383,7 +462,14 @@ function BeforeAfter() {
   return (
     <label class="slider">
       {text("beforeAfter")}{" "}
-      <input type="range" min={0} max={1} step={0.01} value={page.blend.value} onInput={(event) => (page.blend.value = +event.currentTarget.value)} />
+      <input
+        type="range"
+        min={0}
+        max={1}
+        step={0.01}
+        value={page.blend.value}
+        onInput={(event) => (page.blend.value = +event.currentTarget.value)}
+      />
     </label>
   );
 }

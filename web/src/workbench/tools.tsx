@@ -12,7 +12,22 @@ import { has, onShown, part, run } from "./model";
 import * as selection from "./selection";
 import { text, type Key } from "./words";
 
-export type Tool = "look" | "rectangle" | "lasso" | "path" | "closed" | "brush" | "points" | "ruler" | "tape" | "bounding" | "handles" | "move" | "rotate" | "scale" | "stretch";
+export type Tool =
+  | "look"
+  | "rectangle"
+  | "lasso"
+  | "path"
+  | "closed"
+  | "brush"
+  | "points"
+  | "ruler"
+  | "tape"
+  | "bounding"
+  | "handles"
+  | "move"
+  | "rotate"
+  | "scale"
+  | "stretch";
 export const tool = signal<Tool>("look");
 export const radius = signal(0);
 
@@ -72,8 +87,13 @@ export async function finish() {
   picks.value = [];
   if (t === "path" && list.length >= 2) await selection.add({ path: { points: list.map(asPick) } });
   else if (t === "points" && list.length >= 1) await selection.add({ vertices: list.map(asPick) });
-  else if (t === "closed" && list.length >= 4) await selection.add({ lasso: { points: list.slice(0, -1).map(asPick), seed: asPick(list[list.length - 1]) } });
-  else if ((t === "ruler" || t === "tape") && list.length >= 2) await take(t, list.map((one) => one.vertex));
+  else if (t === "closed" && list.length >= 4)
+    await selection.add({ lasso: { points: list.slice(0, -1).map(asPick), seed: asPick(list[list.length - 1]) } });
+  else if ((t === "ruler" || t === "tape") && list.length >= 2)
+    await take(
+      t,
+      list.map((one) => one.vertex),
+    );
 }
 
 /** Takes a measure of the selected annotation or of the object. */
@@ -89,7 +109,9 @@ export function take(which: "ruler" | "tape" | "bounding", vertices: number[], d
 export const measureName = signal("");
 
 function rectangleOf(of: DrawnObject, a: Place, b: Place) {
-  return { rectangle: { camera: recipeCamera(of), from: paneOf(of, a.x, a.y), to: paneOf(of, b.x, b.y), visible: selection.visible.value } };
+  return {
+    rectangle: { camera: recipeCamera(of), from: paneOf(of, a.x, a.y), to: paneOf(of, b.x, b.y), visible: selection.visible.value },
+  };
 }
 
 /** Simplifies a path to few corners, with deviations of at most 1.5 pixels. */
@@ -136,8 +158,18 @@ async function drawnBy(t: Tool, way: Place[]) {
     const inverse = of.group.matrixWorld.clone().invert();
     const right = new THREE.Vector3(1, 0, 0).transformDirection(view!.camera.matrixWorld);
     const up = new THREE.Vector3(0, 1, 0).transformDirection(view!.camera.matrixWorld);
-    const along = right.multiplyScalar(b.x - a.x).addScaledVector(up, a.y - b.y).transformDirection(inverse);
-    await take("bounding", [], along.toArray().map((x) => Number(x.toFixed(6))).join(","));
+    const along = right
+      .multiplyScalar(b.x - a.x)
+      .addScaledVector(up, a.y - b.y)
+      .transformDirection(inverse);
+    await take(
+      "bounding",
+      [],
+      along
+        .toArray()
+        .map((x) => Number(x.toFixed(6)))
+        .join(","),
+    );
   }
 }
 
@@ -157,7 +189,8 @@ export function attach(canvas: HTMLCanvasElement): () => void {
     const place = { x: event.clientX - box.left, y: event.clientY - box.top };
     if (Math.hypot(place.x - pressed.x, place.y - pressed.y) > 4) return;
     const hit = tool.value === "look" ? view?.pick(place.x, place.y) : undefined;
-    const list = hit && hit.object === page.object.value ? drawn[hit.object].annotationsOn(hit.face).filter((i) => page.isShown(hit.object, i)) : [];
+    const list =
+      hit && hit.object === page.object.value ? drawn[hit.object].annotationsOn(hit.face).filter((i) => page.isShown(hit.object, i)) : [];
     clicked.value = list.length > 1 ? { ...place, list } : undefined;
   };
   const onDown = (event: PointerEvent) => {

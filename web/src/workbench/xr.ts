@@ -12,7 +12,10 @@ import { tool } from "./tools";
 import { text } from "./words";
 
 export const canEnter = signal(false);
-void (navigator as any).xr?.isSessionSupported("immersive-vr").then((can: boolean) => (canEnter.value = can), () => {});
+void (navigator as Partial<Navigator>).xr?.isSessionSupported("immersive-vr").then(
+  (can: boolean) => (canEnter.value = can),
+  () => {},
+);
 
 /** Size of the object and height of its position, in metres. */
 const size = signal(0.9);
@@ -49,7 +52,24 @@ const subject = (): DrawnObject | undefined => drawn[page.object.value];
 
 // ---- the wrist menu ----
 
-const rows = ["select", "discard", "tool-move", "tool-rotate", "undo", "redo", "hide-cage", "show-cage", "hide-points", "show-points", "influence", "clear", "larger", "smaller", "seated", "leave-vr"];
+const rows = [
+  "select",
+  "discard",
+  "tool-move",
+  "tool-rotate",
+  "undo",
+  "redo",
+  "hide-cage",
+  "show-cage",
+  "hide-points",
+  "show-points",
+  "influence",
+  "clear",
+  "larger",
+  "smaller",
+  "seated",
+  "leave-vr",
+];
 
 class Menu {
   readonly mesh: THREE.Mesh;
@@ -61,7 +81,10 @@ class Menu {
     this.canvas.height = 40 * rows.length;
     this.texture = new THREE.CanvasTexture(this.canvas);
     const tall = (0.16 * this.canvas.height) / this.canvas.width;
-    this.mesh = new THREE.Mesh(new THREE.PlaneGeometry(0.16, tall), new THREE.MeshBasicMaterial({ map: this.texture, side: THREE.DoubleSide }));
+    this.mesh = new THREE.Mesh(
+      new THREE.PlaneGeometry(0.16, tall),
+      new THREE.MeshBasicMaterial({ map: this.texture, side: THREE.DoubleSide }),
+    );
     this.draw(-1);
   }
   draw(marked: number) {
@@ -96,7 +119,10 @@ function makeRoom() {
   room.add(floor);
   stage = new THREE.Group();
   room.add(stage);
-  gazeMark = new THREE.Mesh(new THREE.RingGeometry(0.006, 0.009, 24), new THREE.MeshBasicMaterial({ color: 0xd62828, side: THREE.DoubleSide, depthTest: false }));
+  gazeMark = new THREE.Mesh(
+    new THREE.RingGeometry(0.006, 0.009, 24),
+    new THREE.MeshBasicMaterial({ color: 0xd62828, side: THREE.DoubleSide, depthTest: false }),
+  );
   room.add(gazeMark);
   menu = new Menu();
 }
@@ -169,7 +195,7 @@ function touched(hand: Hand): number {
 const rounded = (v: THREE.Vector3) => v.toArray().map((x) => Number(x.toPrecision(9)));
 
 /** Movement of the selected control points by the hands, as a step of an edit. */
-function stepOf(): object | undefined {
+function stepOf(): deform.Step | undefined {
   const of = subject();
   const held = deform.held();
   if (!of || !held) return undefined;
@@ -196,7 +222,7 @@ function stepOf(): object | undefined {
   }
   return { translate: rounded(own(placeOf(hand)).sub(own(hand.start))) };
 }
-let last: object | undefined;
+let last: deform.Step | undefined;
 
 function press(hand: Hand) {
   hand.pressed = true;
@@ -265,13 +291,13 @@ export const frames = signal(0);
 export async function enter(): Promise<void> {
   if (!view || session) return;
   const { renderer } = view;
-  const made: XRSession = await (navigator as any).xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor", "hand-tracking"] });
+  const made: XRSession = await navigator.xr!.requestSession("immersive-vr", { optionalFeatures: ["local-floor", "hand-tracking"] });
   session = made;
   document.body.classList.add("in-vr"); // overlays are misplaced in virtual reality
   if (!room) makeRoom();
   renderer.xr.enabled = true;
   renderer.autoClear = true;
-  await renderer.xr.setSession(made as any);
+  await renderer.xr.setSession(made);
   hands.length = 0;
   for (const index of [0, 1]) {
     const ray = renderer.xr.getController(index);
