@@ -56,7 +56,7 @@ public:
 
     std::string write() {
         if (mesh_.number_of_faces() == 0)
-            fail_work(where_, "glTF does not hold a mesh without triangles", "export another format");
+            fail_work(where_, "glTF cannot store a mesh without triangles", "export another format");
         if (set_.annotations.size() >= exact_in_float)
             fail_work(where_, "more annotations than feature ids can tell apart", "export fewer");
         JsonValue primitives(rapidjson::kArrayType);
@@ -90,7 +90,7 @@ public:
         if (empty > 0)
             notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
                              " without elements: in the table, but nowhere on the mesh");
-        if (rounded_) notes_.emplace_back("GLB holds coordinates in single precision; they were rounded");
+        if (rounded_) notes_.emplace_back("GLB stores coordinates in single precision; they were rounded");
         return builder_.finish(where_, "simplify the mesh");
     }
 

@@ -26,10 +26,10 @@ public:
     /// Calls visit(a, b) for each pair of triangles with overlapping boxes where `a` lies in the given leaf and `b` comes later
     /// on the curve, always in the same order. Stops when `visit` returns false or after about `most` comparisons of boxes.
     /// Over all leaves, each pair is visited once. Returns the number of comparisons.
-    std::size_t pairs_of_leaf(Index leaf, std::size_t most, const std::function<bool(Index, Index)>& visit) const;
+    std::size_t pairs_of_leaf(Index leaf, std::size_t max_boxes, const std::function<bool(Index, Index)>& visit) const;
 
     /// Calls visit(t) for each triangle whose box intersects the segment; stops after about `most` boxes.
-    void along_segment(const Point& from, const Point& to, std::size_t most, const std::function<void(Index)>& visit) const;
+    void along_segment(const Point& from, const Point& to, std::size_t max_boxes, const std::function<void(Index)>& visit) const;
 
     struct Nearest {
         Index triangle = no_index;
