@@ -26,6 +26,6 @@ std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optiona
                                     AnatomicalSpace mesh_space);
 
 /// Throws Error (input), naming `at`, if the position exceeds the limit for mesh coordinates.
-void check_place(const std::array<double, 3>& position, const std::string& at);
+void check_place(const std::array<double, 3>& position, const std::string& location);
 
 }  // namespace ostraka::interchange
