@@ -31,7 +31,7 @@ std::size_t count_only_in(const std::vector<std::uint64_t>& a, const std::vector
     return only_in_a.size();
 }
 
-/// The ids of `list` that are also in `other`, in the order of `list`.
+/// The ids of `ids` that are also in `other_ids`, in the order of `ids`.
 std::vector<int> common(const std::vector<int>& ids, std::vector<int> other_ids) {
     std::sort(other_ids.begin(), other_ids.end());
     std::vector<int> result;

@@ -45,7 +45,7 @@ struct Corners {
 
 class FeatureWriter {
 public:
-    /// `whole`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
+    /// `originals`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
     FeatureWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
                   const Json& originals, std::vector<std::string>& notes)
         : mesh_(mesh),

@@ -38,7 +38,7 @@ double diagonal(const CGAL::Bbox_3& box) {
 
 namespace {
 /// Parity of the crossings of the segment with each other component; returns false if the segment touches an edge or a vertex.
-/// Only the first `most` intersected boxes of the tree are examined.
+/// Only the first `max_boxes` intersected boxes of the tree are examined.
 bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const std::vector<Index>& component, Index own_component,
                      const Point& from, const Point& to, std::size_t max_boxes, std::vector<std::pair<Index, bool>>& parity) {
     bool clean = true;

@@ -61,7 +61,7 @@ public:
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
     [[nodiscard]] const std::string& file() const { return file_; }
 
-    /// Throws Error (input) with the file and the line at `at` (default: the current position).
+    /// Throws Error (input) with the file and the line at `position` (default: the current position).
     [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}, const char* position = nullptr) const;
 
     static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }

@@ -191,8 +191,8 @@ TEST(Template, EachPartThatDoesNotFitIsNamed) {
         << "columns are the faces of the cage";
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18, 0.5, "<f4")); }), "float64"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18, std::nan(""))); }), "not finite"));
-    EXPECT_TRUE(
-        holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18).substr(0, 1000)); }), "does not fit the size"));
+    EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18).substr(0, 1000)); }),
+                      "does not match the size"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ranges.json", "{"); }), "ranges.json: line 1"));
     // What contradicts without being wrong.
     EXPECT_TRUE(holds(after(text("ball.template.json", "\"unit\": \"mm\"", "\"unit\": \"cm\"")),
