@@ -21,17 +21,17 @@ namespace ostraka {
 namespace {
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
-    std::vector<char*> all;
-    for (std::string& text : texts) all.push_back(text.data());
-    all.push_back(nullptr);
-    return all;
+    std::vector<char*> result;
+    for (std::string& text : texts) result.push_back(text.data());
+    result.push_back(nullptr);
+    return result;
 }
 
 std::vector<std::string> variables_for(int threads) {
     const std::string name = "OMP_NUM_THREADS=";
     std::vector<std::string> variables;
-    for (char** one = environ; *one != nullptr; ++one)
-        if (threads == 0 || !std::string(*one).starts_with(name)) variables.emplace_back(*one);
+    for (char** variable = environ; *variable != nullptr; ++variable)
+        if (threads == 0 || !std::string(*variable).starts_with(name)) variables.emplace_back(*variable);
     if (threads > 0) variables.push_back(name + std::to_string(threads));
     return variables;
 }
@@ -85,16 +85,16 @@ ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& o
     const auto cannot_start = [&](int reason) {
         fail_work(words.front(), std::string("cannot be started: ") + std::strerror(reason), "check its name and its rights");
     };
-    int reads[2] = {-1, -1}, prints[2] = {-1, -1};
-    if (options.pipes && (::pipe2(reads, O_CLOEXEC) != 0 || ::pipe2(prints, O_CLOEXEC) != 0)) {
+    int input_pipe[2] = {-1, -1}, output_pipe[2] = {-1, -1};
+    if (options.pipes && (::pipe2(input_pipe, O_CLOEXEC) != 0 || ::pipe2(output_pipe, O_CLOEXEC) != 0)) {
         const int reason = errno;
-        for (int& end : reads) close_if_open(end);
+        for (int& end : input_pipe) close_if_open(end);
         cannot_start(reason);
     }
     SpawnSettings settings;
     if (options.pipes) {
-        posix_spawn_file_actions_adddup2(&settings.actions, reads[0], 0);
-        posix_spawn_file_actions_adddup2(&settings.actions, prints[1], 1);
+        posix_spawn_file_actions_adddup2(&settings.actions, input_pipe[0], 0);
+        posix_spawn_file_actions_adddup2(&settings.actions, output_pipe[1], 1);
     } else {
         posix_spawn_file_actions_addopen(&settings.actions, 0, "/dev/null", O_RDONLY, 0);
     }
@@ -103,24 +103,24 @@ ChildProcess::ChildProcess(std::vector<std::string> words, const ChildOptions& o
     else if (!options.errors.empty()) settings.print_to(2, options.errors);
     if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&settings.actions, options.folder.c_str());
     // Signals blocked in this process are unblocked in the child.
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&settings.attributes, &none);
+    sigset_t no_signals;
+    sigemptyset(&no_signals);
+    posix_spawnattr_setsigmask(&settings.attributes, &no_signals);
     posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
     std::vector<std::string> variables = variables_for(options.threads);
-    const int failed = ::posix_spawnp(&id_, words.front().c_str(), &settings.actions, &settings.attributes,
-                                      pointers(words).data(), pointers(variables).data());
-    close_if_open(reads[0]);
-    close_if_open(prints[1]);
-    to_ = reads[1];
-    from_ = prints[0];
-    if (failed == 0) {
+    const int error_number = ::posix_spawnp(&id_, words.front().c_str(), &settings.actions, &settings.attributes,
+                                            pointers(words).data(), pointers(variables).data());
+    close_if_open(input_pipe[0]);
+    close_if_open(output_pipe[1]);
+    to_ = input_pipe[1];
+    from_ = output_pipe[0];
+    if (error_number == 0) {
         add_running(id_);
         return;
     }
     close_if_open(to_);
     close_if_open(from_);
-    cannot_start(failed);
+    cannot_start(error_number);
 }
 
 ChildProcess::~ChildProcess() {

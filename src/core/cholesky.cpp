@@ -18,22 +18,22 @@ namespace {
 
 /// A function that the BLAS in use may export, or nullptr.
 template <class Function>
-Function* of_blas(const char* name) {
+Function* blas_function(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_DEFAULT, name));
 }
 
 bool comes_from_openblas(const char* function) {
-    Dl_info place{};
-    if (::dladdr(::dlsym(RTLD_DEFAULT, function), &place) == 0 || place.dli_fname == nullptr) return false;
+    Dl_info library_info{};
+    if (::dladdr(::dlsym(RTLD_DEFAULT, function), &library_info) == 0 || library_info.dli_fname == nullptr) return false;
     std::error_code code;
-    return std::filesystem::weakly_canonical(place.dli_fname, code).string().find("openblas") != std::string::npos;
+    return std::filesystem::weakly_canonical(library_info.dli_fname, code).string().find("openblas") != std::string::npos;
 }
 
 /// OpenBLAS built without threads, as in the distribution's packages, gives wrong results when several threads call it
 /// concurrently: they share its buffers. If it is the BLAS or LAPACK in use, calls are serialised.
-std::unique_lock<std::mutex> one_at_a_time() {
+std::unique_lock<std::mutex> serialise_blas_calls() {
     static const bool is_needed = [] {
-        auto* const parallel = of_blas<int()>("openblas_get_parallel");
+        auto* const parallel = blas_function<int()>("openblas_get_parallel");
         return (comes_from_openblas("dgemm_") || comes_from_openblas("dpotrf_")) && (parallel == nullptr || parallel() == 0);
     }();
     static std::mutex mutex;
@@ -42,7 +42,7 @@ std::unique_lock<std::mutex> one_at_a_time() {
 
 /// A threaded BLAS may sum in a different order for a different number of threads; OpenBLAS is restricted to one thread.
 void use_one_thread() {
-    if (auto* const set_threads = of_blas<void(int)>("openblas_set_num_threads")) set_threads(1);
+    if (auto* const set_threads = blas_function<void(int)>("openblas_set_num_threads")) set_threads(1);
 }
 
 }  // namespace
@@ -75,7 +75,8 @@ struct SparseCholesky::State {
     void check(bool done, const char* step) const {
         if (done) return;
         const bool memory = common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE;
-        throw Error(ErrorKind::failure, "solver", std::string(step) + (memory ? " needs more memory than there is" : " failed"),
+        throw Error(ErrorKind::failure, "solver",
+                    std::string(step) + (memory ? " needs more memory than is available" : " failed"),
                     memory ? "solve through a cage, or a coarser mesh" : "");
     }
 };
@@ -135,11 +136,11 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
     std::vector<int> order(sparse.size());
     done = true;
     if (!sparse.empty()) {
-        constexpr std::size_t few = 1000;
+        constexpr std::size_t small = 1000;
         static std::mutex random;  // METIS uses the random number generator of the process, which it seeds itself
         const std::lock_guard lock(random);
-        done = sparse.size() < few ? cholmod_amd(&pattern, nullptr, 0, order.data(), &common) != 0
-                                   : cholmod_metis(&pattern, nullptr, 0, 1, order.data(), &common) != 0;
+        done = sparse.size() < small ? cholmod_amd(&pattern, nullptr, 0, order.data(), &common) != 0
+                                     : cholmod_metis(&pattern, nullptr, 0, 1, order.data(), &common) != 0;
     }
     for (int& i : order) i = sparse[i];
     order.insert(order.end(), dense.begin(), dense.end());
@@ -152,11 +153,11 @@ std::vector<int> elimination_order(const LowerTriangle& matrix, cholmod_common& 
 /// the factor is discarded.
 template <class Work>
 void SparseCholesky::work_on(const LowerTriangle& matrix, Work work) {
-    constexpr Eigen::Index many = 20000;
-    if (matrix.rows() < many) return work(*state_, matrix);
+    constexpr Eigen::Index large = 20000;
+    if (matrix.rows() < large) return work(*state_, matrix);
     using Job = std::pair<std::unique_ptr<State>, LowerTriangle>;
     try {
-        Job job = run_apart_on(Job(std::move(state_), matrix), [work](Job& own) { work(*own.first, own.second); });
+        Job job = run_apart_on(Job(std::move(state_), matrix), [work](Job& data) { work(*data.first, data.second); });
         state_ = std::move(job.first);
     } catch (...) {
         state_ = std::make_unique<State>();
@@ -170,13 +171,13 @@ SparseCholesky::~SparseCholesky() = default;
 void SparseCholesky::analyse(const LowerTriangle& matrix) {
     state_->forget();
     if (matrix.rows() == 0) return;
-    work_on(matrix, [](State& state, const LowerTriangle& own) {
+    work_on(matrix, [](State& state, const LowerTriangle& lower) {
         bool done = true;
-        std::vector<int> order = elimination_order(own, state.common, done);
+        std::vector<int> order = elimination_order(lower, state.common, done);
         state.check(done, "ordering the unknowns");
         state.common.nmethods = 1;
         state.common.method[0].ordering = CHOLMOD_GIVEN;
-        cholmod_sparse a = view(own);
+        cholmod_sparse a = view(lower);
         state.factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &state.common);
         state.check(state.factor != nullptr, "the symbolic factorisation");
     });
@@ -186,9 +187,9 @@ bool SparseCholesky::factor(const LowerTriangle& matrix) {
     if (matrix.rows() == 0) return true;
     if (state_->factor == nullptr) analyse(matrix);
     const auto is_done = std::make_shared<bool>(false);
-    work_on(matrix, [is_done](State& state, const LowerTriangle& own) {
-        cholmod_sparse a = view(own);
-        const auto lock = one_at_a_time();
+    work_on(matrix, [is_done](State& state, const LowerTriangle& lower) {
+        cholmod_sparse a = view(lower);
+        const auto lock = serialise_blas_calls();
         *is_done = cholmod_factorize(&a, state.factor, &state.common) != 0;
     });
     const bool done = *is_done;
@@ -212,7 +213,7 @@ void SparseCholesky::solve(Eigen::MatrixXd& columns) {
     b.x = columns.data();
     b.xtype = CHOLMOD_REAL;
     b.dtype = CHOLMOD_DOUBLE;
-    const auto lock = one_at_a_time();
+    const auto lock = serialise_blas_calls();
     const bool done = cholmod_solve2(CHOLMOD_A, state_->factor, &b, nullptr, &state_->solution, nullptr, &state_->work_y,
                                      &state_->work_e, &state_->common) != 0;
     state_->check(done, "solving");

@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -27,11 +29,11 @@ bool dangerous(std::string_view text) {
     if (text.empty()) return false;
     if (text.front() == '\t' || text.front() == '\r' || text.front() == '\n') return true;
     bool begins = true;
-    for (std::size_t at = 0; at < text.size();) {
-        const auto [code, length] = character_at(text, at);
+    for (std::size_t position = 0; position < text.size();) {
+        const auto [code, length] = character_at(text, position);
         if (begins && is_formula_sign(code)) return true;
         begins = code == ';' || (is_blank(code) && (begins || code != ' '));
-        at += length;
+        position += length;
     }
     return false;
 }
@@ -57,8 +59,8 @@ std::string csv_row(const std::vector<std::string>& cells) {
         if (i > 0) row += ',';
         const std::string cell =
             number_of(cells[i]) && trimmed(cells[i]).size() == cells[i].size() ? cells[i] : guarded(cells[i]);
-        const bool edged = !cell.empty() && (cell.front() == ' ' || cell.back() == ' ');
-        const bool quoted = edged || cell.find_first_of(",;\"\r\n\t'") != std::string::npos;
+        const bool has_outer_blank = !cell.empty() && (cell.front() == ' ' || cell.back() == ' ');
+        const bool quoted = has_outer_blank || cell.find_first_of(",;\"\r\n\t'") != std::string::npos;
         if (!quoted) {
             row += cell;
             continue;
@@ -81,8 +83,8 @@ std::vector<CsvRow> csv_rows(std::string_view text, char separator, const std::s
             std::string cell;
             if (i < text.size() && text[i] == '"') {
                 const std::size_t begin = line;
-                bool open = true;
-                for (++i; i < text.size() && open;) {
+                bool unclosed = true;
+                for (++i; i < text.size() && unclosed;) {
                     if (text[i] != '"') {
                         line += text[i] == '\n' ? 1 : 0;
                         cell += text[i++];
@@ -90,14 +92,14 @@ std::vector<CsvRow> csv_rows(std::string_view text, char separator, const std::s
                         cell += '"';
                         i += 2;
                     } else {
-                        open = false;
+                        unclosed = false;
                         ++i;
                     }
                 }
-                const std::string at = where + ", line " + std::to_string(begin);
-                if (open) fail_input(at, "a quoted cell does not end", "close its quotation mark");
+                const std::string location = fmt::format("{}, line {}", where, begin);
+                if (unclosed) fail_input(location, "a quoted cell does not end", "close its quotation mark");
                 if (i < text.size() && text[i] != separator && text[i] != '\n' && text[i] != '\r')
-                    fail_input(at, "text follows the closing quotation mark of a cell", "double the marks within the cell");
+                    fail_input(location, "text follows the closing quotation mark of a cell", "double the marks within the cell");
                 blank = false;
             } else {
                 while (i < text.size() && text[i] != separator && text[i] != '\n') cell += text[i++];

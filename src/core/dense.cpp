@@ -15,8 +15,8 @@ SymmetricEigen<2>::SymmetricEigen(const Matrix& symmetric)
     rotation.makeJacobi(symmetric(0, 0), symmetric(1, 0), symmetric(1, 1));
     vectors_.setIdentity();
     vectors_.applyOnTheRight(0, 1, rotation);
-    const Matrix whole = symmetric.selfadjointView<Eigen::Lower>();
-    values_ = (vectors_.transpose() * whole * vectors_).diagonal();
+    const Matrix full = symmetric.selfadjointView<Eigen::Lower>();
+    values_ = (vectors_.transpose() * full * vectors_).diagonal();
     if (values_[0] <= values_[1]) return;
     std::swap(values_[0], values_[1]);
     vectors_.col(0).swap(vectors_.col(1));

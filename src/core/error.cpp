@@ -1,26 +1,28 @@
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
-std::string message(const std::string& where, const std::string& what, const std::string& remedy) {
-    std::string text = where.empty() ? what : where + ": " + what;
-    if (!remedy.empty()) text += " (" + remedy + ")";
+std::string message(const std::string& where, const std::string& problem, const std::string& remedy) {
+    std::string text = where.empty() ? problem : fmt::format("{}: {}", where, problem);
+    if (!remedy.empty()) text += fmt::format(" ({})", remedy);
     return text;
 }
 }  // namespace
 
-Error::Error(ErrorKind kind, const std::string& where, const std::string& what, const std::string& remedy)
-    : std::runtime_error(message(where, what, remedy)), kind_(kind), where_(where), problem_(what), remedy_(remedy) {}
+Error::Error(ErrorKind kind, const std::string& where, const std::string& problem, const std::string& remedy)
+    : std::runtime_error(message(where, problem, remedy)), kind_(kind), where_(where), problem_(problem), remedy_(remedy) {}
 
-void fail_input(const std::string& where, const std::string& what, const std::string& remedy) {
-    throw Error(ErrorKind::input, where, what, remedy);
+void fail_input(const std::string& where, const std::string& problem, const std::string& remedy) {
+    throw Error(ErrorKind::input, where, problem, remedy);
 }
 
-void fail_work(const std::string& where, const std::string& what, const std::string& remedy) {
-    throw Error(ErrorKind::failure, where, what, remedy);
+void fail_work(const std::string& where, const std::string& problem, const std::string& remedy) {
+    throw Error(ErrorKind::failure, where, problem, remedy);
 }
 
-void fail_usage(const std::string& what, const std::string& remedy) { throw Error(ErrorKind::usage, {}, what, remedy); }
+void fail_usage(const std::string& problem, const std::string& remedy) { throw Error(ErrorKind::usage, {}, problem, remedy); }
 
 }  // namespace ostraka

@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -42,15 +44,15 @@ struct Input {
         if (descriptor.number < 0) fail_input(file.string(), "cannot be opened: " + reason(), "check the path and its rights");
         if (::fstat(descriptor.number, &status) != 0) fail_input(file.string(), "cannot be examined: " + reason());
         if (S_ISREG(status.st_mode)) return;
-        if (S_ISDIR(status.st_mode)) fail_input(file.string(), "is a folder", "name a file");
+        if (S_ISDIR(status.st_mode)) fail_input(file.string(), "is a folder", "give a file");
         if (S_ISFIFO(status.st_mode)) fail_input(file.string(), "is a pipe", "write it to a file first");
-        fail_input(file.string(), "is a device", "name a file");
+        fail_input(file.string(), "is a device", "give a file");
     }
     /// Reads up to `size` bytes; returns 0 at the end of the file.
-    std::size_t read(char* to, std::size_t size, const Path& file) const {
+    std::size_t read(char* buffer, std::size_t size, const Path& file) const {
         for (;;) {
-            const ssize_t more = ::read(descriptor.number, to, size);
-            if (more >= 0) return static_cast<std::size_t>(more);
+            const ssize_t count = ::read(descriptor.number, buffer, size);
+            if (count >= 0) return static_cast<std::size_t>(count);
             if (errno != EINTR) fail_input(file.string(), "cannot be read: " + reason());
         }
     }
@@ -63,10 +65,10 @@ thread_local OutputTransaction* open_transaction = nullptr;
 thread_local std::vector<Path> kept_files;
 
 /// Several threads may write into one transaction.
-std::mutex waiting_mutex;
-void add_waiting(std::vector<std::pair<Path, Path>>& waiting, const Path& temporary, const Path& file) {
-    const std::lock_guard lock(waiting_mutex);
-    waiting.emplace_back(temporary, file);
+std::mutex pending_mutex;
+void add_pending(std::vector<std::pair<Path, Path>>& pending, const Path& temporary, const Path& file) {
+    const std::lock_guard lock(pending_mutex);
+    pending.emplace_back(temporary, file);
 }
 
 thread_local ReadRecord* open_record = nullptr;
@@ -75,14 +77,14 @@ thread_local ReadRecord* open_record = nullptr;
 std::shared_mutex naming_mutex;
 
 /// Folders to remove when the process exits at once: those created by open transactions, and scratch folders.
-class PassingFolders {
+class TemporaryFolders {
 public:
-    void add_made(const Path& folder) {
-        change([&] { made_.insert(folder); });
+    void add_created(const Path& folder) {
+        change([&] { created_.insert(folder); });
     }
-    void forget_made(const std::vector<Path>& folders) {
+    void forget_created(const std::vector<Path>& folders) {
         change([&] {
-            for (const Path& folder : folders) made_.erase(folder);
+            for (const Path& folder : folders) created_.erase(folder);
         });
     }
     void add_scratch(const Path& folder) {
@@ -95,7 +97,7 @@ public:
         change([&] {
             std::error_code code;
             for (const Path& folder : scratch_) std::filesystem::remove_all(folder, code);
-            for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
+            for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) std::filesystem::remove(*folder, code);
         });
     }
 
@@ -106,10 +108,10 @@ private:
         work();
     }
     std::mutex mutex_;
-    std::set<Path> made_, scratch_;  ///< parents before their subfolders
+    std::set<Path> created_, scratch_;  ///< parents before their subfolders
 };
-PassingFolders& passing_folders() {
-    static PassingFolders folders;
+TemporaryFolders& temporary_folders() {
+    static TemporaryFolders folders;
     return folders;
 }
 
@@ -127,8 +129,8 @@ class MemoryFiles {
 public:
     [[nodiscard]] std::optional<std::string> find(const Path& file) const {
         const std::lock_guard lock(mutex_);
-        const auto found = files_.find(key(file));
-        return found == files_.end() ? std::nullopt : std::optional(found->second);
+        const auto entry = files_.find(key(file));
+        return entry == files_.end() ? std::nullopt : std::optional(entry->second);
     }
     void put(const Path& file, std::string bytes) {
         const std::lock_guard lock(mutex_);
@@ -149,10 +151,10 @@ public:
     /// Names below a folder, relative to it.
     [[nodiscard]] std::vector<std::string> below(const Path& folder) const {
         const std::lock_guard lock(mutex_);
-        const std::string beginning = key(folder) + "/";
+        const std::string prefix = key(folder) + "/";
         std::vector<std::string> names;
-        for (auto it = files_.lower_bound(beginning); it != files_.end() && it->first.starts_with(beginning); ++it)
-            names.push_back(it->first.substr(beginning.size()));
+        for (auto entry = files_.lower_bound(prefix); entry != files_.end() && entry->first.starts_with(prefix); ++entry)
+            names.push_back(entry->first.substr(prefix.size()));
         return names;
     }
     Path temporary() {
@@ -184,13 +186,13 @@ void rename_file(const Path& from, const Path& to) {
 /// Whether the path lies in the folder lexically, without resolving links.
 bool is_below(const Path& file, const Path& folder) {
     std::error_code code;
-    const auto full = [&](const Path& path) { return std::filesystem::absolute(path, code).lexically_normal(); };
-    const Path relative = full(file).lexically_relative(full(folder));
+    const auto absolute_path = [&](const Path& path) { return std::filesystem::absolute(path, code).lexically_normal(); };
+    const Path relative = absolute_path(file).lexically_relative(absolute_path(folder));
     return !relative.empty() && *relative.begin() != "..";
 }
 
 /// The target of a chain of links, whether it exists or not.
-Path behind_links(Path file) {
+Path resolve_links(Path file) {
     std::error_code code;
     for (int step = 0; step < 40 && std::filesystem::is_symlink(file, code); ++step) {
         // The target of a link to a device or a pipe need not be a path.
@@ -227,7 +229,7 @@ bool is_folder(const Path& folder) {
     return is_memory(folder) ? !memory_files().below(folder).empty() : std::filesystem::is_directory(folder, code);
 }
 
-std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* others) {
+std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* other_entries) {
     std::vector<std::string> names;
     if (is_memory(folder)) {
         for (std::string& name : memory_files().below(folder))
@@ -236,15 +238,15 @@ std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* 
     }
     std::error_code code;
     for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
-        std::error_code own;
-        const std::filesystem::file_status status = entry->status(own);
+        std::error_code entry_error;
+        const std::filesystem::file_status status = entry->status(entry_error);
         if (std::filesystem::is_regular_file(status)) names.push_back(entry->path().filename().string());
-        else if (others != nullptr && !std::filesystem::is_directory(status))
-            others->push_back(entry->path().filename().string());
+        else if (other_entries != nullptr && !std::filesystem::is_directory(status))
+            other_entries->push_back(entry->path().filename().string());
     }
     if (code) fail_work(folder.string(), "the folder cannot be read: " + code.message(), "check its rights");
     std::sort(names.begin(), names.end());
-    if (others != nullptr) std::sort(others->begin(), others->end());
+    if (other_entries != nullptr) std::sort(other_entries->begin(), other_entries->end());
     return names;
 }
 
@@ -252,16 +254,17 @@ void make_folder(const Path& folder) {
     if (is_memory(folder) || folder.empty()) return;
     WriteScope::check(folder);
     std::error_code code;
-    std::vector<Path> made;
-    for (Path one = folder; !one.empty() && !std::filesystem::exists(one, code); one = one.parent_path()) made.push_back(one);
+    std::vector<Path> created;
+    for (Path ancestor = folder; !ancestor.empty() && !std::filesystem::exists(ancestor, code); ancestor = ancestor.parent_path())
+        created.push_back(ancestor);
     std::filesystem::create_directories(folder, code);
     if (open_transaction != nullptr) {
-        const std::lock_guard lock(waiting_mutex);
-        open_transaction->made_.insert(open_transaction->made_.end(), made.rbegin(), made.rend());
-        for (const Path& one : made) passing_folders().add_made(one);
+        const std::lock_guard lock(pending_mutex);
+        open_transaction->created_.insert(open_transaction->created_.end(), created.rbegin(), created.rend());
+        for (const Path& path : created) temporary_folders().add_created(path);
     }
     if (code || !std::filesystem::is_directory(folder, code))
-        fail_work(folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""), "name another one");
+        fail_work(folder.string(), "the folder cannot be made" + (code ? ": " + code.message() : ""), "choose another one");
 }
 
 void remove_file(const Path& file) {
@@ -303,15 +306,15 @@ std::string read_file(const Path& file) {
         std::size_t used = 0;
         for (;;) {
             if (used < bytes.size()) {
-                const std::size_t more = input.read(bytes.data() + used, bytes.size() - used, file);
-                if (more == 0) break;
-                used += more;
+                const std::size_t count = input.read(bytes.data() + used, bytes.size() - used, file);
+                if (count == 0) break;
+                used += count;
                 continue;
             }
             char extra[4096];  // for bytes appended meanwhile, and for files that report no size
-            const std::size_t more = input.read(extra, sizeof extra, file);
-            if (more == 0) break;
-            bytes.append(extra, more);
+            const std::size_t count = input.read(extra, sizeof extra, file);
+            if (count == 0) break;
+            bytes.append(extra, count);
             used = bytes.size();
         }
         bytes.resize(used);
@@ -322,25 +325,25 @@ std::string read_file(const Path& file) {
 }
 
 // Links are followed: the target of a link is replaced, not the link.
-AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? file : behind_links(file)) {
+AtomicFile::AtomicFile(Path file, FileAccess access) : file_(is_memory(file) ? file : resolve_links(file)) {
     if (is_memory(file_)) return;
     WriteScope::check(file_);
     // In a folder that a command fills, the user did not name the individual files: links in it must not lead out of it.
-    for (const OutputTransaction* open = open_transaction; open != nullptr; open = open->outer_)
-        for (const auto& [folder, owner] : open->replaced_)
+    for (const OutputTransaction* transaction = open_transaction; transaction != nullptr; transaction = transaction->outer_)
+        for (const auto& [folder, owner] : transaction->replaced_)
             if (is_below(file, folder)) require_writable_inside(file, folder);
     std::error_code code;
-    if (std::filesystem::is_directory(file_, code)) fail_work(file_.string(), "is a folder", "name a file to write");
+    if (std::filesystem::is_directory(file_, code)) fail_work(file_.string(), "is a folder", "give a file to write");
     // A device or a pipe (/dev/null, /dev/stdout) is written to, not replaced by a file.
     if (std::filesystem::exists(file_, code) && !std::filesystem::is_regular_file(file_, code)) {
         stream_ = std::fopen(file_.c_str(), "wb");
         if (stream_ == nullptr) fail_work(file_.string(), "cannot be written: " + reason(), "check its rights");
         return;
     }
-    if (std::filesystem::is_symlink(file_, code)) fail_work(file_.string(), "is a link that leads to itself", "remove the link");
+    if (std::filesystem::is_symlink(file_, code)) fail_work(file_.string(), "is a link that refers to itself", "remove the link");
     mode_t rights = access == FileAccess::owner_only ? 0600 : 0666 & ~creation_mask();
-    if (struct stat present{}; ::stat(file_.c_str(), &present) == 0) {
-        if (access == FileAccess::usual) rights = present.st_mode & 0777;
+    if (struct stat current_status{}; ::stat(file_.c_str(), &current_status) == 0) {
+        if (access == FileAccess::usual) rights = current_status.st_mode & 0777;
         if (::access(file_.c_str(), W_OK) != 0)
             fail_work(file_.string(), "cannot be written: " + reason(), "check its rights, or choose another name");
     }
@@ -384,7 +387,7 @@ void AtomicFile::commit() {
     if (is_memory(file_)) {
         temporary_ = open_transaction == nullptr ? file_ : memory_files().temporary();
         memory_files().put(temporary_, std::move(memory_));
-        if (open_transaction != nullptr) add_waiting(open_transaction->waiting_, temporary_, file_);
+        if (open_transaction != nullptr) add_pending(open_transaction->pending_, temporary_, file_);
         return;
     }
     const bool direct = temporary_.empty();
@@ -395,7 +398,7 @@ void AtomicFile::commit() {
     const bool closed = std::fclose(stream_) == 0;
     stream_ = nullptr;
     if (flushed && closed && !direct && open_transaction != nullptr)
-        return add_waiting(open_transaction->waiting_, keep_temporary(temporary_, lock), file_);
+        return add_pending(open_transaction->pending_, keep_temporary(temporary_, lock), file_);
     bool failed = !flushed || !closed;
     if (!failed && !direct) {
         const std::shared_lock naming(naming_mutex);
@@ -413,13 +416,13 @@ OutputTransaction::OutputTransaction() : outer_(open_transaction) { open_transac
 
 OutputTransaction::~OutputTransaction() {
     open_transaction = outer_;
-    for (const auto& [temporary, file] : waiting_) {
+    for (const auto& [temporary, file] : pending_) {
         remove_file(temporary);
         release_temporary(temporary);
     }
     std::error_code code;  // for folders that are not empty
-    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) std::filesystem::remove(*folder, code);
-    passing_folders().forget_made(made_);
+    for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) std::filesystem::remove(*folder, code);
+    temporary_folders().forget_created(created_);
 }
 
 OutputTransaction* current_transaction() { return open_transaction; }
@@ -432,54 +435,54 @@ namespace {
 /// An existing file that is about to be replaced; a hard link keeps it during the lifetime of this object.
 struct Replaced {
     explicit Replaced(Path name) : file(std::move(name)) {
-        struct stat present {};
-        if (::lstat(file.c_str(), &present) != 0) return;
+        struct stat current_status {};
+        if (::lstat(file.c_str(), &current_status) != 0) return;
         existed = true;
         std::string pattern = (file.parent_path() / ".ostraka-XXXXXX").string();
         const int descriptor = ::mkstemp(pattern.data());
         if (descriptor < 0) return;
         ::close(descriptor);
         ::unlink(pattern.c_str());
-        if (::link(file.c_str(), pattern.c_str()) == 0) aside = pattern;
+        if (::link(file.c_str(), pattern.c_str()) == 0) backup = pattern;
     }
-    ~Replaced() { remove_file(aside); }
+    ~Replaced() { remove_file(backup); }
     Replaced(const Replaced&) = delete;
     Replaced& operator=(const Replaced&) = delete;
     void restore() const {
-        if (!aside.empty()) ::rename(aside.c_str(), file.c_str());
+        if (!backup.empty()) ::rename(backup.c_str(), file.c_str());
         else if (!existed) remove_file(file);
     }
 
-    Path file, aside;
-    bool existed = false, taken = false;
+    Path file, backup;
+    bool existed = false, was_replaced = false;
 };
 }  // namespace
 
 void OutputTransaction::commit() {
     std::vector<OutputSweep> sweeps;
-    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, waiting_, kept_files);
+    for (const auto& [folder, owner] : replaced_) sweeps.emplace_back(folder, owner, pending_, kept_files);
     replaced_.clear();
     for (const OutputSweep& sweep : sweeps) sweep.write_list();
     // Files in memory last: renaming them cannot fail, so none of them has to be restored.
-    std::stable_partition(waiting_.begin(), waiting_.end(), [](const auto& names) { return !is_memory(names.second); });
+    std::stable_partition(pending_.begin(), pending_.end(), [](const auto& names) { return !is_memory(names.second); });
     std::deque<Replaced> replaced;
     std::shared_lock naming(naming_mutex);
     try {
-        for (; !waiting_.empty(); waiting_.erase(waiting_.begin())) {
-            const auto& [temporary, file] = waiting_.front();
+        for (; !pending_.empty(); pending_.erase(pending_.begin())) {
+            const auto& [temporary, file] = pending_.front();
             if (!is_memory(file)) replaced.emplace_back(file);
             rename_file(temporary, file);
             release_temporary(temporary);
-            if (!is_memory(file)) replaced.back().taken = true;
+            if (!is_memory(file)) replaced.back().was_replaced = true;
         }
     } catch (...) {
-        for (auto one = replaced.rbegin(); one != replaced.rend(); ++one)
-            if (one->taken) one->restore();
+        for (auto entry = replaced.rbegin(); entry != replaced.rend(); ++entry)
+            if (entry->was_replaced) entry->restore();
         throw;
     }
-    passing_folders().forget_made(std::exchange(made_, {}));
+    temporary_folders().forget_created(std::exchange(created_, {}));
     naming.unlock();
-    for (OutputSweep& sweep : sweeps) sweep.remove_rest();
+    for (OutputSweep& sweep : sweeps) sweep.remove_obsolete();
 }
 
 void replace_outputs(const Path& folder, const std::string& owner) {
@@ -497,54 +500,54 @@ void abandon_outputs() {
     // Never unlocked: threads that are about to rename files wait until the process ends.
     naming_mutex.lock();  // NOLINT(bugprone-*)
     abandon_temporaries();
-    passing_folders().remove();
+    temporary_folders().remove();
 }
 
 ScratchFolder::ScratchFolder(const std::string& purpose) {
     std::error_code code;
     const Path system = std::filesystem::temp_directory_path(code);
-    std::string pattern = ((code ? Path("/tmp") : system) / ("ostraka-" + purpose + "-XXXXXX")).string();
+    std::string pattern = ((code ? Path("/tmp") : system) / (fmt::format("ostraka-{}-XXXXXX", purpose))).string();
     if (::mkdtemp(pattern.data()) == nullptr)
         fail_work(pattern, "the folder cannot be made: " + reason(), "check the folder for temporary files (TMPDIR)");
     path_ = pattern;
-    passing_folders().add_scratch(path_);
+    temporary_folders().add_scratch(path_);
 }
 
 ScratchFolder::~ScratchFolder() {
     std::error_code code;
     std::filesystem::remove_all(path_, code);
-    passing_folders().forget_scratch(path_);
+    temporary_folders().forget_scratch(path_);
 }
 
 namespace {
 /// The same path for all spellings of a place, whether it exists or not.
-Path one_spelling(const Path& file) {
+Path canonical_spelling(const Path& file) {
     std::error_code code;
-    const Path place = resolved(file);
-    return place.empty() ? std::filesystem::absolute(file, code).lexically_normal() : place;
+    const Path canonical = resolved(file);
+    return canonical.empty() ? std::filesystem::absolute(file, code).lexically_normal() : canonical;
 }
 }  // namespace
 
-bool same_place(const Path& a, const Path& b) { return one_spelling(a / ".") == one_spelling(b / "."); }
+bool same_place(const Path& a, const Path& b) { return canonical_spelling(a / ".") == canonical_spelling(b / "."); }
 
 void check_outputs(const std::vector<Path>& inputs, const std::vector<Path>& outputs) {
     std::error_code code;
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const Path& output = outputs[i];
         if (output.empty() || is_memory(output)) continue;
-        const Path place = one_spelling(output);
+        const Path canonical_output = canonical_spelling(output);
         for (const Path& input : inputs) {
             if (input.empty() || is_memory(input)) continue;
-            if (std::filesystem::equivalent(output, input, code) || place == one_spelling(input))
-                fail_usage("output " + output.string() + " is also an input", "choose another name for the output");
+            if (std::filesystem::equivalent(output, input, code) || canonical_output == canonical_spelling(input))
+                fail_usage(fmt::format("output {} is also an input", output.string()), "choose another name for the output");
         }
         for (std::size_t j = 0; j < i; ++j)
-            if (!outputs[j].empty() && place == one_spelling(outputs[j]))
+            if (!outputs[j].empty() && canonical_output == canonical_spelling(outputs[j]))
                 fail_usage("two outputs have the name " + output.string(), "give each output its own name");
         const Path folder = output.has_parent_path() ? output.parent_path() : Path(".");
         if (!std::filesystem::is_directory(folder, code))
-            fail_work(output.string(), "its folder does not exist", "make the folder " + folder.string() + " first");
-        if (std::filesystem::is_directory(output, code)) fail_work(output.string(), "is a folder", "name a file to write");
+            fail_work(output.string(), "its folder does not exist", fmt::format("create the folder {} first", folder.string()));
+        if (std::filesystem::is_directory(output, code)) fail_work(output.string(), "is a folder", "give a file to write");
     }
 }
 

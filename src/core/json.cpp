@@ -2,6 +2,7 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
 #include <rapidjson/error/en.h>
 #include <rapidjson/reader.h>
 #include <rapidjson/schema.h>
@@ -27,7 +28,7 @@ namespace {
 using TextBuffer = rapidjson::GenericStringBuffer<rapidjson::UTF8<>, JsonMemory>;
 using Schema = rapidjson::GenericSchemaDocument<JsonValue, JsonMemory>;
 
-std::string place(std::string_view text, std::size_t offset) {
+std::string position_text(std::string_view text, std::size_t offset) {
     std::size_t line = 1, column = 1;
     for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
         if (text[i] == '\n') {
@@ -37,7 +38,7 @@ std::string place(std::string_view text, std::size_t offset) {
             ++column;
         }
     }
-    return "line " + std::to_string(line) + ", column " + std::to_string(column);
+    return fmt::format("line {}, column {}", line, column);
 }
 
 bool nested_too_deep(std::string_view text) {
@@ -57,11 +58,11 @@ bool nested_too_deep(std::string_view text) {
 }
 
 /// Refuses objects with two members of the same name: readers differ in which of them they use.
-void refuse_twins(const JsonValue& value, const std::string& where) {
+void refuse_duplicate_members(const JsonValue& value, const std::string& where) {
     if (value.IsArray()) {
         for (const auto& element : value.GetArray()) {
             if (!element.IsObject() && !element.IsArray()) continue;
-            refuse_twins(element, where);
+            refuse_duplicate_members(element, where);
         }
         return;
     }
@@ -69,12 +70,12 @@ void refuse_twins(const JsonValue& value, const std::string& where) {
     std::vector<std::string_view> names;
     for (const auto& member : value.GetObject()) {
         names.emplace_back(member.name.GetString(), member.name.GetStringLength());
-        refuse_twins(member.value, where);
+        refuse_duplicate_members(member.value, where);
     }
     std::sort(names.begin(), names.end());
-    const auto twin = std::adjacent_find(names.begin(), names.end());
-    if (twin != names.end())
-        fail_input(where, "the member \"" + std::string(*twin) + "\" stands twice in one object", "keep one of the two");
+    const auto duplicate = std::adjacent_find(names.begin(), names.end());
+    if (duplicate != names.end())
+        fail_input(where, fmt::format("the member \"{}\" appears twice in one object", *duplicate), "keep one of the two");
 }
 
 /// Valid UTF-8 from any text (a file name may hold any bytes), with U+FFFD for each invalid byte.
@@ -146,15 +147,16 @@ Json parse_json(std::string_view text, const std::string& where) {
     if (text.size() >= 3 && text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
     // RapidJSON treats a zero byte as the end of the text.
     if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
-        fail_input(where + ", " + place(text, zero), "not valid JSON: a zero byte", "correct or regenerate the file");
+        fail_input(fmt::format("{}, {}", where, position_text(text, zero)), "not valid JSON: a zero byte",
+                   "correct or regenerate the file");
     if (nested_too_deep(text)) fail_input(where, "the JSON is nested deeper than 200 levels", "flatten it");
     Json document;
     document.Parse<rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag>(text.data(), text.size());
     if (document.HasParseError())
-        fail_input(where + ", " + place(text, document.GetErrorOffset()),
+        fail_input(fmt::format("{}, {}", where, position_text(text, document.GetErrorOffset())),
                    std::string("not valid JSON: ") + rapidjson::GetParseError_En(document.GetParseError()),
                    "correct or regenerate the file");
-    refuse_twins(document, where);
+    refuse_duplicate_members(document, where);
     return document;
 }
 
@@ -182,9 +184,9 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
     const std::lock_guard lock(mutex);
     auto& entry = compiled[schema];
     if (!entry) {
-        const auto found = schema_texts().find(schema);
-        if (found == schema_texts().end()) throw std::logic_error("no schema named " + schema);
-        entry = std::make_unique<Schema>(parse_json(found->second, schema + ".schema.json"));
+        const auto entry_of_schema = schema_texts().find(schema);
+        if (entry_of_schema == schema_texts().end()) throw std::logic_error("no schema named " + schema);
+        entry = std::make_unique<Schema>(parse_json(entry_of_schema->second, schema + ".schema.json"));
     }
     rapidjson::GenericSchemaValidator<Schema, rapidjson::BaseReaderHandler<>, JsonMemory> validator(*entry);
     if (value.Accept(validator)) return;
@@ -206,31 +208,32 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
             expected += " " + rule_text;
         }
     }
-    const std::string at = text_of(pointer);
+    const std::string location = text_of(pointer);
     if (keyword == "additionalProperties" && pointer.GetTokenCount() > 0) {
         const auto& token = pointer.GetTokens()[pointer.GetTokenCount() - 1];
-        fail_input(where, "at " + at + ": unknown member '" + std::string(token.name, token.length) + "'",
-                   "is it misspelt? See doc/schema/" + schema + ".schema.json");
+        fail_input(where, fmt::format("at {}: unknown member '{}'", location, std::string(token.name, token.length)),
+                   fmt::format("is it misspelt? See doc/schema/{}.schema.json", schema));
     }
     fail_input(where,
-               "at " + (at.empty() ? std::string("the root") : at) + ": does not fit the format, which asks for " + expected,
-               "see doc/schema/" + schema + ".schema.json");
+               fmt::format("at {}: does not match the format, which requires {}",
+                           location.empty() ? std::string("the root") : location, expected),
+               fmt::format("see doc/schema/{}.schema.json", schema));
 }
 
 Json built_in_document(const std::string& name) {
-    const auto found = schema_texts().find(name);
-    if (found == schema_texts().end()) throw std::logic_error("no document named " + name + " is built in");
-    return parse_json(found->second, name + ".json");
+    const auto entry = schema_texts().find(name);
+    if (entry == schema_texts().end()) throw std::logic_error(fmt::format("no document named {} is built in", name));
+    return parse_json(entry->second, name + ".json");
 }
 
-std::size_t utf8_length(std::string_view text, std::size_t at) {
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };
+std::size_t utf8_length(std::string_view text, std::size_t position) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[position + k]); };
     const std::size_t length = byte(0) < 0x80                      ? 1
                                : byte(0) >= 0xC2 && byte(0) < 0xE0 ? 2
                                : byte(0) >= 0xE0 && byte(0) < 0xF0 ? 3
                                : byte(0) >= 0xF0 && byte(0) < 0xF5 ? 4
                                                                    : 0;
-    if (length == 0 || at + length > text.size()) return 0;
+    if (length == 0 || position + length > text.size()) return 0;
     for (std::size_t k = 1; k < length; ++k)
         if ((byte(k) & 0xC0) != 0x80) return 0;
     // Overlong encodings, surrogates, code points beyond U+10FFFF.
@@ -277,8 +280,8 @@ Json json_document(std::string_view kind) {
 const JsonValue* find_member(const JsonValue& object, std::string_view name) {
     if (!object.IsObject()) return nullptr;
     const JsonValue key(rapidjson::StringRef(name.data(), static_cast<rapidjson::SizeType>(name.size())));
-    const auto found = object.FindMember(key);
-    return found == object.MemberEnd() ? nullptr : &found->value;
+    const auto member = object.FindMember(key);
+    return member == object.MemberEnd() ? nullptr : &member->value;
 }
 
 std::optional<double> number_in(const JsonValue& object, std::string_view name) {
@@ -286,8 +289,8 @@ std::optional<double> number_in(const JsonValue& object, std::string_view name) 
     return value == nullptr ? std::nullopt : std::optional(value->GetDouble());
 }
 
-double number_or(const JsonValue& object, std::string_view name, double otherwise) {
-    return number_in(object, name).value_or(otherwise);
+double number_or(const JsonValue& object, std::string_view name, double fallback) {
+    return number_in(object, name).value_or(fallback);
 }
 
 std::string text_in(const JsonValue& object, std::string_view name) {
@@ -301,21 +304,24 @@ bool flag_in(const JsonValue& object, std::string_view name) {
 }
 
 JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name) {
-    static const JsonValue none(rapidjson::kArrayType);
+    static const JsonValue empty_list(rapidjson::kArrayType);
     const JsonValue* value = find_member(object, name);
-    return (value != nullptr && value->IsArray() ? *value : none).GetArray();
+    return (value != nullptr && value->IsArray() ? *value : empty_list).GetArray();
 }
 
 std::string text_of(const JsonValue& value) {
-    if (!value.IsString()) fail_input("the document", "a value is no text", "correct or regenerate the file");
+    if (!value.IsString()) fail_input("the document", "a value is not a text", "correct or regenerate the file");
     return {value.GetString(), value.GetStringLength()};
 }
 
-std::array<double, 3> triple_of(const JsonValue& list) { return {list[0].GetDouble(), list[1].GetDouble(), list[2].GetDouble()}; }
+std::array<double, 3> triple_of(const JsonValue& values) {
+    return {values[0].GetDouble(), values[1].GetDouble(), values[2].GetDouble()};
+}
 
 void check_format(const JsonValue& document, const std::string& format, const std::string& where, const std::string& remedy) {
-    if (const JsonValue* said = find_member(document, "format"); said != nullptr && said->IsString() && text_of(*said) != format)
-        fail_input(where, "at /format: the format is '" + text_of(*said) + "'", remedy);
+    if (const JsonValue* stated_format = find_member(document, "format");
+        stated_format != nullptr && stated_format->IsString() && text_of(*stated_format) != format)
+        fail_input(where, fmt::format("at /format: the format is '{}'", text_of(*stated_format)), remedy);
 }
 
 }  // namespace ostraka

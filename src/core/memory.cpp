@@ -6,6 +6,8 @@
 
 #include <unistd.h>
 
+#include <fmt/core.h>
+
 #include <fstream>
 
 namespace ostraka {
@@ -16,8 +18,8 @@ std::string gigabytes(double bytes) { return digits(bytes / 1e9, 4) + " GB"; }
 
 double resident_memory() {
     std::ifstream file("/proc/self/statm");
-    double all = 0, resident = 0;
-    return file >> all >> resident ? resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) : 0;
+    double total = 0, resident = 0;
+    return file >> total >> resident ? resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) : 0;
 }
 
 double memory_limit() {
@@ -27,14 +29,14 @@ double memory_limit() {
     return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : 0;
 }
 
-void require_memory(double bytes, const std::string& what, const std::string& remedy) {
+void require_memory(double bytes, const std::string& purpose, const std::string& remedy) {
     const double limit = memory_limit();
     if (limit <= 0 || resident_memory() + bytes <= limit) return;
     const Watch* watch = current_watch();
     const bool is_given = watch != nullptr && watch->memory_limit > 0;
     fail_work("",
-              what + " needs about " + gigabytes(bytes) + " of memory, and " + gigabytes(limit) +
-                  (is_given ? " are allowed (--memory)" : " are what the machine has"),
+              fmt::format("{} needs about {} of memory, but {}", purpose, gigabytes(bytes),
+                          is_given ? gigabytes(limit) + " is allowed (--memory)" : "the machine has " + gigabytes(limit)),
               remedy);
 }
 

@@ -4,6 +4,8 @@
 #include "ostraka/core/file.h"
 #include "ostraka/core/progress.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -71,13 +73,13 @@ Pairing pair_halfedges(const TriangleSoup& soup) {
 /// Counts vertices whose triangles form more than one fan. The halfedges must be paired without conflicts.
 void count_fans(const TriangleSoup& soup, Pairing& pairing) {
     const std::size_t count = 3 * soup.triangles.size();
-    std::vector<bool> seen(count, false);
+    std::vector<bool> visited(count, false);
     std::vector<std::uint8_t> fans(soup.points.size(), 0);
     const auto& opposite = pairing.opposite;
     const auto previous = [](std::size_t h) { return h % 3 == 0 ? h + 2 : h - 1; };
     const auto next = [](std::size_t h) { return h % 3 == 2 ? h - 2 : h + 1; };
     for (std::size_t h = 0; h < count; ++h) {
-        if (seen[h]) continue;
+        if (visited[h]) continue;
         const Index v = origin(soup, h);
         if (fans[v] < 255) ++fans[v];
         if (fans[v] == 2) {
@@ -85,7 +87,7 @@ void count_fans(const TriangleSoup& soup, Pairing& pairing) {
             if (pairing.defects.example_triangle == no_index) pairing.defects.example_triangle = static_cast<Index>(h / 3);
         }
         for (std::size_t g = h;;) {  // counter-clockwise over outgoing halfedges
-            seen[g] = true;
+            visited[g] = true;
             const Index o = opposite[previous(g)];
             if (o == no_index || o == h) break;
             g = o;
@@ -94,8 +96,8 @@ void count_fans(const TriangleSoup& soup, Pairing& pairing) {
             const Index o = opposite[g];
             if (o == no_index) break;
             g = next(o);
-            if (seen[g]) break;
-            seen[g] = true;
+            if (visited[g]) break;
+            visited[g] = true;
         }
     }
 }
@@ -112,8 +114,7 @@ ManifoldDefects try_build_mesh(const TriangleSoup& soup, Mesh& mesh) {
     for (std::size_t t = 0; t < face_count; ++t) {
         const auto& [a, b, c] = soup.triangles[t];
         if (a >= vertex_count || b >= vertex_count || c >= vertex_count)
-            fail_input("triangle " + std::to_string(t),
-                       "names vertex " + std::to_string(std::max({a, b, c})) + " of " + std::to_string(vertex_count));
+            fail_input("triangle " + std::to_string(t), fmt::format("names vertex {} of {}", std::max({a, b, c}), vertex_count));
         if (a == b || b == c || c == a) {
             ++repeated.repeated_corners;
             if (repeated.example_triangle == no_index) repeated.example_triangle = static_cast<Index>(t);
@@ -172,15 +173,15 @@ Mesh build_mesh(const TriangleSoup& soup) {
     const ManifoldDefects defects = try_build_mesh(soup, mesh);
     if (defects.any()) {
         std::string text = "is not an oriented manifold:";
-        const auto add = [&](std::size_t n, const char* what) {
-            if (n > 0) text += " " + std::to_string(n) + " " + what + ",";
+        const auto add = [&](std::size_t n, const char* description) {
+            if (n > 0) text += fmt::format(" {} {},", n, description);
         };
         add(defects.repeated_corners, "triangles that repeat a vertex");
         add(defects.nonmanifold_edges, "edges with more than two triangles");
         add(defects.misoriented_edges, "edges with inconsistent orientation");
         add(defects.nonmanifold_vertices, "non-manifold vertices");
         text.back() = ';';
-        fail_input("mesh", text + " the first at triangle " + std::to_string(defects.example_triangle),
+        fail_input("mesh", fmt::format("{} the first at triangle {}", text, defects.example_triangle),
                    "run: ostraka mesh repair");
     }
     return mesh;
@@ -241,9 +242,9 @@ Vector vertex_normal(const Mesh& mesh, Vertex vertex) {
 
 CGAL::Bbox_3 bounding_box(const Mesh& mesh) {
     CGAL::Bbox_3 box;
-    const bool all = mesh.number_of_faces() == 0;
+    const bool include_isolated = mesh.number_of_faces() == 0;
     for (const Vertex v : mesh.vertices())
-        if (all || !mesh.is_isolated(v)) box += mesh.point(v).bbox();
+        if (include_isolated || !mesh.is_isolated(v)) box += mesh.point(v).bbox();
     return box;
 }
 

@@ -2,6 +2,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <bit>
 #include <charconv>
@@ -20,9 +22,9 @@ constexpr const char* remedy = "write it with numpy.save, as an array of float64
 constexpr std::string_view magic = "\x93NUMPY";
 
 /// Parses the header's dictionary, in Python syntax.
-class HeadReader {
+class HeaderReader {
 public:
-    HeadReader(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
+    HeaderReader(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
 
     void read(NpyView& view) {
         std::optional<std::string> type;
@@ -49,7 +51,7 @@ public:
     }
 
 private:
-    [[noreturn]] void damaged() const { fail_input(where_, "the head of the NumPy array cannot be read", remedy); }
+    [[noreturn]] void damaged() const { fail_input(where_, "the header of the NumPy array cannot be read", remedy); }
 
     void skip_blanks() { text_.remove_prefix(std::min(text_.find_first_not_of(" \n\t"), text_.size())); }
     bool next_is(char c) {
@@ -72,29 +74,29 @@ private:
     }
     bool boolean() {
         skip_blanks();
-        const bool yes = text_.starts_with("True");
-        if (!yes && !text_.starts_with("False")) damaged();
-        text_.remove_prefix(yes ? 4 : 5);
-        return yes;
+        const bool value = text_.starts_with("True");
+        if (!value && !text_.starts_with("False")) damaged();
+        text_.remove_prefix(value ? 4 : 5);
+        return value;
     }
     std::vector<std::size_t> sizes() {
-        std::vector<std::size_t> list;
+        std::vector<std::size_t> result;
         expect('(');
         while (!next_is(')')) {
             skip_blanks();
             std::uint64_t size = 0;
             const auto [end, code] = std::from_chars(text_.data(), text_.data() + text_.size(), size);
             if (code == std::errc::result_out_of_range)
-                fail_input(where_, "the shape of the array does not fit the size of the file", remedy);
-            if (code != std::errc() || list.size() == 40) damaged();
+                fail_input(where_, "the shape of the array does not match the size of its data", remedy);
+            if (code != std::errc() || result.size() == 40) damaged();
             text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-            list.push_back(size);
+            result.push_back(size);
             if (!next_is(',')) {
                 expect(')');
                 break;
             }
         }
-        return list;
+        return result;
     }
 
     std::string_view text_;
@@ -110,21 +112,21 @@ struct Kind {
 };
 
 template <class Number>
-Number number_at(const char* place) {
+Number number_at(const char* element) {
     Number number;
-    std::memcpy(&number, place, sizeof number);
+    std::memcpy(&number, element, sizeof number);
     return number;
 }
 template <class Number>
-double real_of(const char* place) {
-    return static_cast<double>(number_at<Number>(place));
+double real_of(const char* element) {
+    return static_cast<double>(number_at<Number>(element));
 }
 template <class Number>
-std::int64_t integer_of(const char* place, const std::string& where) {
+std::int64_t integer_of(const char* element, const std::string& where) {
     if constexpr (std::is_floating_point_v<Number>) {
-        fail_input(where, "the array holds fractions, not integers", "write it with numpy.save, as int64");
+        fail_input(where, "the array contains fractions, not integers", "write it with numpy.save, as int64");
     } else {
-        const Number number = number_at<Number>(place);
+        const Number number = number_at<Number>(element);
         if (!std::in_range<std::int64_t>(number)) fail_input(where, "an integer of the array is above 2^63", remedy);
         return static_cast<std::int64_t>(number);
     }
@@ -139,9 +141,9 @@ const Kind& kind_of(const std::string& type, const std::string& where) {
                                       kind<std::int32_t>("<i4"),  kind<std::int16_t>("<i2"),  kind<std::int8_t>("|i1"),
                                       kind<std::uint64_t>("<u8"), kind<std::uint32_t>("<u4"), kind<std::uint16_t>("<u2"),
                                       kind<std::uint8_t>("|u1"),  kind<std::uint8_t>("|b1")};
-    for (const Kind& one : kinds)
-        if (one.name == type) return one;
-    fail_input(where, "holds numbers of the kind '" + type + "'", remedy);
+    for (const Kind& candidate : kinds)
+        if (candidate.name == type) return candidate;
+    fail_input(where, fmt::format("contains numbers of the unsupported type '{}'", type), remedy);
 }
 
 /// Copies the elements to row-major order, from either order in the file.
@@ -175,16 +177,16 @@ std::string write_array(const Path& file, std::string_view type, std::string_vie
     }
     if (shape.empty() || shape.size() > 2 || product != count) throw std::logic_error("write_npy: the shape does not fit");
     text += shape.size() == 1 ? ",)" : ")";
-    std::string head = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': " + text + ", }";
+    std::string head = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, text);
     head.resize((head.size() + 11 + 63) / 64 * 64 - 11, ' ');  // the data start at a multiple of 64
     head += '\n';
     const std::string start = std::string(magic) + std::string("\x01\x00", 2) + static_cast<char>(head.size() & 255) +
                               static_cast<char>(head.size() >> 8) + head;
     Sha256 hash;
     AtomicFile output(file);
-    for (const std::string_view part : {std::string_view(start), data}) {
-        hash.update(part.data(), part.size());
-        output.write(part);
+    for (const std::string_view block : {std::string_view(start), data}) {
+        hash.update(block.data(), block.size());
+        output.write(block);
     }
     output.commit();
     return hash.hexadecimal();
@@ -204,39 +206,38 @@ void NpyView::copy_to(double* values) const {
         if (!data.empty()) std::memcpy(values, data.data(), data.size());
         return;
     }
-    const Kind& one = kind_of(type, where);
-    copy(*this, values, one.size, one.real);
+    const Kind& number_kind = kind_of(type, where);
+    copy(*this, values, number_kind.size, number_kind.real);
 }
 
 void NpyView::copy_to(std::int64_t* values) const {
-    const Kind& one = kind_of(type, where);
-    copy(*this, values, one.size, [&](const char* place) { return one.integer(place, where); });
+    const Kind& number_kind = kind_of(type, where);
+    copy(*this, values, number_kind.size, [&](const char* element) { return number_kind.integer(element, where); });
 }
 
 NpyView view_npy(std::string_view bytes, const std::string& where) {
     const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])); };
-    if (bytes.size() < 12 || bytes.substr(0, magic.size()) != magic) fail_input(where, "is no NumPy array", remedy);
-    if (byte(6) < 1 || byte(6) > 3)
-        fail_input(where, "is a NumPy array of the unknown version " + std::to_string(byte(6)), remedy);
-    const bool wide = byte(6) > 1;
-    const std::size_t begin = wide ? 12 : 10;
-    const std::size_t length = byte(8) | byte(9) << 8 | (wide ? byte(10) << 16 | byte(11) << 24 : 0);
-    if (length > bytes.size() - begin) fail_input(where, "ends within the head of its NumPy array", remedy);
+    if (bytes.size() < 12 || bytes.substr(0, magic.size()) != magic) fail_input(where, "is not a NumPy array", remedy);
+    if (byte(6) < 1 || byte(6) > 3) fail_input(where, "is a NumPy array of unknown version " + std::to_string(byte(6)), remedy);
+    const bool long_header = byte(6) > 1;
+    const std::size_t begin = long_header ? 12 : 10;
+    const std::size_t length = byte(8) | byte(9) << 8 | (long_header ? byte(10) << 16 | byte(11) << 24 : 0);
+    if (length > bytes.size() - begin) fail_input(where, "ends within the header of its NumPy array", remedy);
     NpyView view;
     view.where = where;
-    HeadReader(bytes.substr(begin, length), where).read(view);
+    HeaderReader(bytes.substr(begin, length), where).read(view);
     view.data = bytes.substr(begin + length);
     if (view.shape.empty() || view.shape.size() > 2)
-        fail_input(where, "holds an array of " + std::to_string(view.shape.size()) + " dimensions", remedy);
+        fail_input(where, fmt::format("contains an array of {} dimensions", view.shape.size()), remedy);
     const std::size_t size = kind_of(view.type, where).size;
     const std::size_t maximum = view.data.size() / size;
     const bool overflows = view.rows() != 0 && view.columns() > maximum / view.rows();
     if (overflows || view.rows() > std::max<std::size_t>(maximum, 1) || view.count() * size != view.data.size()) {
         std::string text;
-        for (const std::size_t one : view.shape) text += (text.empty() ? "" : " x ") + std::to_string(one);
+        for (const std::size_t extent : view.shape) text += (text.empty() ? "" : " x ") + std::to_string(extent);
         fail_input(where,
-                   "the shape of the array (" + text + " numbers) does not fit the size of the file (" +
-                       std::to_string(view.data.size()) + " bytes of them)",
+                   fmt::format("the shape of the array ({} numbers) does not match the size of its data ({} bytes)", text,
+                               view.data.size()),
                    remedy);
     }
     return view;

@@ -5,6 +5,8 @@
 #include "ostraka/core/text.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <concepts>
@@ -19,38 +21,38 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 
-std::string word_of(bool value) { return value ? "true" : "false"; }
-std::string word_of(const std::string& value) { return value; }
+std::string value_text(bool value) { return value ? "true" : "false"; }
+std::string value_text(const std::string& value) { return value; }
 template <class Number>
-std::string word_of(Number value) {
+std::string value_text(Number value) {
     if constexpr (std::floating_point<Number>) return digits(value, 17);
     else return std::to_string(value);
 }
 
 [[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& where = {}) {
-    const std::string near = value.size() > 64 ? std::string() : nearest_name(value, option.names());
-    throw Error(ErrorKind::usage, where, "option " + option.name + " is '" + printable(value, 60) + "'",
-                (near.empty() ? "use " : "did you mean '" + near + "'? use ") + option.allowed());
+    const std::string suggestion = value.size() > 64 ? std::string() : nearest_name(value, option.names());
+    throw Error(ErrorKind::usage, where, fmt::format("option {} is '{}'", option.name, printable(value, 60)),
+                (suggestion.empty() ? "use " : fmt::format("did you mean '{}'? use ", suggestion)) + option.allowed());
 }
 
 /// Reports common misspellings of numbers: "2cm", "50%", "0,5". `given`: the word that contains `word`.
 [[noreturn]] void refuse_number(const Option& option, const std::string& word, const std::string& given) {
     const OptionType type = option.type();
     std::string amount = word.substr(0, word.find_last_of("0123456789.") + 1);
-    const std::string behind(trimmed(std::string_view(word).substr(amount.size())));
+    const std::string suffix(trimmed(std::string_view(word).substr(amount.size())));
     const std::size_t comma = amount.find(',');
     const bool decimal = comma != std::string::npos && comma == amount.rfind(',');
     if (decimal) amount[comma] = '.';
     const auto value = number_of(amount);
-    if (!value || type == OptionType::integer || type == OptionType::integers || (behind.empty() && !decimal))
+    if (!value || type == OptionType::integer || type == OptionType::integers || (suffix.empty() && !decimal))
         refuse(option, given);
     const std::string unit = option.unit.empty()
                                  ? "a length is in the unit of the mesh's coordinates, which --unit names where there is one"
                                  : option.unit;
-    throw Error(ErrorKind::usage, "", "option " + option.name + " is '" + printable(given, 60) + "'",
-                behind.empty()  ? "write " + amount + ", with a decimal point"
-                : behind == "%" ? "write " + digits(*value / 100, 6) + ", a share, for " + amount + " %"
-                                : "write the number alone: " + amount + " (" + unit + ")");
+    throw Error(ErrorKind::usage, "", fmt::format("option {} is '{}'", option.name, printable(given, 60)),
+                suffix.empty()  ? fmt::format("write {}, with a decimal point", amount)
+                : suffix == "%" ? fmt::format("write {}, a share, for {} %", digits(*value / 100, 6), amount)
+                                : fmt::format("write the number alone: {} ({})", amount, unit));
 }
 
 /// `given`: the word that contains `word`, shown in errors.
@@ -59,8 +61,8 @@ Number parse(const Option& option, const std::string& word, const std::string& g
     Number value{};
     const char *begin = word.data(), *const end = begin + word.size();
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') ++begin;
-    const auto [rest, code] = std::from_chars(begin, end, value);
-    if (word.empty() || code != std::errc() || rest != end) refuse_number(option, word, given);
+    const auto [stop, code] = std::from_chars(begin, end, value);
+    if (word.empty() || code != std::errc() || stop != end) refuse_number(option, word, given);
     return value;
 }
 template <>
@@ -74,9 +76,9 @@ std::string parse<std::string>(const Option&, const std::string& word, const std
     return word;
 }
 
-std::vector<std::string> split(const std::string& list) {
+std::vector<std::string> split(const std::string& text) {
     std::vector<std::string> words(1);
-    for (const char c : list)
+    for (const char c : text)
         if (c == ',') words.emplace_back();
         else words.back() += c;
     return words;
@@ -84,7 +86,7 @@ std::vector<std::string> split(const std::string& list) {
 
 const std::vector<std::string>& choices_of(const Option& option) {
     const auto* choices = std::get_if<Choices>(&option.rule);
-    if (choices == nullptr) throw std::logic_error("option " + option.name + " has no choices");
+    if (choices == nullptr) throw std::logic_error(fmt::format("option {} has no choices", option.name));
     return choices->names;
 }
 
@@ -114,24 +116,26 @@ bool Option::is_list() const {
 }
 
 bool Option::empty() const {
-    return std::visit(
-        Overloaded{[](std::string* text) { return text->empty(); }, []<class T>(std::vector<T>* list) { return list->empty(); },
-                   []<class T>(std::optional<T>* maybe) { return !maybe->has_value(); }, [](const auto&) { return false; }},
-        value.place);
+    return std::visit(Overloaded{[](std::string* text) { return text->empty(); },
+                                 []<class T>(std::vector<T>* values) { return values->empty(); },
+                                 []<class T>(std::optional<T>* optional_value) { return !optional_value->has_value(); },
+                                 [](const auto&) { return false; }},
+                      value.place);
 }
 
 std::vector<std::string> Option::texts() const {
     return std::visit(
-        Overloaded{[&](const EnumValue& named) { return std::vector{choices_of(*this).at(named.get(named.value))}; },
-                   []<class T>(std::vector<T>* list) {
-                       std::vector<std::string> words;
-                       for (const T& one : *list) words.push_back(word_of(one));
-                       return words;
-                   },
-                   []<class T>(std::optional<T>* maybe) {
-                       return maybe->has_value() ? std::vector{word_of(**maybe)} : std::vector<std::string>();
-                   },
-                   [](auto* one) { return std::vector{word_of(*one)}; }},
+        Overloaded{
+            [&](const EnumValue& enum_value) { return std::vector{choices_of(*this).at(enum_value.get(enum_value.value))}; },
+            []<class T>(std::vector<T>* values) {
+                std::vector<std::string> words;
+                for (const T& element : *values) words.push_back(value_text(element));
+                return words;
+            },
+            []<class T>(std::optional<T>* optional_value) {
+                return optional_value->has_value() ? std::vector{value_text(**optional_value)} : std::vector<std::string>();
+            },
+            [](auto* element) { return std::vector{value_text(*element)}; }},
         value.place);
 }
 
@@ -141,60 +145,61 @@ std::string Option::text() const {
 
 void Option::set(const std::vector<std::string>& words) {
     if (!is_list() && words.size() != 1)
-        throw Error(ErrorKind::usage, "", "option " + name + " is given " + std::to_string(words.size()) + " times",
-                    "give it once");
-    const auto numbers = [&]<class T>(std::vector<T>* list) {
-        list->clear();
+        throw Error(ErrorKind::usage, "", fmt::format("option {} is given {} times", name, words.size()), "give it once");
+    const auto numbers = [&]<class T>(std::vector<T>* values) {
+        values->clear();
         for (const std::string& word : words)
-            for (const std::string& one : split(word)) list->push_back(parse<T>(*this, one, word));
+            for (const std::string& part : split(word)) values->push_back(parse<T>(*this, part, word));
     };
-    const auto texts_of = [&](std::vector<std::string>* list) {
-        list->clear();
+    const auto texts_of = [&](std::vector<std::string>* values) {
+        values->clear();
         for (const std::string& word : words)
             for (std::string& part : std::holds_alternative<Choices>(rule) ? split(word) : std::vector{word})
-                list->push_back(std::move(part));
+                values->push_back(std::move(part));
     };
-    std::visit(Overloaded{[&](std::vector<std::string>* list) { texts_of(list); },
-                          [&](std::vector<double>* list) { numbers(list); }, [&](std::vector<int>* list) { numbers(list); },
-                          [&]<class T>(std::optional<T>* maybe) { *maybe = parse<T>(*this, words.front(), words.front()); },
-                          [&](const EnumValue& named) {
-                              const auto& names = choices_of(*this);
-                              const auto found = std::find(names.begin(), names.end(), words.front());
-                              if (found == names.end()) refuse(*this, words.front());
-                              named.set(named.value, static_cast<std::size_t>(found - names.begin()));
-                          },
-                          [&]<class T>(T* one) { *one = parse<T>(*this, words.front(), words.front()); }},
-               value.place);
+    std::visit(
+        Overloaded{
+            [&](std::vector<std::string>* values) { texts_of(values); }, [&](std::vector<double>* values) { numbers(values); },
+            [&](std::vector<int>* values) { numbers(values); },
+            [&]<class T>(std::optional<T>* optional_value) { *optional_value = parse<T>(*this, words.front(), words.front()); },
+            [&](const EnumValue& enum_value) {
+                const auto& names = choices_of(*this);
+                const auto match = std::find(names.begin(), names.end(), words.front());
+                if (match == names.end()) refuse(*this, words.front());
+                enum_value.set(enum_value.value, static_cast<std::size_t>(match - names.begin()));
+            },
+            [&]<class T>(T* scalar) { *scalar = parse<T>(*this, words.front(), words.front()); }},
+        value.place);
     given = true;
     check();
 }
 
-void Option::set(bool fresh) {
-    if (auto* place = std::get_if<bool*>(&value.place)) **place = fresh;
-    else if (auto* maybe = std::get_if<std::optional<bool>*>(&value.place)) **maybe = fresh;
-    else refuse(*this, word_of(fresh));
+void Option::set(bool new_value) {
+    if (auto* flag = std::get_if<bool*>(&value.place)) **flag = new_value;
+    else if (auto* optional_flag = std::get_if<std::optional<bool>*>(&value.place)) **optional_flag = new_value;
+    else refuse(*this, value_text(new_value));
     given = true;
 }
 
-void Option::set(std::int64_t fresh) {
+void Option::set(std::int64_t new_value) {
     if (type() == OptionType::boolean || type() == OptionType::text || type() == OptionType::choice)
-        refuse(*this, word_of(fresh));
-    set(std::vector{word_of(fresh)});
+        refuse(*this, value_text(new_value));
+    set(std::vector{value_text(new_value)});
 }
 
-void Option::set(double fresh) {
-    if (type() != OptionType::number && type() != OptionType::numbers) refuse(*this, word_of(fresh));
-    set(std::vector{word_of(fresh)});
+void Option::set(double new_value) {
+    if (type() != OptionType::number && type() != OptionType::numbers) refuse(*this, value_text(new_value));
+    set(std::vector{value_text(new_value)});
 }
 
 void Option::set(const std::vector<double>& values) {
     std::vector<std::string> words;
-    for (const double one : values) words.push_back(word_of(one));
+    for (const double number : values) words.push_back(value_text(number));
     if (type() != OptionType::numbers && type() != OptionType::integers) {
-        const std::string list = joined(words, ",");
+        const std::string joined_text = joined(words, ",");
         // Options such as directions: three numbers, or a word.
-        if (type() != OptionType::text) refuse(*this, list);
-        set(std::vector{list});
+        if (type() != OptionType::text) refuse(*this, joined_text);
+        set(std::vector{joined_text});
         return;
     }
     set(words);
@@ -211,35 +216,35 @@ std::string Option::allowed() const {
     if (const auto* words = std::get_if<Words>(&rule))
         return joined(words->names) + (words->others.empty() ? "" : " or ") + words->others;
     const OptionType kind = type();
-    const bool whole = kind == OptionType::integer || kind == OptionType::integers;
-    std::string what = kind == OptionType::boolean                                 ? "true or false"
-                       : whole                                                     ? "a whole number"
-                       : kind == OptionType::number || kind == OptionType::numbers ? "a number"
-                                                                                   : "a text";
+    const bool integral = kind == OptionType::integer || kind == OptionType::integers;
+    std::string description = kind == OptionType::boolean                                 ? "true or false"
+                              : integral                                                  ? "a whole number"
+                              : kind == OptionType::number || kind == OptionType::numbers ? "a number"
+                                                                                          : "a text";
     if (const auto* range = std::get_if<Range>(&rule))
-        what = "a value from " + digits(range->min, 6) + " to " + digits(range->max, 6);
-    if (is_list() && kind != OptionType::texts) what += ", with commas between several";
-    return what + (unit.empty() ? "" : " (" + unit + ")");
+        description = fmt::format("a value from {} to {}", digits(range->min, 6), digits(range->max, 6));
+    if (is_list() && kind != OptionType::texts) description += ", with commas between several";
+    return description + (unit.empty() ? "" : fmt::format(" ({})", unit));
 }
 
 void Option::check(const std::string& where) const {
     if (const auto* range = std::get_if<Range>(&rule)) {
-        const auto look = [&]<class T>(T one) {
+        const auto check_range = [&]<class T>(T element) {
             if constexpr (std::is_arithmetic_v<T> && !std::same_as<T, bool>) {
-                const auto number = static_cast<double>(one);
+                const auto number = static_cast<double>(element);
                 if (number >= range->min && number <= range->max) return;
-                const std::string word = std::floating_point<T> ? digits(number) : word_of(one);
-                throw Error(ErrorKind::usage, where, "option " + name + " is " + word, "use " + allowed());
+                const std::string word = std::floating_point<T> ? digits(number) : value_text(element);
+                throw Error(ErrorKind::usage, where, fmt::format("option {} is {}", name, word), "use " + allowed());
             }
         };
         std::visit(Overloaded{[](const EnumValue&) {},
-                              [&]<class T>(std::vector<T>* list) {
-                                  for (const T& one : *list) look(one);
+                              [&]<class T>(std::vector<T>* values) {
+                                  for (const T& element : *values) check_range(element);
                               },
-                              [&]<class T>(std::optional<T>* maybe) {
-                                  if (*maybe) look(**maybe);
+                              [&]<class T>(std::optional<T>* optional_value) {
+                                  if (*optional_value) check_range(**optional_value);
                               },
-                              [&](auto* one) { look(*one); }},
+                              [&](auto* element) { check_range(*element); }},
                    value.place);
     }
     if (std::holds_alternative<Choices>(rule) && !std::holds_alternative<EnumValue>(value.place))
@@ -257,15 +262,15 @@ OptionList::OptionList(OptionList&&) noexcept = default;
 OptionList& OptionList::operator=(OptionList&&) noexcept = default;
 
 Option& OptionList::operator()(std::string name, OptionValue value, std::string help, OptionRule rule, std::string unit) {
-    if (find(name) != nullptr) throw std::logic_error("option " + name + " is declared twice");
+    if (find(name) != nullptr) throw std::logic_error(fmt::format("option {} is declared twice", name));
     Option option{std::move(name), value, std::move(help), std::move(rule), std::move(unit), group_};
     option.initial = option.text();
     return options_.emplace_back(std::move(option));
 }
 
 Option* OptionList::find(const std::string& name) {
-    const auto found = std::find_if(options_.begin(), options_.end(), [&](const Option& option) { return option.name == name; });
-    return found == options_.end() ? nullptr : &*found;
+    const auto match = std::find_if(options_.begin(), options_.end(), [&](const Option& option) { return option.name == name; });
+    return match == options_.end() ? nullptr : &*match;
 }
 
 void OptionList::check(const std::string& where) const {
@@ -273,10 +278,10 @@ void OptionList::check(const std::string& where) const {
 }
 
 std::vector<std::pair<std::string, std::string>> OptionList::values() const {
-    std::vector<std::pair<std::string, std::string>> list;
+    std::vector<std::pair<std::string, std::string>> result;
     for (const Option& option : options_)
-        if (option.affects_result) list.emplace_back(option.name, option.text());
-    return list;
+        if (option.affects_result) result.emplace_back(option.name, option.text());
+    return result;
 }
 
 }  // namespace ostraka

@@ -4,6 +4,8 @@
 #include "ostraka/core/safe_path.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -15,24 +17,24 @@ namespace {
 constexpr std::size_t sum_length = 64;
 
 /// Whether the name is a single path component without line breaks.
-bool plain(const std::string& name) {
+bool is_plain_name(const std::string& name) {
     return !name.empty() && name != "." && name != ".." && name.find_first_of(std::string("/\\\n\0", 4)) == std::string::npos;
 }
 
 /// Reads lines "SHA-256, two blanks, name"; other lines are ignored.
-std::map<std::string, std::string> read_list(const Path& list) {
+std::map<std::string, std::string> read_list(const Path& list_file) {
     std::map<std::string, std::string> entries;
     std::error_code code;
-    if (!fs::is_regular_file(list, code)) return entries;
+    if (!fs::is_regular_file(list_file, code)) return entries;
     std::string text;
     try {
-        text = read_file(list);
+        text = read_file(list_file);
     } catch (const Error&) {
         return entries;
     }
-    for (std::size_t at = 0; at < text.size();) {
-        const std::string line(line_at(text, at));
-        if (line.size() > sum_length + 2 && line.compare(sum_length, 2, "  ") == 0 && plain(line.substr(sum_length + 2)))
+    for (std::size_t position = 0; position < text.size();) {
+        const std::string line(line_at(text, position));
+        if (line.size() > sum_length + 2 && line.compare(sum_length, 2, "  ") == 0 && is_plain_name(line.substr(sum_length + 2)))
             entries[line.substr(sum_length + 2)] = line.substr(0, sum_length);
     }
     return entries;
@@ -50,45 +52,45 @@ bool is_unchanged(const Path& file, const std::string& sum) {
 
 }  // namespace
 
-OutputSweep::OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& waiting,
-                         const std::vector<Path>& kept)
-    : folder_(folder), list_(folder / ("." + owner + ".outputs")) {
+OutputSweep::OutputSweep(const Path& folder, const std::string& owner, const std::vector<std::pair<Path, Path>>& pending,
+                         const std::vector<Path>& kept_inputs)
+    : folder_(folder), list_(folder / (fmt::format(".{}.outputs", owner))) {
     std::error_code code;
-    for (const auto& [temporary, file] : waiting) {
+    for (const auto& [temporary, file] : pending) {
         const Path parent = file.has_parent_path() ? file.parent_path() : Path(".");
         const std::string name = file.filename().string();
-        if (plain(name) && fs::equivalent(parent, folder_, code)) now_[name] = sha256_of_file(temporary);
+        if (is_plain_name(name) && fs::equivalent(parent, folder_, code)) written_[name] = sha256_of_file(temporary);
     }
     for (const auto& [name, sum] : read_list(list_)) {
         const Path file = folder_ / name;
-        const bool stays =
-            std::any_of(kept.begin(), kept.end(), [&](const Path& one) { return fs::equivalent(one, file, code); });
-        if (!now_.contains(name) && !stays && is_unchanged(file, sum)) rest_[name] = sum;
+        const bool is_kept = std::any_of(kept_inputs.begin(), kept_inputs.end(),
+                                         [&](const Path& kept_file) { return fs::equivalent(kept_file, file, code); });
+        if (!written_.contains(name) && !is_kept && is_unchanged(file, sum)) obsolete_[name] = sum;
     }
 }
 
 std::string OutputSweep::text() const {
     std::string text;
-    for (const auto* list : {&now_, &rest_})
-        for (const auto& [name, sum] : *list) text += sum + "  " + name + "\n";
+    for (const auto* entries : {&written_, &obsolete_})
+        for (const auto& [name, sum] : *entries) text += fmt::format("{}  {}\n", sum, name);
     return text;
 }
 
 void OutputSweep::write_list() const {
     std::error_code code;
-    if (now_.empty() && !fs::exists(list_, code)) return;
+    if (written_.empty() && !fs::exists(list_, code)) return;
     require_writable_inside(list_, folder_);
     write_file(list_, text());
 }
 
-void OutputSweep::remove_rest() {
-    if (rest_.empty()) return;
+void OutputSweep::remove_obsolete() {
+    if (obsolete_.empty()) return;
     std::error_code code;
-    for (const auto& [name, sum] : rest_) fs::remove(folder_ / name, code);
-    rest_.clear();
-    OutputTransaction own;
+    for (const auto& [name, sum] : obsolete_) fs::remove(folder_ / name, code);
+    obsolete_.clear();
+    OutputTransaction transaction;
     write_file(list_, text());
-    own.commit();
+    transaction.commit();
 }
 
 }  // namespace ostraka

@@ -1,6 +1,8 @@
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/json_build.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -11,9 +13,10 @@ JsonValue Provenance::to_json(JsonAllocator& allocator) const {
     // An option that was given several times becomes one member, so that the names in the object are unique.
     std::vector<std::pair<std::string, std::string>> members;
     for (const auto& [name, value] : options) {
-        const auto known = std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == name; });
-        if (known == members.end()) members.emplace_back(name, value);
-        else known->second += "; " + value;
+        const auto existing =
+            std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == name; });
+        if (existing == members.end()) members.emplace_back(name, value);
+        else existing->second += "; " + value;
     }
     JsonValue option_values(rapidjson::kObjectType);
     for (const auto& [name, value] : members) add_member(option_values, name, value, allocator);
@@ -23,9 +26,9 @@ JsonValue Provenance::to_json(JsonAllocator& allocator) const {
 }
 
 std::string Provenance::to_line() const {
-    std::string line = "ostraka " + version() + " " + command;
-    for (const auto& [name, value] : options) line += " --" + name + "=" + value;
-    for (const auto& [name, hash] : inputs) line += "; " + name + " sha256:" + hash;
+    std::string line = fmt::format("ostraka {} {}", version(), command);
+    for (const auto& [name, value] : options) line += fmt::format(" --{}={}", name, value);
+    for (const auto& [name, hash] : inputs) line += fmt::format("; {} sha256:{}", name, hash);
     for (char& c : line)
         if (static_cast<unsigned char>(c) < 32) c = ' ';
     return line;

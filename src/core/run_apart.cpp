@@ -15,7 +15,7 @@ namespace ostraka {
 namespace {
 
 /// State shared by the two threads.
-struct Apart {
+struct SharedState {
     std::mutex mutex;
     std::condition_variable changed;
     bool done = false;
@@ -43,8 +43,8 @@ private:
 };
 
 Abandoned& abandoned() {
-    static Abandoned all;
-    return all;
+    static Abandoned instance;
+    return instance;
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ void run_apart(std::function<void()> work) {
     if (watch == nullptr) return work();
     check_cancelled();
     abandoned().add(1);
-    const auto shared = std::make_shared<Apart>();
+    const auto shared = std::make_shared<SharedState>();
     shared->watch.memory_limit = watch->memory_limit;
     const int threads = omp_get_max_threads();
     std::thread thread([shared, threads, work = std::move(work)]() mutable {

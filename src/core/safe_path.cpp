@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -12,63 +14,64 @@ namespace {
 thread_local const WriteScope* scope_of_thread = nullptr;
 
 /// The target of the first dangling link in a resolved path; the path itself if it has none.
-Path behind_dangling_link(const Path& place) {
+Path target_of_dangling_link(const Path& canonical) {
     std::error_code code;
-    Path begun;
-    for (auto part = place.begin(); part != place.end(); ++part) {
-        begun /= *part;
-        if (!std::filesystem::is_symlink(begun, code)) continue;
-        Path target = begun.parent_path() / std::filesystem::read_symlink(begun, code);
-        while (++part != place.end()) target /= *part;
+    Path prefix;
+    for (auto component = canonical.begin(); component != canonical.end(); ++component) {
+        prefix /= *component;
+        if (!std::filesystem::is_symlink(prefix, code)) continue;
+        Path target = prefix.parent_path() / std::filesystem::read_symlink(prefix, code);
+        while (++component != canonical.end()) target /= *component;
         return target;
     }
-    return place;
+    return canonical;
 }
 
 }  // namespace
 
 Path resolved(const Path& path) {
-    constexpr int most_links = 40;
+    constexpr int max_links = 40;
     std::error_code code;
-    Path whole = std::filesystem::absolute(path, code);
-    for (int links = 0; !code && links < most_links; ++links) {
-        const Path place = std::filesystem::weakly_canonical(whole, code);
+    Path current = std::filesystem::absolute(path, code);
+    for (int links = 0; !code && links < max_links; ++links) {
+        const Path canonical = std::filesystem::weakly_canonical(current, code);
         if (code) return {};
-        whole = behind_dangling_link(place);
-        if (whole == place) return place.lexically_normal();
+        current = target_of_dangling_link(canonical);
+        if (current == canonical) return canonical.lexically_normal();
     }
     return {};
 }
 
-void require_file_name(const std::string& name, const std::string& where, const std::string& at) {
+void require_file_name(const std::string& name, const std::string& where, const std::string& location) {
     if (name.find('\0') != std::string::npos)
-        fail_input(where, "at " + at + ": the name holds a zero byte", "remove it from the name");
+        fail_input(where, fmt::format("at {}: the name contains a zero byte", location), "remove it from the name");
 }
 
-void require_plain_name(const std::string& name, const std::string& where, const std::string& at) {
+void require_plain_name(const std::string& name, const std::string& where, const std::string& location) {
     const bool is_plain = !name.empty() && name != "." && name != ".." && std::none_of(name.begin(), name.end(), [](char c) {
         return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 32 || c == 127;
     });
     if (!is_plain)
-        fail_input(where, "at " + at + ": '" + printable(name, 100) + "' is no name of a file",
+        fail_input(where, fmt::format("at {}: '{}' is not a file name", location, printable(name, 100)),
                    "give a name without folders and control characters");
 }
 
-Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& at,
-                 const std::string& whose, const std::string& remedy) {
-    require_file_name(name, where, at);
+Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& location,
+                 const std::string& folder_description, const std::string& remedy) {
+    require_file_name(name, where, location);
     const Path path(name);
-    if (path.is_absolute()) fail_input(where, "at " + at + ": '" + printable(name, 200) + "' is no relative name", remedy);
+    if (path.is_absolute())
+        fail_input(where, fmt::format("at {}: '{}' is not a relative path", location, printable(name, 200)), remedy);
     const Path home = folder.empty() ? Path(".") : folder;
     if (name.empty() || *path.lexically_normal().begin() == ".." || !is_inside(home / path, home))
-        fail_input(where, "at " + at + ": '" + printable(name, 200) + "' leads out of " + whose, remedy);
+        fail_input(where, fmt::format("at {}: '{}' leads out of {}", location, printable(name, 200), folder_description), remedy);
     return folder / path;
 }
 
 bool is_inside(const Path& path, const Path& folder) {
-    const Path place = resolved(path), home = resolved(folder.empty() ? Path(".") : folder);
-    if (place.empty() || home.empty()) return false;
-    const Path relative = place.lexically_relative(home);
+    const Path canonical = resolved(path), home = resolved(folder.empty() ? Path(".") : folder);
+    if (canonical.empty() || home.empty()) return false;
+    const Path relative = canonical.lexically_relative(home);
     return !relative.empty() && *relative.begin() != "..";
 }
 
@@ -78,8 +81,9 @@ bool is_inside_any(const Path& path, const std::vector<Path>& folders) {
 
 void require_writable_inside(const Path& file, const Path& folder) {
     if (is_memory(file)) return;
-    const std::string remedy = "remove it, or name another folder";
-    if (!is_inside(file, folder)) fail_input(file.string(), "is a link that leads out of '" + folder.string() + "'", remedy);
+    const std::string remedy = "remove it, or choose another folder";
+    if (!is_inside(file, folder))
+        fail_input(file.string(), fmt::format("is a link that leads out of '{}'", folder.string()), remedy);
     std::error_code code;
     const auto type = std::filesystem::status(file, code).type();
     using Type = std::filesystem::file_type;

@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 Share share_from_text(const std::string& text) {
@@ -11,7 +13,7 @@ Share share_from_text(const std::string& text) {
     const auto k = whole_of(text.substr(0, slash));
     const auto n = slash == std::string::npos ? std::nullopt : whole_of(text.substr(slash + 1));
     if (!k || !n || *k < 1 || *n < *k)
-        fail_usage("--shard is '" + printable(text, 60) + "'", "give K/N with K from 1 to N, such as 3/64");
+        fail_usage(fmt::format("--shard is '{}'", printable(text, 60)), "give K/N with K from 1 to N, such as 3/64");
     return {static_cast<std::size_t>(*k - 1), static_cast<std::size_t>(*n)};
 }
 

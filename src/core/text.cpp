@@ -10,10 +10,10 @@
 
 namespace ostraka {
 
-Character character_at(std::string_view text, std::size_t at) {
-    const std::size_t length = utf8_length(text, at);
+Character character_at(std::string_view text, std::size_t position) {
+    const std::size_t length = utf8_length(text, position);
     if (length == 0) return {0xFFFD, 1};
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[at + k]); };
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[position + k]); };
     if (length == 1) return {byte(0), 1};
     char32_t code = byte(0) & (0xFFU >> (length + 1));
     for (std::size_t k = 1; k < length; ++k) code = code << 6 | (byte(k) & 0x3FU);
@@ -21,14 +21,14 @@ Character character_at(std::string_view text, std::size_t at) {
 }
 
 std::u32string characters(std::string_view text) {
-    std::u32string list;
-    for (std::size_t at = 0; at < text.size();) {
-        const Character here = character_at(text, at);
-        const bool odd = here.code == 0xFFFD && here.length == 1;
-        list += odd ? not_utf8 + static_cast<unsigned char>(text[at]) : here.code;
-        at += here.length;
+    std::u32string result;
+    for (std::size_t position = 0; position < text.size();) {
+        const Character character = character_at(text, position);
+        const bool invalid = character.code == 0xFFFD && character.length == 1;
+        result += invalid ? not_utf8 + static_cast<unsigned char>(text[position]) : character.code;
+        position += character.length;
     }
-    return list;
+    return result;
 }
 
 bool is_control(char32_t code) {
@@ -36,13 +36,13 @@ bool is_control(char32_t code) {
            (code >= 0x2066 && code <= 0x2069);
 }
 
-std::string without_controls(std::string_view text, std::string_view instead) {
+std::string without_controls(std::string_view text, std::string_view replacement) {
     std::string result;
     result.reserve(text.size());
-    for (std::size_t at = 0; at < text.size();) {
-        const Character here = character_at(text, at);
-        result += is_control(here.code) ? instead : text.substr(at, here.length);
-        at += here.length;
+    for (std::size_t position = 0; position < text.size();) {
+        const Character character = character_at(text, position);
+        result += is_control(character.code) ? replacement : text.substr(position, character.length);
+        position += character.length;
     }
     return result;
 }
@@ -84,9 +84,9 @@ std::string lower_case(std::string_view text) {
     return result;
 }
 
-std::string_view line_at(std::string_view text, std::size_t& at) {
-    const std::size_t begin = at, end = std::min(text.find('\n', at), text.size());
-    at = end + 1;
+std::string_view line_at(std::string_view text, std::size_t& position) {
+    const std::size_t begin = position, end = std::min(text.find('\n', position), text.size());
+    position = end + 1;
     return text.substr(begin, end - begin);
 }
 

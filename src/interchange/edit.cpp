@@ -13,6 +13,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <numeric>
 #include <set>
@@ -24,7 +26,9 @@ namespace {
 using namespace interchange;
 using std::to_string;
 
-std::string in_words(const EntryName& name) { return name.id ? to_string(*name.id) : "'" + interchange::words(name.text) + "'"; }
+std::string quoted_name(const EntryName& name) {
+    return name.id ? to_string(*name.id) : fmt::format("'{}'", interchange::as_text(name.text));
+}
 
 EntryName name_of(const JsonValue& value) {
     EntryName name;
@@ -36,11 +40,11 @@ EntryName name_of(const JsonValue& value) {
 /// The edge-connected patches of a region, in the order of their smallest face.
 std::vector<std::vector<Index>> patches(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<bool> selected = face_flags(mesh, faces);
-    std::vector<bool> seen(selected.size(), false);
+    std::vector<bool> visited(selected.size(), false);
     std::vector<std::vector<Index>> result;
     for (const Index start : faces) {
-        if (seen[start]) continue;
-        const std::vector<Face> patch = flood_faces(mesh, Face(start), seen, [&](Halfedge h) {
+        if (visited[start]) continue;
+        const std::vector<Face> patch = flood_faces(mesh, Face(start), visited, [&](Halfedge h) {
             return !mesh.is_border(mesh.opposite(h)) && selected[mesh.face(mesh.opposite(h))];
         });
         std::vector<Index>& indices = result.emplace_back(patch.begin(), patch.end());
@@ -58,11 +62,11 @@ int free_attribute_id(const Annotation& annotation) {
 }
 
 /// A unit derived from a unit of length ("mm^2", "1/mm"), converted from `old` to `fresh`.
-std::string unit_after(const std::string& unit, const std::string& old, const std::string& fresh) {
-    if (old.empty() || fresh.empty()) return unit == old ? fresh : unit;
-    for (const std::string before : {"", "1/"})
-        if (unit == before + old || unit.starts_with(before + old + '^'))
-            return before + fresh + unit.substr((before + old).size());
+std::string unit_after(const std::string& unit, const std::string& old_unit, const std::string& new_unit) {
+    if (old_unit.empty() || new_unit.empty()) return unit == old_unit ? new_unit : unit;
+    for (const std::string prefix : {"", "1/"})
+        if (unit == prefix + old_unit || unit.starts_with(prefix + old_unit + '^'))
+            return prefix + new_unit + unit.substr((prefix + old_unit).size());
     return unit;
 }
 
@@ -72,7 +76,7 @@ public:
 
     std::vector<std::string> run(const std::vector<AnnotationEdit>& edits) {
         for (std::size_t i = 0; i < edits.size(); ++i) {
-            here_ = where_ + ", edit " + to_string(i + 1);
+            location_ = fmt::format("{}, edit {}", where_, i + 1);
             step(edits[i]);
         }
         check_annotations(set_, mesh_, where_);
@@ -81,80 +85,84 @@ public:
 
 private:
     void step(const AnnotationEdit& edit) {
-        std::size_t at = find(edit.annotation);
+        std::size_t index = find(edit.annotation);
         for (const EntryName& other : edit.merge) {
-            merge(at, find(other));
-            at = find({merged_id_, {}});
+            merge(index, find(other));
+            index = find({merged_id_, {}});
         }
         if (edit.duplicate) {
-            Annotation copy = set_.annotations[at];
+            Annotation copy = set_.annotations[index];
             copy.id = free_id(set_);
-            set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(++at), std::move(copy));
+            set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(++index), std::move(copy));
         }
-        Annotation& annotation = set_.annotations[at];
+        Annotation& annotation = set_.annotations[index];
         if (edit.tag) annotation.tag = *edit.tag;
         if (edit.note) annotation.note = *edit.note;
         if (edit.colour) annotation.colour = *edit.colour;
         if (edit.id && *edit.id != annotation.id) {
             if (set_.find(*edit.id) != nullptr)
-                fail_input(here_, "the id " + to_string(*edit.id) + " is taken",
-                           "choose another; free is " + to_string(free_id(set_)));
+                fail_input(location_, fmt::format("the id {} is in use", *edit.id),
+                           "choose another, such as " + to_string(free_id(set_)));
             if (!edit.duplicate)
-                notes_.push_back("annotation " + to_string(annotation.id) + " is " + to_string(*edit.id) +
-                                 " now: relations that name it by its old id must follow");
+                notes_.push_back(fmt::format("annotation {} now has the id {}: update the relations that use its old id",
+                                             annotation.id, *edit.id));
             annotation.id = *edit.id;
         }
         for (const std::string& value : edit.remove_information) remove_information(annotation, value);
-        for (const Information& one : edit.information) put(annotation, one);
+        for (const Information& entry : edit.information) put(annotation, entry);
         for (const EntryName& name : edit.remove_attributes) remove_attribute(annotation, name);
         for (const Attribute& attribute : edit.attributes) put(annotation, attribute);
         for (const auto& [name, text] : edit.texts) put(annotation, name, text);
-        if (edit.split) split(at);
-        if (edit.remove) set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at));
+        if (edit.split) split(index);
+        if (edit.remove) set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(index));
     }
 
     std::size_t find(const EntryName& name) const {
-        std::vector<std::size_t> found;
+        std::vector<std::size_t> matches;
         for (std::size_t i = 0; i < set_.annotations.size(); ++i)
-            if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) found.push_back(i);
-        if (found.empty()) {
+            if (name.id ? set_.annotations[i].id == *name.id : set_.annotations[i].tag == name.text) matches.push_back(i);
+        if (matches.empty()) {
             std::vector<std::string> tags;
             for (const Annotation& annotation : set_.annotations) tags.push_back(annotation.tag);
-            const std::string near = name.id || name.text.size() > 100 ? std::string() : nearest_name(name.text, tags);
-            fail_input(
-                here_, "there is no annotation " + in_words(name),
-                (near.empty() ? "" : "did you mean '" + printable(near, 60) + "'? ") + "'annotation list' shows ids and tags");
+            const std::string suggestion = name.id || name.text.size() > 100 ? std::string() : nearest_name(name.text, tags);
+            fail_input(location_, "there is no annotation " + quoted_name(name),
+                       (suggestion.empty() ? "" : fmt::format("did you mean '{}'? ", printable(suggestion, 60))) +
+                           "'annotation list' shows ids and tags");
         }
-        if (found.size() > 1)
-            fail_input(here_, to_string(found.size()) + " annotations have the tag " + in_words(name),
-                       "name the one meant by its id");
-        return found.front();
+        if (matches.size() > 1)
+            fail_input(location_, fmt::format("{} annotations have the tag {}", matches.size(), quoted_name(name)),
+                       "identify it by its id");
+        return matches.front();
     }
 
     void remove_attribute(Annotation& annotation, const EntryName& name) const {
         const auto matches = [&](const Attribute& a) { return name.id ? a.id == *name.id : a.name == name.text; };
         const auto count = std::count_if(annotation.attributes.begin(), annotation.attributes.end(), matches);
-        const std::string whose = "annotation " + to_string(annotation.id);
+        const std::string subject = "annotation " + to_string(annotation.id);
         if (count == 0)
-            fail_input(here_, whose + " has no attribute " + in_words(name), "'annotation list' shows its attributes");
-        if (count > 1) fail_input(here_, whose + " has several attributes " + in_words(name), "name the one meant by its id");
+            fail_input(location_, fmt::format("{} has no attribute {}", subject, quoted_name(name)),
+                       "'annotation list' shows its attributes");
+        if (count > 1)
+            fail_input(location_, fmt::format("{} has several attributes {}", subject, quoted_name(name)),
+                       "identify it by its id");
         annotation.attributes.erase(std::find_if(annotation.attributes.begin(), annotation.attributes.end(), matches));
     }
 
     void remove_information(Annotation& annotation, const std::string& value) const {
-        const auto gone = std::erase_if(annotation.information, [&](const Information& one) { return one.value == value; });
-        if (gone == 0)
-            fail_input(here_,
-                       "annotation " + to_string(annotation.id) + " has no information '" + interchange::words(value) + "'",
-                       "name it by its text, link or file");
+        const auto removed_count =
+            std::erase_if(annotation.information, [&](const Information& entry) { return entry.value == value; });
+        if (removed_count == 0)
+            fail_input(location_,
+                       fmt::format("annotation {} has no information '{}'", annotation.id, interchange::as_text(value)),
+                       "give its text, link or file");
     }
 
     static void put(Annotation& annotation, const Information& information) {
-        const auto same = std::find_if(annotation.information.begin(), annotation.information.end(), [&](const Information& one) {
-            return one.kind == information.kind && one.value == information.value;
-        });
-        if (same == annotation.information.end()) annotation.information.push_back(information);
-        else *same = information;
+        const auto existing = std::find_if(
+            annotation.information.begin(), annotation.information.end(),
+            [&](const Information& entry) { return entry.kind == information.kind && entry.value == information.value; });
+        if (existing == annotation.information.end()) annotation.information.push_back(information);
+        else *existing = information;
     }
 
     static void put(Annotation& annotation, const Attribute& attribute) {
@@ -177,51 +185,52 @@ private:
 
     /// Recomputes the values measured on the selection.
     void refresh(Annotation& annotation) {
-        AnnotationSet alone;
-        alone.unit = set_.unit;
-        alone.annotations.push_back(std::move(annotation));
-        const RefreshResult result = refresh_measures(mesh_, alone);
+        AnnotationSet single_set;
+        single_set.unit = set_.unit;
+        single_set.annotations.push_back(std::move(annotation));
+        const RefreshResult result = refresh_measures(mesh_, single_set);
         notes_.insert(notes_.end(), result.notes.begin(), result.notes.end());
-        annotation = std::move(alone.annotations.front());
+        annotation = std::move(single_set.annotations.front());
     }
 
-    void merge(std::size_t at, std::size_t from) {
-        if (at == from) fail_input(here_, "an annotation cannot become part of itself", "name another");
-        Annotation& annotation = set_.annotations[at];
-        const Annotation& other = set_.annotations[from];
+    void merge(std::size_t index, std::size_t other_index) {
+        if (index == other_index) fail_input(location_, "an annotation cannot be merged into itself", "give another annotation");
+        Annotation& annotation = set_.annotations[index];
+        const Annotation& other = set_.annotations[other_index];
         if (annotation.type != other.type)
-            fail_input(here_, "a " + to_string(other.type) + " cannot become part of a " + to_string(annotation.type),
+            fail_input(location_,
+                       fmt::format("a {} cannot be merged into a {}", to_string(other.type), to_string(annotation.type)),
                        "merge annotations of one type");
-        for (const Information& one : other.information) put(annotation, one);
+        for (const Information& entry : other.information) put(annotation, entry);
         if (is_free(annotation) || is_free(other)) {
             join_curves(annotation, other);
         } else {
             join_elements(annotation, other);
         }
         for (Attribute attribute : other.attributes) {
-            const auto twin = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
-                return a.name == attribute.name && a.type == attribute.type;
-            });
-            if (twin == annotation.attributes.end()) {
+            const auto counterpart =
+                std::find_if(annotation.attributes.begin(), annotation.attributes.end(),
+                             [&](const Attribute& a) { return a.name == attribute.name && a.type == attribute.type; });
+            if (counterpart == annotation.attributes.end()) {
                 attribute.id = free_attribute_id(annotation);
                 annotation.attributes.push_back(std::move(attribute));
                 continue;
             }
-            attribute.id = twin->id;
-            if (!same(attribute, *twin) && attribute.type != AttributeType::descriptor)
-                notes_.push_back("annotation " + to_string(annotation.id) + " keeps its own '" +
-                                 interchange::words(attribute.name) + "', that of " + to_string(other.id) + " is lost");
+            attribute.id = counterpart->id;
+            if (!same(attribute, *counterpart) && attribute.type != AttributeType::descriptor)
+                notes_.push_back(fmt::format("annotation {} keeps its own '{}'; that of annotation {} is dropped", annotation.id,
+                                             interchange::as_text(attribute.name), other.id));
         }
         refresh(annotation);
         merged_id_ = annotation.id;
-        set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(from));
+        set_.annotations.erase(set_.annotations.begin() + static_cast<std::ptrdiff_t>(other_index));
     }
 
     /// Joins two annotations on the mesh cut along the curves of both.
     void join_curves(Annotation& annotation, const Annotation& other) const {
-        AnnotationSet both;
-        both.annotations = {annotation, other};
-        const CutMesh cut = cut_along_curves(mesh_, both);
+        AnnotationSet pair;
+        pair.annotations = {annotation, other};
+        const CutMesh cut = cut_along_curves(mesh_, pair);
         Annotation joined = cut.annotations.annotations[0];
         join_elements(joined, cut.annotations.annotations[1]);
         if (!joined.all) bring_back(mesh_, cut, joined);
@@ -235,9 +244,9 @@ private:
     }
 
     static void join_elements(Annotation& annotation, const Annotation& other) {
-        std::set<Index> known(annotation.points.begin(), annotation.points.end());
+        std::set<Index> present(annotation.points.begin(), annotation.points.end());
         std::copy_if(other.points.begin(), other.points.end(), std::back_inserter(annotation.points),
-                     [&](Index point) { return known.insert(point).second; });
+                     [&](Index point) { return present.insert(point).second; });
         annotation.polylines.insert(annotation.polylines.end(), other.polylines.begin(), other.polylines.end());
         std::vector<Index> faces;
         std::set_union(annotation.faces.begin(), annotation.faces.end(), other.faces.begin(), other.faces.end(),
@@ -246,11 +255,11 @@ private:
         annotation.all = annotation.all || other.all;
     }
 
-    void split(std::size_t at) {
-        const Annotation whole = set_.annotations[at];
+    void split(std::size_t index) {
+        const Annotation original = set_.annotations[index];
         std::vector<Annotation> parts;
         const auto add = [&]() -> Annotation& {
-            Annotation part = whole;
+            Annotation part = original;
             part.points.clear();
             part.polylines.clear();
             part.faces.clear();
@@ -258,52 +267,52 @@ private:
             part.all = false;
             return parts.emplace_back(std::move(part));
         };
-        if (is_free(whole)) {
-            AnnotationSet alone;
-            alone.annotations.push_back(whole);
-            const CutMesh cut = cut_along_curves(mesh_, alone);
-            const Annotation& plain = cut.annotations.annotations.front();
-            for (const Index point : plain.points) add().points = {point};
-            for (const auto& polyline : plain.polylines) add().polylines = {polyline};
-            for (auto& patch : patches(cut.mesh, plain.faces)) add().faces = std::move(patch);
+        if (is_free(original)) {
+            AnnotationSet single_set;
+            single_set.annotations.push_back(original);
+            const CutMesh cut = cut_along_curves(mesh_, single_set);
+            const Annotation& cut_annotation = cut.annotations.annotations.front();
+            for (const Index point : cut_annotation.points) add().points = {point};
+            for (const auto& polyline : cut_annotation.polylines) add().polylines = {polyline};
+            for (auto& patch : patches(cut.mesh, cut_annotation.faces)) add().faces = std::move(patch);
             for (Annotation& part : parts) bring_back(mesh_, cut, part);
         } else {
-            for (const Index point : whole.points) add().points = {point};
-            for (const auto& polyline : whole.polylines) add().polylines = {polyline};
-            for (auto& patch : patches(mesh_, whole.faces)) add().faces = std::move(patch);
+            for (const Index point : original.points) add().points = {point};
+            for (const auto& polyline : original.polylines) add().polylines = {polyline};
+            for (auto& patch : patches(mesh_, original.faces)) add().faces = std::move(patch);
         }
         if (parts.size() < 2) {
-            notes_.push_back("annotation " + to_string(whole.id) + " '" + interchange::words(whole.tag) +
-                             "' is one piece already");
+            notes_.push_back(
+                fmt::format("annotation {} '{}' already consists of one piece", original.id, interchange::as_text(original.tag)));
             return;
         }
         for (Annotation& part : parts)
             std::erase_if(part.attributes, [](const Attribute& a) { return a.type == AttributeType::measure; });
         std::vector<std::vector<Index>> touched;
         for (const Annotation& part : parts) touched.push_back(touched_vertices(mesh_, part));
-        for (const Attribute& attribute : whole.attributes) {
+        for (const Attribute& attribute : original.attributes) {
             if (attribute.type != AttributeType::measure) continue;
-            std::size_t home = 0;
+            std::size_t owner = 0;
             for (std::size_t i = parts.size(); i-- > 0;)
                 for (const Index pin : attribute.measure.points)
-                    if (std::binary_search(touched[i].begin(), touched[i].end(), pin)) home = i;
-            parts[home].attributes.push_back(attribute);
+                    if (std::binary_search(touched[i].begin(), touched[i].end(), pin)) owner = i;
+            parts[owner].attributes.push_back(attribute);
         }
-        set_.annotations[at] = parts.front();
-        refresh(set_.annotations[at]);
+        set_.annotations[index] = parts.front();
+        refresh(set_.annotations[index]);
         FreeIds ids(set_.annotations);
         for (std::size_t i = 1; i < parts.size(); ++i) {
             parts[i].id = ids.next();
             refresh(parts[i]);
         }
-        set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(at) + 1,
+        set_.annotations.insert(set_.annotations.begin() + static_cast<std::ptrdiff_t>(index) + 1,
                                 std::make_move_iterator(parts.begin() + 1), std::make_move_iterator(parts.end()));
     }
 
     const Mesh& mesh_;
     AnnotationSet& set_;
     const std::string& where_;
-    std::string here_;
+    std::string location_;
     int merged_id_ = 0;
     std::vector<std::string> notes_;
 };
@@ -314,7 +323,7 @@ std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std
     validate(document, "annotation-edits", where);
     std::vector<AnnotationEdit> edits;
     for (const auto& entry : list_in(document, "edits")) {
-        const std::string at = "/edits/" + to_string(edits.size());
+        const std::string pointer = "/edits/" + to_string(edits.size());
         AnnotationEdit& edit = edits.emplace_back();
         edit.annotation = name_of(entry["annotation"]);
         if (find_member(entry, "tag") != nullptr) edit.tag = text_in(entry, "tag");
@@ -323,8 +332,8 @@ std::vector<AnnotationEdit> edits_from_json(const JsonValue& document, const std
         if (const JsonValue* colour = find_member(entry, "colour"))
             edit.colour = {(*colour)[0].GetInt(), (*colour)[1].GetInt(), (*colour)[2].GetInt()};
         if (const JsonValue* attributes = find_member(entry, "attributes"))
-            edit.attributes = attributes_from_json(*attributes, where, at + "/attributes");
-        edit.information = information_from_json(list_in(entry, "information"), where, at + "/information");
+            edit.attributes = attributes_from_json(*attributes, where, pointer + "/attributes");
+        edit.information = information_from_json(list_in(entry, "information"), where, pointer + "/information");
         for (const auto& value : list_in(entry, "removeInformation")) edit.remove_information.push_back(text_of(value));
         if (const JsonValue* texts = find_member(entry, "texts"))
             for (const auto& text : texts->GetObject()) edit.texts.emplace_back(text_of(text.name), text_of(text.value));
@@ -344,17 +353,20 @@ std::vector<std::string> edit_annotations(const Mesh& mesh, AnnotationSet& set, 
     return Editor(mesh, set, where).run(edits);
 }
 
-void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& fresh) {
-    const std::string old = set.unit;
-    set.unit = fresh;
+void rename_unit(const Mesh& mesh, AnnotationSet& set, const std::string& new_unit) {
+    const std::string old_unit = set.unit;
+    set.unit = new_unit;
     for (Annotation& annotation : set.annotations)
         for (Attribute& attribute : annotation.attributes) {
-            if (attribute.type == AttributeType::measure) attribute.measure.unit = unit_after(attribute.measure.unit, old, fresh);
+            if (attribute.type == AttributeType::measure)
+                attribute.measure.unit = unit_after(attribute.measure.unit, old_unit, new_unit);
             if (attribute.type != AttributeType::descriptor) continue;
             std::string& unit = attribute.descriptor.unit;
-            const bool computed = (old.empty() ? unit.empty() : unit == descriptor_unit(attribute.name, old)) &&
+            const bool computed = (old_unit.empty() ? unit.empty() : unit == descriptor_unit(attribute.name, old_unit)) &&
                                   evaluate(mesh, annotation, attribute.name);
-            unit = computed ? descriptor_unit(attribute.name, fresh) : old.empty() ? unit : unit_after(unit, old, fresh);
+            unit = computed           ? descriptor_unit(attribute.name, new_unit)
+                   : old_unit.empty() ? unit
+                                      : unit_after(unit, old_unit, new_unit);
         }
 }
 

@@ -55,15 +55,15 @@ public:
     [[nodiscard]] std::size_t triangles() const;
 
 private:
-    void refuse_what_is_not_read() const;
+    void refuse_unsupported() const;
     void read_primitives();
-    void read_primitive(const JsonValue& object, const std::string& at);
-    void read_ids(const JsonValue& set, const JsonValue& attributes, Primitive& primitive, const std::string& at);
+    void read_primitive(const JsonValue& object, const std::string& pointer);
+    void read_ids(const JsonValue& set, const JsonValue& attributes, Primitive& primitive, const std::string& pointer);
     [[nodiscard]] const JsonValue* metadata(const char* member) const;
     void read_table();
     template <class T>
-    std::vector<int> numbers(const JsonValue& properties, const char* name, std::size_t width, const std::string& at) const;
-    [[nodiscard]] std::vector<std::string> texts(const JsonValue& properties, const char* name, const std::string& at) const;
+    std::vector<int> numbers(const JsonValue& properties, const char* name, std::size_t width, const std::string& pointer) const;
+    [[nodiscard]] std::vector<std::string> texts(const JsonValue& properties, const char* name, const std::string& pointer) const;
     void collect(const Primitive& primitive, std::size_t number);
 
     std::size_t table_ = absent, offset_ = 0;

@@ -15,6 +15,8 @@
 #include "ostraka/core/words.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -35,18 +37,18 @@ public:
 
     PlacedAnnotations read() {
         const JsonValue* ours = file_.extras();
-        const JsonValue* made_of = ours == nullptr ? nullptr : find_member(*ours, "mesh");
-        same_mesh_ = made_of != nullptr && file_.triangles() == mesh_.number_of_faces() &&
-                     text_in(*made_of, "sha256") == mesh_checksum(mesh_);
-        JsonValue list(rapidjson::kArrayType);
-        if (add_originals(ours, list))
-            return placed_annotations(native_, std::move(list), ours, mesh_, where_, true, std::move(notes_),
+        const JsonValue* source_mesh = ours == nullptr ? nullptr : find_member(*ours, "mesh");
+        same_mesh_ = source_mesh != nullptr && file_.triangles() == mesh_.number_of_faces() &&
+                     text_in(*source_mesh, "sha256") == mesh_checksum(mesh_);
+        JsonValue entries(rapidjson::kArrayType);
+        if (add_originals(ours, entries))
+            return placed_annotations(native_, std::move(entries), ours, mesh_, where_, true, std::move(notes_),
                                       std::move(placements_));
         for (const auto& [id, feature] : file_.features) {
             JsonValue entry = annotation(id, feature);
-            if (entry.IsObject()) list.PushBack(entry, a());
+            if (entry.IsObject()) entries.PushBack(entry, a());
         }
-        return placed_annotations(native_, std::move(list), ours, mesh_, where_, same_mesh_, std::move(notes_),
+        return placed_annotations(native_, std::move(entries), ours, mesh_, where_, same_mesh_, std::move(notes_),
                                   std::move(placements_));
     }
 
@@ -54,23 +56,24 @@ private:
     JsonAllocator& a() { return native_.GetAllocator(); }
 
     /// Adds the original annotations stored in the file if they belong to this mesh and still agree with the table.
-    bool add_originals(const JsonValue* ours, JsonValue& list) {
+    bool add_originals(const JsonValue* ours, JsonValue& entries) {
         const JsonValue* original = ours == nullptr ? nullptr : find_member(*ours, "original");
-        const JsonValue* made_of = original == nullptr ? nullptr : find_member(*original, "mesh");
-        if (made_of == nullptr || !file_.ours || text_in(*made_of, "sha256") != mesh_checksum(mesh_)) return false;
-        const auto kept = list_in(*original, "annotations");
-        if (kept.Size() != file_.rows) return false;
-        for (rapidjson::SizeType i = 0; i < kept.Size(); ++i) {
-            const JsonValue* id = find_member(kept[i], "id");
-            if (id == nullptr || !id->IsInt() || id->GetInt() != file_.ids[i] || text_in(kept[i], "tag") != file_.tags[i])
+        const JsonValue* source_mesh = original == nullptr ? nullptr : find_member(*original, "mesh");
+        if (source_mesh == nullptr || !file_.ours || text_in(*source_mesh, "sha256") != mesh_checksum(mesh_)) return false;
+        const auto original_entries = list_in(*original, "annotations");
+        if (original_entries.Size() != file_.rows) return false;
+        for (rapidjson::SizeType i = 0; i < original_entries.Size(); ++i) {
+            const JsonValue* id = find_member(original_entries[i], "id");
+            if (id == nullptr || !id->IsInt() || id->GetInt() != file_.ids[i] ||
+                text_in(original_entries[i], "tag") != file_.tags[i])
                 return false;
         }
-        for (const JsonValue& one : kept) {
+        for (const JsonValue& entry : original_entries) {
             PlacedAnnotation& placement = placements_.emplace_back();
-            placement.id = one["id"].GetInt();
-            placement.tag = text_in(one, "tag");
+            placement.id = entry["id"].GetInt();
+            placement.tag = text_in(entry, "tag");
             placement.how = "indices";
-            list.PushBack(JsonValue(one, a()), a());
+            entries.PushBack(JsonValue(entry, a()), a());
         }
         return true;
     }
@@ -104,12 +107,13 @@ private:
             distance[f] = hit.distance;
             if (hit.distance <= limit) nearest_[f] = hit.face;
         });
-        const auto far = static_cast<std::size_t>(std::count(nearest_.begin(), nearest_.end(), no_index));
-        if (2 * far > nearest_.size())
-            fail_input(where_, "most of the mesh lies farther than " + digits(limit) + " from the surface of the file",
+        const auto far_count = static_cast<std::size_t>(std::count(nearest_.begin(), nearest_.end(), no_index));
+        if (2 * far_count > nearest_.size())
+            fail_input(where_, fmt::format("most of the mesh lies farther than {} from the surface of the file", digits(limit)),
                        "give the mesh that the file shows, in the same unit and position, or raise --tolerance");
-        if (far > 0)
-            notes_.push_back(counted(far, "face") + " of the mesh farther than " + digits(limit) + " from the file's surface");
+        if (far_count > 0)
+            notes_.push_back(
+                fmt::format("{} of the mesh farther than {} from the file's surface", counted(far_count, "face"), digits(limit)));
         to_surface_ = *std::max_element(distance.begin(), distance.end());
         return nearest_;
     }
@@ -136,7 +140,7 @@ private:
         if (same_mesh_ && primitive.origins) {
             const double origin = (*primitive.origins)[vertex];
             if (!(origin >= 0 && origin < static_cast<double>(mesh_.number_of_vertices())))
-                file_.file.fail("/meshes/0/primitives", "a value of _VERTEX is no vertex of the mesh");
+                file_.file.fail("/meshes/0/primitives", "a value of _VERTEX is not a vertex of the mesh");
             return static_cast<Index>(origin);
         }
         const auto position = primitive.position(vertex);
@@ -147,16 +151,16 @@ private:
         if (placed.to_surface <= limit) return placed.vertex;
         if (!options_.skip_far)
             fail_input(where_,
-                       "a point of '" + one_line(placement.tag).substr(0, 40) + "' lies " + digits(placed.to_surface) +
-                           " from the surface, farther than " + digits(limit),
-                       "give the mesh that the file shows, raise --tolerance, or leave such out with --skip-far");
+                       fmt::format("a point of '{}' lies {} from the surface, farther than {}",
+                                   one_line(placement.tag).substr(0, 40), digits(placed.to_surface), digits(limit)),
+                       "give the mesh that the file shows, raise --tolerance, or skip such points with --skip-far");
         return no_index;
     }
 
     /// The vertices for corners of a primitive, without those too far away.
-    std::vector<Index> vertices_of(std::size_t primitive, const std::vector<std::size_t>& chosen, PlacedAnnotation& placement) {
+    std::vector<Index> vertices_of(std::size_t primitive, const std::vector<std::size_t>& selected, PlacedAnnotation& placement) {
         std::vector<Index> vertices;
-        for (const std::size_t corner : chosen)
+        for (const std::size_t corner : selected)
             if (const Index vertex = vertex_of(file_.primitives[primitive], corner, placement); vertex != no_index)
                 vertices.push_back(vertex);
         return vertices;
@@ -174,14 +178,14 @@ private:
                        : distinct_colour(row);
         JsonValue result = json_object(a(), "id", placement.id, "tag", placement.tag, "colour", colour);
         if (!select(row, feature, result, placement)) {
-            notes_.push_back("'" + one_line(placement.tag) + "' could not be placed on this mesh and was left out");
+            notes_.push_back(fmt::format("'{}' could not be placed on this mesh and was left out", one_line(placement.tag)));
             return {};
         }
         if (row < file_.remarks.size()) add_given(result, a(), "note", file_.remarks[row]);
         JsonValue attributes(rapidjson::kArrayType);
         if (row < file_.attributes.size()) {
-            const Json list = parse_json(file_.attributes[row], where_ + ", attributes of feature " + std::to_string(row));
-            attributes.CopyFrom(list, a());
+            const Json parsed = parse_json(file_.attributes[row], fmt::format("{}, attributes of feature {}", where_, row));
+            attributes.CopyFrom(parsed, a());
             if (!same_mesh_) without_pins(attributes);
         }
         add_member(result, "attributes", std::move(attributes), a());
@@ -210,17 +214,17 @@ private:
             if (faces.empty()) return false;
             add_members(result, a(), "type", "region", "faces", faces);
         } else if (!feature.polylines.empty()) {
-            std::vector<std::vector<Index>> list;
+            std::vector<std::vector<Index>> polylines;
             for (const auto& polyline : feature.polylines) {
                 std::vector<Index> vertices = vertices_of(feature.line_primitive, polyline, placement);
                 if (!same_mesh_ && !vertices.empty()) {
                     const bool closed = vertices.size() > 3 && vertices.front() == vertices.back();
-                    vertices = placer().vertex_path(vertices, closed, where_ + ", '" + one_line(placement.tag) + "'");
+                    vertices = placer().vertex_path(vertices, closed, fmt::format("{}, '{}'", where_, one_line(placement.tag)));
                 }
-                if (vertices.size() > 1) list.push_back(std::move(vertices));
+                if (vertices.size() > 1) polylines.push_back(std::move(vertices));
             }
-            if (list.empty()) return false;
-            add_members(result, a(), "type", "line", "polylines", list);
+            if (polylines.empty()) return false;
+            add_members(result, a(), "type", "line", "polylines", polylines);
         } else {
             const std::vector<Index> vertices = vertices_of(feature.point_primitive, feature.points, placement);
             if (vertices.empty()) return false;
@@ -230,13 +234,13 @@ private:
     }
 
     /// Maps vertices of the file's mesh to this mesh; nullopt if one of them is not in the file.
-    std::optional<std::vector<Index>> found_again(const JsonValue* points) {
+    std::optional<std::vector<Index>> mapped_vertices(const JsonValue* points) {
         if (points == nullptr || !points->IsArray()) return {};
         std::vector<Index> vertices;
         for (const auto& point : points->GetArray()) {
-            const auto found = point.IsUint() ? positions().find(point.GetUint()) : positions_.end();
-            if (found == positions_.end()) return {};
-            vertices.push_back(placer().place(found->second).vertex);
+            const auto position = point.IsUint() ? positions().find(point.GetUint()) : positions_.end();
+            if (position == positions_.end()) return {};
+            vertices.push_back(placer().place(position->second).vertex);
         }
         return vertices;
     }
@@ -249,12 +253,12 @@ private:
                 !attribute["measure"].IsObject())
                 continue;
             JsonValue& measure = attribute["measure"];
-            if (const auto vertices = found_again(find_member(measure, "points"))) {
-                std::vector<std::vector<Index>> again;
+            if (const auto vertices = mapped_vertices(find_member(measure, "points"))) {
+                std::vector<std::vector<Index>> mapped_repeats;
                 for (const auto& picked : list_in(measure, "repeats"))
-                    if (const auto places = found_again(&picked)) again.push_back(*places);
+                    if (const auto mapped = mapped_vertices(&picked)) mapped_repeats.push_back(*mapped);
                 for (const char* name : {"points", "locations", "stale", "repeats"}) measure.RemoveMember(name);
-                add_given(measure, a(), "repeats", again);
+                add_given(measure, a(), "repeats", mapped_repeats);
                 add_members(measure, a(), "points", *vertices, "stale", true);
                 continue;
             }

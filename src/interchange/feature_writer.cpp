@@ -16,6 +16,7 @@
 #include "ostraka/io/glb.h"
 #include "ostraka/vocabulary/text_match.h"
 
+#include <fmt/core.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -44,21 +45,21 @@ struct Corners {
 
 class FeatureWriter {
 public:
-    /// `whole`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
+    /// `originals`: the annotations on the original mesh if the primitives cannot represent all of them; otherwise null.
     FeatureWriter(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file, const Provenance& provenance,
-                  const Json& whole, std::vector<std::string>& notes)
+                  const Json& originals, std::vector<std::string>& notes)
         : mesh_(mesh),
           set_(set),
           where_(mesh_file.empty() ? "GLB" : mesh_file),
           native_(annotations_to_json(set, mesh, mesh_file, provenance)),
-          whole_(whole),
+          originals_(originals),
           notes_(notes) {}
 
     std::string write() {
         if (mesh_.number_of_faces() == 0)
-            fail_work(where_, "glTF does not hold a mesh without triangles", "export another format");
+            fail_work(where_, "glTF cannot store a mesh without triangles", "export another format");
         if (set_.annotations.size() >= exact_in_float)
-            fail_work(where_, "more annotations than feature ids can tell apart", "export fewer");
+            fail_work(where_, "has more annotations than distinct feature ids", "export fewer");
         JsonValue primitives(rapidjson::kArrayType);
         primitives.PushBack(primitive(surface(), glb::triangles_mode), a());
         const Corners drawn = lines(), marked = points();
@@ -68,9 +69,9 @@ public:
 
         JsonValue extras(rapidjson::kObjectType);
         copy_members(extras, a(), native_, {"mesh", "class", "unit", "up", "provenance"});
-        if (whole_.IsObject()) {
+        if (originals_.IsObject()) {
             JsonValue original(rapidjson::kObjectType);
-            copy_members(original, a(), whole_, {"mesh", "annotations"});
+            copy_members(original, a(), originals_, {"mesh", "annotations"});
             add_members(extras, a(), "original", std::move(original));
         }
         JsonValue mesh =
@@ -89,8 +90,8 @@ public:
         });
         if (empty > 0)
             notes_.push_back(counted(static_cast<std::size_t>(empty), "annotation") +
-                             " without elements: in the table, but nowhere on the mesh");
-        if (rounded_) notes_.emplace_back("GLB holds coordinates in single precision; they were rounded");
+                             " without elements: present in the table, but not on the mesh");
+        if (rounded_) notes_.emplace_back("GLB stores coordinates in single precision; they were rounded");
         return builder_.finish(where_, "simplify the mesh");
     }
 
@@ -112,22 +113,22 @@ private:
         std::vector<std::vector<Index>> result;
         for (const auto& [area, i] : regions) {
             const auto& faces = set_.annotations[i].faces;
-            auto layer = std::find_if(result.begin(), result.end(), [&](const std::vector<Index>& taken) {
-                return std::none_of(faces.begin(), faces.end(), [&](Index face) { return taken[face] != none(); });
+            auto layer = std::find_if(result.begin(), result.end(), [&](const std::vector<Index>& features) {
+                return std::none_of(faces.begin(), faces.end(), [&](Index face) { return features[face] != none(); });
             });
             if (layer == result.end()) layer = result.insert(result.end(), std::vector<Index>(mesh_.number_of_faces(), none()));
             for (const Index face : faces) (*layer)[face] = i;
         }
         if (result.size() > 4)
-            notes_.push_back("regions lie on each other " + std::to_string(result.size()) +
-                             " deep; viewers may read the first feature id sets only");
+            notes_.push_back(
+                fmt::format("regions overlap in {} layers; viewers may read only the first feature id sets", result.size()));
         return result;
     }
 
     Corners surface() {
         const std::vector<std::vector<Index>> sets = layers();
-        Corners corners_;
-        corners_.features.resize(sets.size());
+        Corners result;
+        result.features.resize(sets.size());
         // Faces with the same features share a vertex; others have copies of it.
         std::map<std::vector<Index>, Index> kinds;
         std::vector<std::vector<std::pair<Index, std::uint32_t>>> copies(mesh_.number_of_vertices());
@@ -137,22 +138,24 @@ private:
             for (std::size_t s = 0; s < sets.size(); ++s) kind[s] = sets[s][face];
             const Index number = kinds.emplace(kind, static_cast<Index>(kinds.size())).first->second;
             for (const Vertex v : corners(mesh_, face)) {
-                auto& known = copies[v];
-                auto copy = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.first == number; });
-                if (copy == known.end()) {
-                    copy = known.insert(known.end(), {number, static_cast<std::uint32_t>(corners_.vertices.size())});
-                    corners_.vertices.push_back(v);
+                auto& vertex_copies = copies[v];
+                auto copy = std::find_if(vertex_copies.begin(), vertex_copies.end(),
+                                         [&](const auto& entry) { return entry.first == number; });
+                if (copy == vertex_copies.end()) {
+                    copy =
+                        vertex_copies.insert(vertex_copies.end(), {number, static_cast<std::uint32_t>(result.vertices.size())});
+                    result.vertices.push_back(v);
                     std::array<int, 3> colour{200, 200, 200};
                     for (std::size_t s = sets.size(); s-- > 0;) {
-                        corners_.features[s].push_back(kind[s]);
+                        result.features[s].push_back(kind[s]);
                         if (kind[s] != none() && !set_.annotations[kind[s]].all) colour = set_.annotations[kind[s]].colour;
                     }
-                    corners_.colours.push_back(colour);
+                    result.colours.push_back(colour);
                 }
-                corners_.indices.push_back(copy->second);
+                result.indices.push_back(copy->second);
             }
         }
-        return corners_;
+        return result;
     }
 
     Corners lines() {
@@ -178,11 +181,12 @@ private:
         const Eigen::Quaterniond rotation = rotation_between(up, Vector3d::UnitY());
         const bool rotates = (up - Vector3d::UnitY()).norm() > 1e-12, scales = metres && *metres != 1;
         if (!rotates && !scales) return false;
-        JsonValue shown = json_object(a(), "name", "as glTF wants it: y up, in metres", "children", std::array{0});
-        if (rotates) add_members(shown, a(), "rotation", std::array{rotation.x(), rotation.y(), rotation.z(), rotation.w()});
-        if (scales) add_members(shown, a(), "scale", std::array{*metres, *metres, *metres});
-        add_members(shown, a(), "extras", json_object(a(), glb::display_only, true));
-        nodes.PushBack(shown, a());
+        JsonValue display_node = json_object(a(), "name", "as glTF wants it: y up, in metres", "children", std::array{0});
+        if (rotates)
+            add_members(display_node, a(), "rotation", std::array{rotation.x(), rotation.y(), rotation.z(), rotation.w()});
+        if (scales) add_members(display_node, a(), "scale", std::array{*metres, *metres, *metres});
+        add_members(display_node, a(), "extras", json_object(a(), glb::display_only, true));
+        nodes.PushBack(display_node, a());
         return true;
     }
 
@@ -194,14 +198,14 @@ private:
         return result;
     }
 
-    void add(Corners& to, Index vertex, Index feature) {
-        to.vertices.push_back(vertex);
-        to.colours.push_back(set_.annotations[feature].colour);
-        to.features.front().push_back(feature);
+    void add(Corners& target, Index vertex, Index feature) {
+        target.vertices.push_back(vertex);
+        target.colours.push_back(set_.annotations[feature].colour);
+        target.features.front().push_back(feature);
     }
 
-    JsonValue primitive(const Corners& corners_, int mode) {
-        const std::size_t count = corners_.vertices.size();
+    JsonValue primitive(const Corners& primitive_corners, int mode) {
+        const std::size_t count = primitive_corners.vertices.size();
         JsonValue attributes(rapidjson::kObjectType);
         std::string positions, colours, origins;
         std::array<float, 3> low, high;
@@ -209,19 +213,20 @@ private:
         high.fill(std::numeric_limits<float>::lowest());
         for (std::size_t i = 0; i < count; ++i) {
             if (i % check_every == 0) check_cancelled();
-            const Point& p = mesh_.point(Vertex(corners_.vertices[i]));
+            const Point& p = mesh_.point(Vertex(primitive_corners.vertices[i]));
             for (int k = 0; k < 3; ++k) {
                 if (std::fabs(p[k]) > static_cast<double>(std::numeric_limits<float>::max()))
                     fail_work(where_, "a coordinate does not fit the single precision of glTF", "rescale the mesh");
-                const auto narrow = static_cast<float>(p[k]);
-                rounded_ = rounded_ || static_cast<double>(narrow) != p[k];
-                low[static_cast<std::size_t>(k)] = std::min(low[static_cast<std::size_t>(k)], narrow);
-                high[static_cast<std::size_t>(k)] = std::max(high[static_cast<std::size_t>(k)], narrow);
-                append(positions, narrow);
+                const auto single = static_cast<float>(p[k]);
+                rounded_ = rounded_ || static_cast<double>(single) != p[k];
+                low[static_cast<std::size_t>(k)] = std::min(low[static_cast<std::size_t>(k)], single);
+                high[static_cast<std::size_t>(k)] = std::max(high[static_cast<std::size_t>(k)], single);
+                append(positions, single);
             }
-            for (const int part : corners_.colours[i]) append(colours, glb::linear_channel(static_cast<std::size_t>(part)));
+            for (const int channel : primitive_corners.colours[i])
+                append(colours, glb::linear_channel(static_cast<std::size_t>(channel)));
             append(colours, std::uint16_t{65535});
-            append(origins, static_cast<float>(corners_.vertices[i]));
+            append(origins, static_cast<float>(primitive_corners.vertices[i]));
         }
         JsonValue min = json_value(low, a()), max = json_value(high, a());
         const auto attribute = [&](const std::string& name, int accessor) { add_members(attributes, a(), name, accessor); };
@@ -232,12 +237,12 @@ private:
         if (mesh_.number_of_vertices() <= exact_in_float)
             attribute("_VERTEX", builder_.add_accessor(origins, glb::array_buffer, 0, glb::single, count, "SCALAR"));
         JsonValue ids(rapidjson::kArrayType);
-        for (std::size_t s = 0; s < corners_.features.size(); ++s) {
+        for (std::size_t s = 0; s < primitive_corners.features.size(); ++s) {
             std::string bytes;
-            const bool narrow = none() <= std::numeric_limits<std::uint16_t>::max();
-            std::vector<Index> distinct = corners_.features[s];
-            for (const Index feature : corners_.features[s]) {
-                if (narrow) append(bytes, static_cast<std::uint16_t>(feature)), append(bytes, std::uint16_t{0});
+            const bool sixteen_bit = none() <= std::numeric_limits<std::uint16_t>::max();
+            std::vector<Index> distinct = primitive_corners.features[s];
+            for (const Index feature : primitive_corners.features[s]) {
+                if (sixteen_bit) append(bytes, static_cast<std::uint16_t>(feature)), append(bytes, std::uint16_t{0});
                 else append(bytes, static_cast<float>(feature));
             }
             std::sort(distinct.begin(), distinct.end());
@@ -246,17 +251,18 @@ private:
             if (distinct.empty()) continue;
             attribute(
                 "_FEATURE_ID_" + std::to_string(s),
-                builder_.add_accessor(bytes, glb::array_buffer, 4, narrow ? glb::short_word : glb::single, count, "SCALAR"));
+                builder_.add_accessor(bytes, glb::array_buffer, 4, sixteen_bit ? glb::short_word : glb::single, count, "SCALAR"));
             JsonValue id = json_object(a(), "featureCount", distinct.size(), "nullFeatureId", none(), "label",
                                        "annotations_" + std::to_string(s), "attribute", s, "propertyTable", 0);
             ids.PushBack(id, a());
         }
         JsonValue result = json_object(a(), "attributes", std::move(attributes));
-        if (!corners_.indices.empty()) {
+        if (!primitive_corners.indices.empty()) {
             std::string bytes;
-            for (const std::uint32_t index : corners_.indices) append(bytes, index);
+            for (const std::uint32_t index : primitive_corners.indices) append(bytes, index);
             add_members(result, a(), "indices",
-                        builder_.add_accessor(bytes, glb::element_array_buffer, 0, glb::word, corners_.indices.size(), "SCALAR"));
+                        builder_.add_accessor(bytes, glb::element_array_buffer, 0, glb::word, primitive_corners.indices.size(),
+                                              "SCALAR"));
         }
         add_members(result, a(), "mode", mode, "material", 0);
         if (!ids.Empty())
@@ -293,15 +299,15 @@ private:
     void add_table() {
         std::string ids, colours, kinds;
         std::vector<std::string> tags, notes, attributes;
-        const JsonValue& list = native_["annotations"];
-        for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
+        const JsonValue& entries = native_["annotations"];
+        for (rapidjson::SizeType i = 0; i < entries.Size(); ++i) {
             const Annotation& annotation = set_.annotations[i];
             append(ids, static_cast<std::int32_t>(annotation.id));
-            for (const int part : annotation.colour) append(colours, static_cast<std::uint8_t>(part));
+            for (const int channel : annotation.colour) append(colours, static_cast<std::uint8_t>(channel));
             append(kinds, static_cast<std::uint8_t>(annotation.all ? 3 : static_cast<int>(annotation.type)));
             tags.push_back(annotation.tag);
             notes.push_back(annotation.note);
-            attributes.emplace_back(trimmed(to_text(list[i]["attributes"])));
+            attributes.emplace_back(trimmed(to_text(entries[i]["attributes"])));
         }
         column("id", described("SCALAR", "INT32", "", true), stored(ids));
         column("tag", described("STRING", "", "", true), stored(tags));
@@ -342,7 +348,8 @@ private:
                 }
                 const Figures figures = figures_of(attribute);
                 if (figures.values.size() != 1) continue;
-                auto& values = numbers[figures.unit.empty() ? attribute.name : attribute.name + " (" + figures.unit + ")"];
+                auto& values =
+                    numbers[figures.unit.empty() ? attribute.name : fmt::format("{} ({})", attribute.name, figures.unit)];
                 values.resize(none(), missing);
                 values[i] = figures.values.front();
             }
@@ -366,7 +373,7 @@ private:
     const AnnotationSet& set_;
     std::string where_;
     Json native_;
-    const Json& whole_;
+    const Json& originals_;
     std::vector<std::string>& notes_;
     glb::Builder builder_{8, true};
     JsonValue properties_{rapidjson::kObjectType}, columns_{rapidjson::kObjectType};
@@ -379,12 +386,12 @@ std::string feature_glb(const Mesh& mesh, const AnnotationSet& set, const std::s
                         std::vector<std::string>& notes) {
     const AlongEdges along_edges(mesh, set);
     if (along_edges.cut())
-        notes.emplace_back("the mesh is cut along free outlines; their curves stand beside it, for the mesh itself");
+        notes.emplace_back("the mesh is cut along free outlines; the curves on the original mesh are stored as well");
     const bool informed = std::any_of(set.annotations.begin(), set.annotations.end(),
                                       [](const Annotation& annotation) { return !annotation.information.empty(); });
-    Json whole;
-    if (along_edges.cut() || informed) whole = annotations_to_json(set, mesh, mesh_file, provenance);
-    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, whole, notes).write();
+    Json originals;
+    if (along_edges.cut() || informed) originals = annotations_to_json(set, mesh, mesh_file, provenance);
+    return FeatureWriter(along_edges.mesh(), along_edges.annotations(), mesh_file, provenance, originals, notes).write();
 }
 
 }  // namespace ostraka

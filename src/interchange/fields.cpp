@@ -2,6 +2,8 @@
 
 #include "text.h"
 
+#include <fmt/core.h>
+
 namespace ostraka::interchange {
 
 bool same(const Attribute& a, const Attribute& b) {
@@ -22,24 +24,24 @@ bool same(const Annotation& a, const Annotation& b) {
                       [](const Attribute& x, const Attribute& y) { return same(x, y); });
 }
 
-std::string words(const std::string& text) { return one_line(text); }
+std::string as_text(const std::string& text) { return one_line(text); }
 
-std::string words(const std::array<int, 3>& colour) { return joined_numbers(colour); }
+std::string as_text(const std::array<int, 3>& colour) { return joined_numbers(colour); }
 
-std::string words(const std::optional<std::array<double, 3>>& direction) {
+std::string as_text(const std::optional<std::array<double, 3>>& direction) {
     return direction ? joined_numbers(*direction) : std::string();
 }
 
-std::string words(const std::vector<int>& ids) { return joined_numbers(ids); }
+std::string as_text(const std::vector<int>& ids) { return joined_numbers(ids); }
 
-std::string words(const Attribute& attribute) {
+std::string as_text(const Attribute& attribute) {
     if (attribute.type == AttributeType::semantic)
-        return words(attribute.name + ": " + attribute.note +
-                     (attribute.origin.empty() ? "" : " (inferred: " + attribute.origin + ")"));
+        return as_text(fmt::format("{}: {}{}", attribute.name, attribute.note,
+                                   attribute.origin.empty() ? "" : " (inferred: " + attribute.origin + ")"));
     const bool measured = attribute.type == AttributeType::measure;
     std::string text = attribute.name + ":";
     if (measured) {
-        text += " " + attribute.measure.tool + (attribute.measure.exact ? " (exact)" : "");
+        text += fmt::format(" {}{}", attribute.measure.tool, attribute.measure.exact ? " (exact)" : "");
         if (attribute.measure.value) text += " " + digits(*attribute.measure.value);
         if (attribute.measure.uncertainty) text += " +- " + digits(*attribute.measure.uncertainty);
     }
@@ -52,38 +54,37 @@ std::string words(const Attribute& attribute) {
         for (std::size_t i = 0; i < attribute.measure.points.size() && i < 4; ++i)
             text += " " + std::to_string(attribute.measure.points[i]);
         text += attribute.measure.points.size() > 4 ? " ..." : "";
-        if (!attribute.measure.repeats.empty())
-            text += ", picked " + std::to_string(attribute.measure.repeats.size() + 1) + " times";
+        if (!attribute.measure.repeats.empty()) text += fmt::format(", picked {} times", attribute.measure.repeats.size() + 1);
         text += ")";
     }
-    return words(text + (stale ? " (stale)" : ""));
+    return as_text(text + (stale ? " (stale)" : ""));
 }
 
-std::string words(const std::vector<Information>& list) {
+std::string as_text(const std::vector<Information>& entries) {
     std::string text;
-    for (const Information& one : list)
-        text += (text.empty() ? "" : "; ") + to_string(one.kind) + ' ' +
-                (one.title.empty() ? one.value : one.title + ": " + one.value);
-    return words(text);
+    for (const Information& entry : entries)
+        text += (text.empty() ? "" : "; ") + to_string(entry.kind) + ' ' +
+                (entry.title.empty() ? entry.value : fmt::format("{}: {}", entry.title, entry.value));
+    return as_text(text);
 }
 
-std::string geometry_words(const Annotation& annotation) {
+std::string geometry_as_text(const Annotation& annotation) {
     if (!annotation.curves.empty() && annotation.type != AnnotationType::point) {
-        std::size_t places = 0;
-        for (const auto& curve : annotation.curves) places += curve.size();
-        return std::to_string(places) + " places on " + std::to_string(annotation.curves.size()) + " free curves";
+        std::size_t point_count = 0;
+        for (const auto& curve : annotation.curves) point_count += curve.size();
+        return fmt::format("{} points on {} free curves", point_count, annotation.curves.size());
     }
     if (annotation.type == AnnotationType::point) return std::to_string(annotation.points.size()) + " points";
     if (annotation.type == AnnotationType::region)
-        return annotation.all ? "the whole" : std::to_string(annotation.faces.size()) + " faces";
+        return annotation.all ? "the whole mesh" : std::to_string(annotation.faces.size()) + " faces";
     std::size_t edges = 0;
     for (const auto& polyline : annotation.polylines) edges += polyline.size() - 1;
-    return std::to_string(edges) + " edges in " + std::to_string(annotation.polylines.size());
+    return fmt::format("{} edges in {}", edges, annotation.polylines.size());
 }
 
-std::string words(const Annotation& annotation) {
-    return words("'" + annotation.tag + "', " + to_string(annotation.type) + ", " + geometry_words(annotation) + ", " +
-                 std::to_string(annotation.attributes.size()) + " attributes");
+std::string as_text(const Annotation& annotation) {
+    return as_text(fmt::format("'{}', {}, {}, {} attributes", annotation.tag, to_string(annotation.type),
+                               geometry_as_text(annotation), annotation.attributes.size()));
 }
 
 }  // namespace ostraka::interchange

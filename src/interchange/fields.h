@@ -10,19 +10,19 @@ bool same_geometry(const Annotation& a, const Annotation& b);
 bool same(const Annotation& a, const Annotation& b);
 
 /// Values as complete text on one line.
-std::string words(const std::string& text);
-std::string words(const std::array<int, 3>& colour);
-std::string words(const std::optional<std::array<double, 3>>& direction);
-std::string words(const std::vector<Information>& list);
-std::string words(const Attribute& attribute);
-std::string geometry_words(const Annotation& annotation);
-std::string words(const Annotation& annotation);
+std::string as_text(const std::string& text);
+std::string as_text(const std::array<int, 3>& colour);
+std::string as_text(const std::optional<std::array<double, 3>>& direction);
+std::string as_text(const std::vector<Information>& entries);
+std::string as_text(const Attribute& attribute);
+std::string geometry_as_text(const Annotation& annotation);
+std::string as_text(const Annotation& annotation);
 template <class Entries>
 std::vector<int> ids_of(const Entries& entries) {
     std::vector<int> ids;
     for (const auto& entry : entries) ids.push_back(entry.id);
     return ids;
 }
-std::string words(const std::vector<int>& ids);
+std::string as_text(const std::vector<int>& ids);
 
 }  // namespace ostraka::interchange

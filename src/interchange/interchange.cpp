@@ -9,6 +9,8 @@
 #include "ostraka/interchange/prototype_files.h"
 #include "ostraka/interchange/web_annotation.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -22,9 +24,9 @@ enum class Format { attributes_csv, landmarks_csv, tps, pp, mrk, fcsv, web, glb,
 
 Format format_named(const std::string& name) {
     const auto& names = interchange_formats();
-    if (const auto found = std::find(names.begin(), names.end(), name); found != names.end())
-        return static_cast<Format>(found - names.begin());
-    fail_usage("the format '" + name + "' is not known", "use one of: " + joined(names));
+    if (const auto match = std::find(names.begin(), names.end(), name); match != names.end())
+        return static_cast<Format>(match - names.begin());
+    fail_usage(fmt::format("unknown format '{}'", name), "use one of: " + joined(names));
 }
 
 std::optional<LandmarkFormat> landmark_format(Format format) {
@@ -33,36 +35,36 @@ std::optional<LandmarkFormat> landmark_format(Format format) {
 }
 
 /// Adds imported annotations to a set; an id that is in use is replaced.
-PlacedAnnotations added_to(const AnnotationSet& onto, PlacedAnnotations read) {
+PlacedAnnotations added_to(const AnnotationSet& existing, PlacedAnnotations imported) {
     PlacedAnnotations result;
-    result.placements = std::move(read.placements);
-    result.set = onto;
+    result.placements = std::move(imported.placements);
+    result.set = existing;
     result.set.provenance.SetNull();
-    if (onto.object_class.empty()) result.set.object_class = read.set.object_class;
-    if (onto.unit.empty()) result.set.unit = read.set.unit;
-    if (!onto.up) result.set.up = read.set.up;
-    result.set.notes.insert(result.set.notes.end(), read.set.notes.begin(), read.set.notes.end());
-    if (!onto.unit.empty() && !read.set.unit.empty() && onto.unit != read.set.unit)
-        result.set.notes.push_back("the file is in " + read.set.unit + ", the annotations in " + onto.unit +
-                                   "; coordinates were taken as they stand");
-    std::set<int> taken, reserved;
-    for (const Annotation& annotation : onto.annotations) taken.insert(annotation.id);
-    for (const Annotation& annotation : read.set.annotations) reserved.insert(annotation.id);
-    int fresh = 0;
+    if (existing.object_class.empty()) result.set.object_class = imported.set.object_class;
+    if (existing.unit.empty()) result.set.unit = imported.set.unit;
+    if (!existing.up) result.set.up = imported.set.up;
+    result.set.notes.insert(result.set.notes.end(), imported.set.notes.begin(), imported.set.notes.end());
+    if (!existing.unit.empty() && !imported.set.unit.empty() && existing.unit != imported.set.unit)
+        result.set.notes.push_back(fmt::format("the file is in {}, the annotations in {}; coordinates were not converted",
+                                               imported.set.unit, existing.unit));
+    std::set<int> used_ids, imported_ids;
+    for (const Annotation& annotation : existing.annotations) used_ids.insert(annotation.id);
+    for (const Annotation& annotation : imported.set.annotations) imported_ids.insert(annotation.id);
+    int next_id = 0;
     std::map<int, int> renamed;
-    for (Annotation& annotation : read.set.annotations) {
-        const int before = annotation.id;
-        if (taken.contains(before)) {
-            while (taken.contains(fresh) || reserved.contains(fresh)) ++fresh;
-            annotation.id = fresh++;
-            renamed[before] = annotation.id;
-            result.set.notes.push_back("the id " + std::to_string(before) + " is taken: '" + annotation.tag +
-                                       "' of the file got " + std::to_string(annotation.id));
+    for (Annotation& annotation : imported.set.annotations) {
+        const int old_id = annotation.id;
+        if (used_ids.contains(old_id)) {
+            while (used_ids.contains(next_id) || imported_ids.contains(next_id)) ++next_id;
+            annotation.id = next_id++;
+            renamed[old_id] = annotation.id;
+            result.set.notes.push_back(
+                fmt::format("the id {} is in use: '{}' of the file received the id {}", old_id, annotation.tag, annotation.id));
         }
         result.set.annotations.push_back(std::move(annotation));
     }
     for (PlacedAnnotation& placement : result.placements)
-        if (const auto found = renamed.find(placement.id); found != renamed.end()) placement.id = found->second;
+        if (const auto renaming = renamed.find(placement.id); renaming != renamed.end()) placement.id = renaming->second;
     return result;
 }
 
@@ -83,27 +85,28 @@ std::string guess_interchange_format(const Path& file, const std::string& bytes)
     if (ending == ".json" && extension(file.stem()) == ".mrk") return "mrk";
     if (ending == ".jsonld") return "web";
     if (ending == ".glb" || ending == ".ant" || ending == ".fct") return ending.substr(1);
-    fail_usage("the ending of '" + file.filename().string() + "' tells no format", "say it with --format");
+    fail_usage(fmt::format("the extension of '{}' does not determine a format", file.filename().string()),
+               "specify it with --format");
 }
 
-ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& named,
+ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& set, const std::string& format_name,
                                        const std::string& mesh_file, const Provenance& provenance, const ExportOptions& options) {
     check_options(options, "annotation export");
     check_annotations(set, mesh, mesh_file.empty() ? "annotations" : "annotations of " + mesh_file);
     ExportedAnnotations result;
-    const auto count = [&](auto&& written) {
-        return static_cast<std::size_t>(std::count_if(set.annotations.begin(), set.annotations.end(), written));
+    const auto count = [&](auto&& predicate) {
+        return static_cast<std::size_t>(std::count_if(set.annotations.begin(), set.annotations.end(), predicate));
     };
     result.annotations = set.annotations.size();
-    const Format format = format_named(named);
+    const Format format = format_named(format_name);
     if (const auto landmarks = landmark_format(format)) {
-        const LandmarkSet places = landmarks_of(mesh, set, *landmarks);
-        result.notes = places.notes;
+        const LandmarkSet exported = landmarks_of(mesh, set, *landmarks);
+        result.notes = exported.notes;
         result.annotations = count([&](const Annotation& annotation) {
             return annotation.type == AnnotationType::point ||
                    (annotation.type == AnnotationType::line && *landmarks == LandmarkFormat::mrk);
         });
-        result.bytes = landmarks_to_text(places, *landmarks, mesh_file, provenance, result.notes, options.landmarks);
+        result.bytes = landmarks_to_text(exported, *landmarks, mesh_file, provenance, result.notes, options.landmarks);
     } else if (format == Format::attributes_csv) {
         result.bytes = attribute_table(set);
     } else if (format == Format::web) {
@@ -119,26 +122,26 @@ ExportedAnnotations export_annotations(const Mesh& mesh, const AnnotationSet& se
     return result;
 }
 
-PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& named,
+PlacedAnnotations import_annotations(const Mesh& mesh, const std::string& bytes, const std::string& format_name,
                                      const std::string& where, const AnnotationSet* onto, const ImportOptions& options) {
     check_options(options, "annotation import");
-    if (bytes.find_first_not_of(" \t\r\n") == std::string::npos)
-        fail_input(where, "is empty", "give a file that holds annotations");
+    if (bytes.find_first_not_of(" \t\r\n") == std::string::npos) fail_input(where, "is empty", "give a file with annotations");
     PlacedAnnotations result;
-    const Format format = format_named(named);
+    const Format format = format_named(format_name);
     if (const auto landmarks = landmark_format(format)) {
-        const LandmarkSet read = landmarks_from_text(bytes, *landmarks, where, options.landmarks);
-        if (read.landmarks.empty() && read.curves.empty())
-            fail_input(where, "holds no landmarks" + (read.notes.empty() ? "" : ": " + read.notes.back()),
-                       "give a file with places, or the right --format");
-        result = place_landmarks(mesh, read, where, options.place);
+        const LandmarkSet landmark_set = landmarks_from_text(bytes, *landmarks, where, options.landmarks);
+        if (landmark_set.landmarks.empty() && landmark_set.curves.empty())
+            fail_input(where, "contains no landmarks" + (landmark_set.notes.empty() ? "" : ": " + landmark_set.notes.back()),
+                       "give a file with points, or the right --format");
+        result = place_landmarks(mesh, landmark_set, where, options.place);
     } else if (format == Format::attributes_csv) {
         if (onto == nullptr)
-            fail_usage("a table of attributes holds no selections", "give the annotations it was made of with --onto FILE");
+            fail_usage("a table of attributes contains no selections",
+                       "give the annotations from which it was exported with --onto FILE");
         result.set = *onto;
         result.set.provenance.SetNull();
         const std::size_t changed = apply_attribute_table(bytes, result.set, where);
-        result.set.notes.push_back(counted(changed, "annotation") + " of the table taken over");
+        result.set.notes.push_back(counted(changed, "annotation") + " updated from the table");
     } else if (format == Format::web) {
         result = read_web_annotations(bytes, mesh, where, options.place);
     } else if (format == Format::glb) {

@@ -25,7 +25,7 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
 std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optional<AnatomicalSpace> file_space,
                                     AnatomicalSpace mesh_space);
 
-/// Throws Error (input), naming `at`, if the position exceeds the limit for mesh coordinates.
-void check_place(const std::array<double, 3>& position, const std::string& at);
+/// Throws Error (input), naming `location`, if the position exceeds the limit for mesh coordinates.
+void check_place(const std::array<double, 3>& position, const std::string& location);
 
 }  // namespace ostraka::interchange

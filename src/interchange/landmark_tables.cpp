@@ -6,6 +6,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/core/limits.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 
@@ -15,7 +17,7 @@ namespace {
 
 using std::to_string;
 
-std::string at_line(const std::string& where, std::size_t line) { return where + ", line " + to_string(line); }
+std::string at_line(const std::string& where, std::size_t line) { return fmt::format("{}, line {}", where, line); }
 
 /// Column names as written by common tools.
 struct Columns {
@@ -24,36 +26,38 @@ struct Columns {
     std::optional<AnatomicalSpace> space;
 };
 
-constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+constexpr std::size_t not_found = static_cast<std::size_t>(-1);
 
 std::optional<Columns> columns_of(const std::vector<std::string>& header) {
-    std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < header.size(); ++i) places.try_emplace(lower_case(trimmed(unguarded(header[i]))), i);
+    std::map<std::string, std::size_t> column_indices;
+    for (std::size_t i = 0; i < header.size(); ++i) column_indices.try_emplace(lower_case(trimmed(unguarded(header[i]))), i);
     const auto find = [&](std::initializer_list<const char*> names) -> std::size_t {
         for (const char* name : names)
-            if (const auto found = places.find(name); found != places.end()) return found->second;
-        return nowhere;
+            if (const auto column = column_indices.find(name); column != column_indices.end()) return column->second;
+        return not_found;
     };
     Columns columns;
-    const auto take = [&](const char* a, const char* b, const char* c, std::optional<AnatomicalSpace> space) {
+    const auto find_axes = [&](const char* a, const char* b, const char* c, std::optional<AnatomicalSpace> space) {
         columns.position = {find({a}), find({b}), find({c})};
         columns.space = space;
-        return std::find(columns.position.begin(), columns.position.end(), nowhere) == columns.position.end();
+        return std::find(columns.position.begin(), columns.position.end(), not_found) == columns.position.end();
     };
-    if (!take("x", "y", "z", {}) && !take("l", "p", "s", AnatomicalSpace::lps) && !take("r", "a", "s", AnatomicalSpace::ras))
+    if (!find_axes("x", "y", "z", {}) && !find_axes("l", "p", "s", AnatomicalSpace::lps) &&
+        !find_axes("r", "a", "s", AnatomicalSpace::ras))
         return {};
-    if (const std::size_t at = find({"name", "label", "landmark", "tag"}); at != nowhere) columns.name = at;
-    if (const std::size_t at = find({"id"}); at != nowhere) columns.id = at;
-    if (const std::size_t at = find({"defined"}); at != nowhere) columns.defined = at;
+    if (const std::size_t column = find({"name", "label", "landmark", "tag"}); column != not_found) columns.name = column;
+    if (const std::size_t column = find({"id"}); column != not_found) columns.id = column;
+    if (const std::size_t column = find({"defined"}); column != not_found) columns.defined = column;
     return columns;
 }
 
 double coordinate(const CsvRow& row, std::size_t column, const std::string& where) {
-    const std::string at = at_line(where, row.line);
+    const std::string location = at_line(where, row.line);
     if (column >= row.cells.size())
-        fail_input(at, "has " + to_string(row.cells.size()) + " cells", "give a number for x, y and z in each row");
+        fail_input(location, fmt::format("has {} cells", row.cells.size()), "give a number for x, y and z in each row");
     if (const auto value = number_of(unguarded(row.cells[column]))) return *value;
-    fail_input(at, "'" + one_line(row.cells[column]).substr(0, 40) + "' is not a number", "give x, y and z with a decimal point");
+    fail_input(location, fmt::format("'{}' is not a number", one_line(row.cells[column]).substr(0, 40)),
+               "give x, y and z with a decimal point");
 }
 
 }  // namespace
@@ -65,20 +69,21 @@ std::array<double, 3> in_mesh_space(std::array<double, 3> position, std::optiona
     return position;
 }
 
-void check_place(const std::array<double, 3>& position, const std::string& at) {
+void check_place(const std::array<double, 3>& position, const std::string& location) {
     if (!is_place(position[0], position[1], position[2]))
-        fail_input(at, "a place beyond what can be computed with (coordinates up to " + digits(largest_coordinate) + ")",
+        fail_input(location,
+                   fmt::format("the position exceeds the supported range (coordinates up to {})", digits(largest_coordinate)),
                    "check its numbers, or choose another unit");
 }
 
 LandmarkSet read_landmark_table(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     std::vector<CsvRow> rows = csv_rows(bytes, csv_separator(bytes), where);
     LandmarkSet set;
-    if (rows.empty()) fail_input(where, "holds no rows", "give a table with the columns x, y and z");
+    if (rows.empty()) fail_input(where, "contains no rows", "give a table with the columns x, y and z");
     Columns columns;
     std::size_t first = 0;
-    if (const auto found = columns_of(rows.front().cells)) {
-        columns = *found;
+    if (const auto header_columns = columns_of(rows.front().cells)) {
+        columns = *header_columns;
         first = 1;
     } else {  // without a header: three numbers, optionally preceded by a name
         const std::size_t cells = rows.front().cells.size();
@@ -128,11 +133,11 @@ struct TpsSpecimen {
 };
 
 /// nullopt for a missing landmark
-std::optional<std::array<double, 3>> tps_point(std::string_view line, const std::string& at) {
+std::optional<std::array<double, 3>> tps_point(std::string_view line, const std::string& location) {
     std::array<double, 3> point{};
     std::size_t count = 0, missing = 0;
     const auto refuse = [&] {
-        fail_input(at, "does not hold three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
+        fail_input(location, "does not contain three coordinates", "give x, y and z, or NA NA NA for a missing landmark");
     };
     for (const std::string_view word : words_of(line, " \t,")) {
         const auto value = number_of(word);
@@ -153,50 +158,53 @@ std::vector<TpsSpecimen> tps_specimens(const std::string& bytes, const std::stri
         const std::string_view line = trimmed(line_at(bytes, i));
         ++number;
         if (line.empty()) continue;
-        const std::string at = at_line(where, number);
+        const std::string location = at_line(where, number);
         if (expected > 0) {
-            specimens.back().points.push_back(tps_point(line, at));
+            specimens.back().points.push_back(tps_point(line, location));
             specimens.back().lines.push_back(number);
             --expected;
             continue;
         }
         const std::size_t equals = line.find('=');
-        if (equals == std::string_view::npos) fail_input(at, "is not KEYWORD=value", "the count after LM3= may be too small");
+        if (equals == std::string_view::npos)
+            fail_input(location, "is not KEYWORD=value", "the count after LM3= may be too small");
         const std::string key = lower_case(trimmed(line.substr(0, equals)));
         const std::string_view value = trimmed(line.substr(equals + 1));
-        if (key == "lm") fail_input(at, "holds landmarks in two dimensions", "give a file with LM3=");
+        if (key == "lm") fail_input(location, "contains two-dimensional landmarks", "give a file with LM3=");
         if (key == "lm3") {
             const auto count = whole_of(value);
             if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
-                fail_input(at, "the count of landmarks is not a number that the file could hold", "correct LM3=");
+                fail_input(location, "the number of landmarks is invalid or exceeds the file", "correct LM3=");
             specimens.emplace_back();
             expected = static_cast<std::size_t>(*count);
         } else if (specimens.empty()) {
-            fail_input(at, "stands before any LM3=", "begin each specimen with LM3=count");
+            fail_input(location, "precedes the first LM3=", "begin each specimen with LM3=count");
         } else if (key == "id") {
             specimens.back().id = value;
         } else if (key == "comment") {
             specimens.back().comment = value;
         } else if (key == "scale") {
             const auto scale = number_of(value);
-            if (!scale || !(*scale > 0)) fail_input(at, "the scale is not a positive number", "correct SCALE=");
+            if (!scale || !(*scale > 0)) fail_input(location, "the scale is not a positive number", "correct SCALE=");
             specimens.back().scale = *scale;
         }
     }
-    if (expected > 0) fail_input(where, counted(expected, "landmark") + " fewer than LM3= says", "the file may be cut off");
-    if (specimens.empty()) fail_input(where, "holds no LM3=", "give a tps file of landmarks in three dimensions");
+    if (expected > 0) fail_input(where, counted(expected, "landmark") + " fewer than LM3= states", "the file may be cut off");
+    if (specimens.empty()) fail_input(where, "contains no LM3=", "give a tps file of three-dimensional landmarks");
     return specimens;
 }
 
 /// The only specimen, or the one requested by its ID or number.
-const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, const std::string& asked,
+const TpsSpecimen& chosen_specimen(const std::vector<TpsSpecimen>& specimens, const std::string& requested,
                                    const std::string& where) {
-    if (specimens.size() == 1 && asked.empty()) return specimens.front();
+    if (specimens.size() == 1 && requested.empty()) return specimens.front();
     for (const TpsSpecimen& specimen : specimens)
-        if (!asked.empty() && specimen.id == asked) return specimen;
-    if (const auto index = whole_of(asked); index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
+        if (!requested.empty() && specimen.id == requested) return specimen;
+    if (const auto index = whole_of(requested); index && *index >= 1 && static_cast<std::size_t>(*index) <= specimens.size())
         return specimens[static_cast<std::size_t>(*index) - 1];
-    fail_input(where, asked.empty() ? "holds " + to_string(specimens.size()) + " specimens" : "holds no specimen '" + asked + "'",
+    fail_input(where,
+               requested.empty() ? fmt::format("contains {} specimens", specimens.size())
+                                 : fmt::format("contains no specimen '{}'", requested),
                "choose one with --specimen, by its ID or its number from 1 to " + to_string(specimens.size()));
 }
 
@@ -218,36 +226,36 @@ std::vector<std::string> tps_names(const TpsSpecimen& specimen, const std::strin
 // tps (Rohlf).
 LandmarkSet read_tps(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     const std::vector<TpsSpecimen> specimens = tps_specimens(bytes, where);
-    const TpsSpecimen& chosen = chosen_specimen(specimens, options.specimen, where);
-    const std::vector<std::string> names = tps_names(chosen, where);
+    const TpsSpecimen& specimen = chosen_specimen(specimens, options.specimen, where);
+    const std::vector<std::string> names = tps_names(specimen, where);
     LandmarkSet set;
     std::size_t missing = 0;
-    for (std::size_t i = 0; i < chosen.points.size(); ++i) {
-        if (!chosen.points[i]) {
+    for (std::size_t i = 0; i < specimen.points.size(); ++i) {
+        if (!specimen.points[i]) {
             ++missing;
             continue;
         }
         Landmark landmark;
         landmark.name = names.empty() ? to_string(i + 1) : names[i];
-        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = chosen.scale * (*chosen.points[i])[k];
-        check_place(landmark.position, at_line(where, chosen.lines[i]));
+        for (std::size_t k = 0; k < 3; ++k) landmark.position[k] = specimen.scale * (*specimen.points[i])[k];
+        check_place(landmark.position, at_line(where, specimen.lines[i]));
         set.landmarks.push_back(std::move(landmark));
     }
     if (missing > 0) set.notes.push_back(counted(missing, "missing landmark") + " (NA) left out");
-    if (names.empty() && !set.landmarks.empty()) set.notes.emplace_back("tps names no landmarks; they are numbered");
+    if (names.empty() && !set.landmarks.empty()) set.notes.emplace_back("tps stores no landmark names; they are numbered");
     return set;
 }
 
 std::string write_tps(const LandmarkSet& set, const std::string& mesh_file) {
-    std::string text = "LM3=" + to_string(set.landmarks.size()) + "\n";
+    std::string text = fmt::format("LM3={}\n", set.landmarks.size());
     for (const Landmark& landmark : set.landmarks) text += joined_numbers(landmark.position) + "\n";
     Json comment(rapidjson::kObjectType);
     add_members(comment, comment.GetAllocator(), "names",
                 json_list(set.landmarks, comment.GetAllocator(), [](const Landmark& landmark) { return landmark.name; }));
     std::string line = json_text(comment);  // its line breaks are between values
     std::replace(line.begin(), line.end(), '\n', ' ');
-    text += "COMMENT=" + std::string(trimmed(line)) + "\n";
-    return text + "ID=" + one_line(Path(mesh_file).stem().string()) + "\n";
+    text += fmt::format("COMMENT={}\n", trimmed(line));
+    return fmt::format("{}ID={}\n", text, one_line(Path(mesh_file).stem().string()));
 }
 
 // fcsv: comment lines with the version, the space and the columns, then one row per point.
@@ -257,7 +265,7 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
     std::vector<std::string> header;
     std::string body;  // comment lines become blank, so that line numbers are preserved
     for (std::size_t i = 0; i < bytes.size();) {
-        const std::string_view whole = line_at(bytes, i), line = trimmed(whole);
+        const std::string_view raw_line = line_at(bytes, i), line = trimmed(raw_line);
         if (line.starts_with('#')) {
             const std::size_t equals = line.find('=');
             const std::string key = lower_case(trimmed(line.substr(1, equals == std::string_view::npos ? 0 : equals - 1)));
@@ -266,25 +274,25 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
                 if (value == "0" || value == "RAS") space = AnatomicalSpace::ras;
                 else if (value == "1" || value == "LPS") space = AnatomicalSpace::lps;
                 else
-                    fail_input(where, "the coordinate system '" + one_line(value).substr(0, 20) + "' is not known",
+                    fail_input(where, fmt::format("unknown coordinate system '{}'", one_line(value).substr(0, 20)),
                                "use LPS (1) or RAS (0)");
             } else if (key == "columns") {
                 const auto rows = csv_rows(value, ',', where);
                 if (!rows.empty()) header = rows.front().cells;
             }
         } else {
-            body += whole;
+            body += raw_line;
         }
         body += '\n';
     }
     if (!space) {
         space = AnatomicalSpace::ras;
-        set.notes.emplace_back("the file names no coordinate system: taken for RAS, as old versions wrote");
+        set.notes.emplace_back("the file states no coordinate system: RAS is assumed, as in old versions");
     }
     if (header.empty())
         header = {"id", "x", "y", "z", "ow", "ox", "oy", "oz", "vis", "sel", "lock", "label", "desc", "associatedNodeID"};
     const auto columns = columns_of(header);
-    if (!columns) fail_input(where, "its columns do not hold x, y and z", "correct the line '# columns = id,x,y,z,...'");
+    if (!columns) fail_input(where, "its columns do not include x, y and z", "correct the line '# columns = id,x,y,z,...'");
     const auto rows = csv_rows(body, ',', where);
     for (const CsvRow& row : rows) {
         Landmark landmark;
@@ -300,8 +308,10 @@ LandmarkSet read_fcsv(const std::string& bytes, const std::string& where, const 
 }
 
 std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& options, Notes& notes) {
-    std::string text = "# Markups fiducial file version = 4.11\n# CoordinateSystem = " + option_text(options, "mesh-space") +
-                       "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
+    std::string text = fmt::format(
+        "# Markups fiducial file version = 4.11\n# CoordinateSystem = {}\n# columns = "
+        "id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n",
+        option_text(options, "mesh-space"));
     std::size_t number = 0, changed = 0;
     for (const Landmark& landmark : set.landmarks) {
         changed += has_control(landmark.name) ? 1 : 0;
@@ -309,7 +319,8 @@ std::string write_fcsv(const LandmarkSet& set, const LandmarkFileOptions& option
                          digits(landmark.position[2]), "0", "0", "0", "1", "1", "1", "0", one_line(landmark.name), "", ""});
     }
     if (changed > 0)
-        notes.push_back(counted(changed, "name") + " held line breaks or control characters, which became blanks in fcsv");
+        notes.push_back(counted(changed, "name") +
+                        " contained line breaks or control characters, which were replaced by blanks in fcsv");
     return text;
 }
 

@@ -7,6 +7,8 @@
 #include "ostraka/annotation/colouring.h"
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -24,7 +26,7 @@ std::array<double, 3> position_of(const Mesh& mesh, Index vertex) {
     return {p.x(), p.y(), p.z()};
 }
 
-constexpr const char* points_only = " left out: the format holds points only";
+constexpr const char* points_only = " left out: the format stores points only";
 
 Point point_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
@@ -37,15 +39,15 @@ struct Entry {
 };
 
 /// Whether the file would fit with x and y negated.
-bool fits_turned(const Placer& placer, const std::vector<Entry>& entries) {
-    double here = 0, turned = 0;
+bool fits_negated(const Placer& placer, const std::vector<Entry>& entries) {
+    double distance_sum = 0, negated_sum = 0;
     const std::size_t step = 1 + entries.size() / 200;
     for (std::size_t i = 0; i < entries.size(); i += step) {
         const auto& p = *entries[i].position;
-        here += entries[i].placed.to_surface;
-        turned += placer.place(Point(-p[0], -p[1], p[2])).to_surface;
+        distance_sum += entries[i].placed.to_surface;
+        negated_sum += placer.place(Point(-p[0], -p[1], p[2])).to_surface;
     }
-    return turned < here / 4;
+    return negated_sum < distance_sum / 4;
 }
 
 [[noreturn]] void refuse(const Placer& placer, const std::vector<Entry>& entries, const std::vector<Entry>& far, double limit,
@@ -53,14 +55,14 @@ bool fits_turned(const Placer& placer, const std::vector<Entry>& entries) {
     const auto worst = std::max_element(far.begin(), far.end(),
                                         [](const Entry& a, const Entry& b) { return a.placed.to_surface < b.placed.to_surface; });
     const std::string remedy =
-        fits_turned(placer, entries)
-            ? "with x and y of the other sign they would fit: one is in LPS, the other in RAS coordinates; try the other "
+        fits_negated(placer, entries)
+            ? "they would fit with x and y negated: one is in LPS, the other in RAS coordinates; try the other "
               "--mesh-space"
-            : "check that mesh and file have one unit and one position, raise --tolerance, or leave them out with --skip-far";
+            : "check that mesh and file have the same unit and position, raise --tolerance, or skip them with --skip-far";
     fail_input(where,
-               counted(far.size(), "place") + " of " + to_string(entries.size()) + " farther than " + digits(limit) +
-                   " from the surface, the farthest " + worst->kind + " '" + interchange::one_line(worst->name).substr(0, 40) +
-                   "' at " + digits(worst->placed.to_surface),
+               fmt::format("{} of {} farther than {} from the surface; the farthest is {} '{}' at {}",
+                           counted(far.size(), "point"), entries.size(), digits(limit), worst->kind,
+                           interchange::one_line(worst->name).substr(0, 40), digits(worst->placed.to_surface)),
                remedy);
 }
 
@@ -91,16 +93,16 @@ public:
             if (curve.group) used_.insert(*curve.group);
         for (std::size_t i = 0; i < input.landmarks.size(); ++i)
             if (entries[i].placed.to_surface <= limit) add_point(input.landmarks[i], entries[i].placed);
-        std::size_t at = input.landmarks.size();
+        std::size_t index = input.landmarks.size();
         for (const LandmarkCurve& curve : input.curves) {
             std::vector<Placed> places;
-            for (std::size_t k = 0; k < curve.points.size(); ++k, ++at)
-                if (entries[at].placed.to_surface <= limit) places.push_back(entries[at].placed);
+            for (std::size_t k = 0; k < curve.points.size(); ++k, ++index)
+                if (entries[index].placed.to_surface <= limit) places.push_back(entries[index].placed);
             add_curve(curve, places);
         }
         if (!far.empty())
-            result_.set.notes.push_back(counted(far.size(), "place") + " farther than " + digits(limit) +
-                                        " from the surface left out, as asked: " + names_of(far));
+            result_.set.notes.push_back(fmt::format("{} farther than {} from the surface were skipped as requested: {}",
+                                                    counted(far.size(), "point"), digits(limit), names_of(far)));
         return std::move(result_);
     }
 
@@ -108,7 +110,7 @@ private:
     static std::string names_of(const std::vector<Entry>& entries) {
         std::string text;
         for (std::size_t i = 0; i < std::min<std::size_t>(entries.size(), 5); ++i)
-            text += (i > 0 ? ", '" : "'") + interchange::one_line(entries[i].name).substr(0, 40) + "'";
+            text += fmt::format("{}{}'", i > 0 ? ", '" : "'", interchange::one_line(entries[i].name).substr(0, 40));
         return text + (entries.size() > 5 ? " ..." : "");
     }
 
@@ -120,54 +122,55 @@ private:
 
     void begin(std::optional<int> group, const std::string& name, AnnotationType type) {
         Annotation annotation;
-        annotation.id = group && !made_.contains(*group) ? *group : fresh_id();
+        annotation.id = group && !index_of_id_.contains(*group) ? *group : fresh_id();
         annotation.tag = name;
         annotation.type = type;
         annotation.colour = distinct_colour(result_.set.annotations.size());
-        made_.emplace(annotation.id, result_.set.annotations.size());
+        index_of_id_.emplace(annotation.id, result_.set.annotations.size());
         result_.placements.push_back({annotation.id, name, 0, 0, 0, "places"});
         result_.set.annotations.push_back(std::move(annotation));
     }
 
-    void count(std::size_t at, const Placed& placed) {
-        PlacedAnnotation& placement = result_.placements[at];
+    void count(std::size_t index, const Placed& placed) {
+        PlacedAnnotation& placement = result_.placements[index];
         ++placement.points;
         placement.to_surface = std::max(placement.to_surface, placed.to_surface);
         placement.to_vertex = std::max(placement.to_vertex, placed.to_vertex);
     }
 
     void add_point(const Landmark& landmark, const Placed& placed) {
-        const auto known = landmark.group ? made_.find(*landmark.group) : made_.end();
-        std::size_t at = result_.set.annotations.size();
-        if (known != made_.end()) at = known->second;
+        const auto existing = landmark.group ? index_of_id_.find(*landmark.group) : index_of_id_.end();
+        std::size_t index = result_.set.annotations.size();
+        if (existing != index_of_id_.end()) index = existing->second;
         else begin(landmark.group, landmark.name, AnnotationType::point);
-        result_.set.annotations[at].points.push_back(placed.vertex);
-        count(at, placed);
+        result_.set.annotations[index].points.push_back(placed.vertex);
+        count(index, placed);
     }
 
     void add_curve(const LandmarkCurve& curve, const std::vector<Placed>& places) {
         std::vector<Index> picks;
         for (const Placed& placed : places) picks.push_back(placed.vertex);
         std::vector<Index> vertex_path =
-            placer_.vertex_path(picks, curve.closed && picks.size() > 2, where_ + ", curve '" + curve.name + "'");
+            placer_.vertex_path(picks, curve.closed && picks.size() > 2, fmt::format("{}, curve '{}'", where_, curve.name));
         if (vertex_path.size() < 2) {
-            result_.set.notes.push_back("curve '" + interchange::one_line(curve.name).substr(0, 40) +
-                                        "' shrank to a point on this mesh and was left out");
+            result_.set.notes.push_back(fmt::format("curve '{}' collapsed to a point on this mesh and was left out",
+                                                    interchange::one_line(curve.name).substr(0, 40)));
             return;
         }
-        const auto known = curve.group ? made_.find(*curve.group) : made_.end();
-        const bool joined = known != made_.end() && result_.set.annotations[known->second].type == AnnotationType::line;
-        const std::size_t at = joined ? known->second : result_.set.annotations.size();
+        const auto existing = curve.group ? index_of_id_.find(*curve.group) : index_of_id_.end();
+        const bool joined =
+            existing != index_of_id_.end() && result_.set.annotations[existing->second].type == AnnotationType::line;
+        const std::size_t index = joined ? existing->second : result_.set.annotations.size();
         if (!joined) begin(curve.group, curve.name, AnnotationType::line);
-        result_.set.annotations[at].polylines.push_back(std::move(vertex_path));
-        for (const Placed& placed : places) count(at, placed);
+        result_.set.annotations[index].polylines.push_back(std::move(vertex_path));
+        for (const Placed& placed : places) count(index, placed);
     }
 
     Placer placer_;
     const std::string& where_;
     PlacedAnnotations result_;
-    std::map<int, std::size_t> made_;  ///< ids -> positions in the set
-    std::set<int> used_;               ///< ids in use
+    std::map<int, std::size_t> index_of_id_;  ///< ids -> positions in the set
+    std::set<int> used_;                      ///< ids in use
     int next_ = 0;
 };
 
@@ -214,8 +217,9 @@ LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFor
         }
         attributes += annotation.attributes.size();
         for (std::size_t i = 0; i < annotation.points.size(); ++i)
-            result.landmarks.push_back({annotation.points.size() == 1 ? annotation.tag : annotation.tag + " " + to_string(i + 1),
-                                        position_of(mesh, annotation.points[i]), annotation.id});
+            result.landmarks.push_back(
+                {annotation.points.size() == 1 ? annotation.tag : fmt::format("{} {}", annotation.tag, i + 1),
+                 position_of(mesh, annotation.points[i]), annotation.id});
         for (const auto& polyline : annotation.polylines) {
             LandmarkCurve curve{annotation.tag, polyline.size() > 3 && polyline.front() == polyline.back(), {}, annotation.id};
             for (std::size_t k = 0; k < polyline.size() - (curve.closed ? 1 : 0); ++k)
@@ -223,9 +227,9 @@ LandmarkSet landmarks_of(const Mesh& mesh, const AnnotationSet& set, LandmarkFor
             result.curves.push_back(std::move(curve));
         }
     }
-    if (regions > 0) result.notes.push_back(counted(regions, "region") + " left out: landmark files hold no regions");
+    if (regions > 0) result.notes.push_back(counted(regions, "region") + " left out: landmark files store no regions");
     if (polylines > 0) result.notes.push_back(counted(polylines, "poly-line") + points_only);
-    if (attributes > 0) result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files hold none");
+    if (attributes > 0) result.notes.push_back(counted(attributes, "attribute") + " left out: landmark files store none");
     return result;
 }
 
@@ -244,9 +248,9 @@ void LandmarkFileOptions::describe(OptionList& visit) {
 }
 
 void PlaceOptions::describe(OptionList& visit) {
-    visit("tolerance", tolerance, "maximum distance of a place of the file from the surface", Range{0, 1},
+    visit("tolerance", tolerance, "maximum distance of a point of the file from the surface", Range{0, 1},
           "share of the box diagonal");
-    visit("skip-far", skip_far, "skip places that lie farther, with a note, instead of refusing the file", Anything{});
+    visit("skip-far", skip_far, "skip points that are farther, with a note, instead of refusing the file", Anything{});
 }
 
 }  // namespace ostraka

@@ -5,6 +5,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/json_build.h"
 
+#include <fmt/core.h>
+
 namespace ostraka::interchange {
 
 namespace {
@@ -21,17 +23,18 @@ struct Reader {
 
     std::vector<Landmark> points_of(const JsonValue& markup, const std::string& pointer) {
         std::vector<Landmark> points;
-        const std::string stated = text_in(markup, "coordinateSystem");
-        const auto space = stated == "RAS" ? AnatomicalSpace::ras : AnatomicalSpace::lps;
-        if (!stated.empty() && stated != "LPS" && stated != "RAS")
-            fail_input(where, "at " + pointer + "/coordinateSystem: '" + one_line(stated).substr(0, 20) + "' is not known",
+        const std::string declared_space = text_in(markup, "coordinateSystem");
+        const auto space = declared_space == "RAS" ? AnatomicalSpace::ras : AnatomicalSpace::lps;
+        if (!declared_space.empty() && declared_space != "LPS" && declared_space != "RAS")
+            fail_input(where,
+                       fmt::format("at {}/coordinateSystem: unknown value '{}'", pointer, one_line(declared_space).substr(0, 20)),
                        "use LPS or RAS");
-        const JsonValue* list = find_member(markup, "controlPoints");
-        if (list == nullptr) return points;
-        if (!list->IsArray())
-            fail_input(where, "at " + pointer + "/controlPoints: is not a list", "correct or regenerate the file");
-        for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
-            const JsonValue& point = (*list)[i];
+        const JsonValue* control_points = find_member(markup, "controlPoints");
+        if (control_points == nullptr) return points;
+        if (!control_points->IsArray())
+            fail_input(where, fmt::format("at {}/controlPoints: is not a list", pointer), "correct or regenerate the file");
+        for (rapidjson::SizeType i = 0; i < control_points->Size(); ++i) {
+            const JsonValue& point = (*control_points)[i];
             const std::string status = text_in(point, "positionStatus");
             if (!status.empty() && status != "defined") {
                 ++undefined;
@@ -39,29 +42,32 @@ struct Reader {
             }
             const auto position = triple(find_member(point, "position"));
             if (!position)
-                fail_input(where, "at " + pointer + "/controlPoints/" + std::to_string(i) + "/position: not three numbers",
+                fail_input(where, fmt::format("at {}/controlPoints/{}/position: not three numbers", pointer, i),
                            "give the position, or \"positionStatus\": \"undefined\"");
-            check_place(*position, where + ", at " + pointer + "/controlPoints/" + std::to_string(i) + "/position");
+            check_place(*position, fmt::format("{}, at {}/controlPoints/{}/position", where, pointer, i));
             points.push_back({text_in(point, "label"), in_mesh_space(*position, space, options.mesh_space), {}});
         }
         return points;
     }
 
     void read(const JsonValue& markup, const std::string& pointer) {
-        if (!markup.IsObject()) fail_input(where, "at " + pointer + ": is not an object", "correct or regenerate the file");
+        if (!markup.IsObject())
+            fail_input(where, fmt::format("at {}: is not an object", pointer), "correct or regenerate the file");
         const std::string type = text_in(markup, "type"), name = text_in(markup, "name");
         const JsonValue* unit = find_member(markup, "coordinateUnits");
         if (unit != nullptr && unit->IsArray() && !unit->Empty()) unit = &(*unit)[0];
         const std::string unit_text = unit != nullptr && unit->IsString() ? unit->GetString() : "";
         if (!unit_text.empty() && unit_text.size() < 20) {
             if (!set.unit.empty() && set.unit != unit_text)
-                fail_input(where, "at " + pointer + "/coordinateUnits: '" + one_line(unit_text) + "' after '" + set.unit + "'",
+                fail_input(where,
+                           fmt::format("at {}/coordinateUnits: '{}' differs from the earlier '{}'", pointer, one_line(unit_text),
+                                       set.unit),
                            "use one unit in a file");
             set.unit = unit_text;
         }
         if (type != "Fiducial" && type != "Line" && type != "Curve" && type != "ClosedCurve") {
-            set.notes.push_back("at " + pointer + ": a markup of type '" + one_line(type).substr(0, 20) +
-                                "' is no point, line or curve and was left out");
+            set.notes.push_back(fmt::format("at {}: a markup of type '{}' is not a point, line or curve and was left out",
+                                            pointer, one_line(type).substr(0, 20)));
             return;
         }
         std::vector<Landmark> points = points_of(markup, pointer);
@@ -73,7 +79,7 @@ struct Reader {
             return;
         }
         if (points.size() < 2) {
-            set.notes.push_back("at " + pointer + ": a curve of fewer than two points was left out");
+            set.notes.push_back(fmt::format("at {}: a curve of fewer than two points was left out", pointer));
             return;
         }
         LandmarkCurve curve;
@@ -93,10 +99,11 @@ JsonValue control_point(std::size_t number, const std::string& label, const std:
 
 LandmarkSet read_markups(const std::string& bytes, const std::string& where, const LandmarkFileOptions& options) {
     const Json document = parse_json(bytes, where);
-    const JsonValue* list = find_member(document, "markups");
-    if (list == nullptr || !list->IsArray()) fail_input(where, "has no list \"markups\"", "give a .mrk.json file of 3D Slicer");
+    const JsonValue* markups = find_member(document, "markups");
+    if (markups == nullptr || !markups->IsArray())
+        fail_input(where, "has no list \"markups\"", "give a .mrk.json file of 3D Slicer");
     Reader reader{where, options, {}, 0};
-    for (rapidjson::SizeType i = 0; i < list->Size(); ++i) reader.read((*list)[i], "/markups/" + std::to_string(i));
+    for (rapidjson::SizeType i = 0; i < markups->Size(); ++i) reader.read((*markups)[i], "/markups/" + std::to_string(i));
     if (reader.undefined > 0) reader.set.notes.push_back(counted(reader.undefined, "point") + " not yet placed, left out");
     return std::move(reader.set);
 }
@@ -105,7 +112,7 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
     Json document(rapidjson::kObjectType);
     auto& a = document.GetAllocator();
     add_member(document, "@schema", schema_address, a);
-    JsonValue list(rapidjson::kArrayType);
+    JsonValue markups(rapidjson::kArrayType);
     const auto begin = [&](const char* type, const std::string& name) {
         JsonValue markup = json_object(a, "type", type, "name", name, "coordinateSystem", option_text(options, "mesh-space"));
         // The schema allows two units; for any other unit of the mesh, the unit is omitted.
@@ -121,7 +128,7 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
                     json_list(set.landmarks, a, [&](const Landmark& landmark) {
                         return control_point(++number, landmark.name, landmark.position, a);
                     }));
-        list.PushBack(markup, a);
+        markups.PushBack(markup, a);
     }
     for (const LandmarkCurve& curve : set.curves) {
         JsonValue markup = begin(curve.closed ? "ClosedCurve" : "Curve", curve.name);
@@ -130,9 +137,9 @@ std::string write_markups(const LandmarkSet& set, const LandmarkFileOptions& opt
                         ++number;
                         return control_point(number, std::to_string(number), position, a);
                     }));
-        list.PushBack(markup, a);
+        markups.PushBack(markup, a);
     }
-    add_members(document, a, "markups", std::move(list), "provenance", provenance.to_json(a));
+    add_members(document, a, "markups", std::move(markups), "provenance", provenance.to_json(a));
     return json_text(document);
 }
 

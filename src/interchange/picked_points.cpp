@@ -5,6 +5,7 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
 #include <pugixml.hpp>
 
 #include <algorithm>
@@ -17,18 +18,19 @@ namespace {
 std::string for_xml(const std::string& text, std::size_t& changed) {
     std::string result;
     bool replaced = false;
-    for (std::size_t at = 0; at < text.size();) {
-        const Character here = character_at(text, at);
-        const bool blank = here.code == '\t' || here.code == '\n' || here.code == '\r';
-        const bool forbidden = is_control(here.code) && !blank;
-        result += forbidden ? "\xEF\xBF\xBD" : text.substr(at, here.length);
+    for (std::size_t position = 0; position < text.size();) {
+        const Character character = character_at(text, position);
+        const bool blank = character.code == '\t' || character.code == '\n' || character.code == '\r';
+        const bool forbidden = is_control(character.code) && !blank;
+        result += forbidden ? "\xEF\xBF\xBD" : text.substr(position, character.length);
         replaced = replaced || forbidden;
-        at += here.length;
+        position += character.length;
     }
     // U+FFFE and U+FFFF are not allowed in XML either.
-    for (const std::string_view none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
-        for (std::size_t at = result.find(none); at != std::string::npos; at = result.find(none, at)) {
-            result.replace(at, 3, "\xEF\xBF\xBD");
+    for (const std::string_view noncharacter : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
+        for (std::size_t position = result.find(noncharacter); position != std::string::npos;
+             position = result.find(noncharacter, position)) {
+            result.replace(position, 3, "\xEF\xBF\xBD");
             replaced = true;
         }
     changed += replaced ? 1 : 0;
@@ -42,7 +44,7 @@ LandmarkSet read_picked_points(const std::string& bytes, const std::string& wher
     const pugi::xml_parse_result parsed = document.load_buffer(bytes.data(), bytes.size());
     if (!parsed) {
         const auto end = bytes.begin() + std::clamp<std::ptrdiff_t>(parsed.offset, 0, static_cast<std::ptrdiff_t>(bytes.size()));
-        fail_input(where + ", line " + std::to_string(1 + std::count(bytes.begin(), end, '\n')),
+        fail_input(fmt::format("{}, line {}", where, 1 + std::count(bytes.begin(), end, '\n')),
                    std::string("not valid XML: ") + parsed.description(), "correct or regenerate the file");
     }
     const pugi::xml_node root = document.child("PickedPoints");
@@ -50,7 +52,7 @@ LandmarkSet read_picked_points(const std::string& bytes, const std::string& wher
     LandmarkSet set;
     std::size_t inactive = 0, number = 0;
     for (const pugi::xml_node point : root.children("point")) {
-        const std::string at = where + ", point " + std::to_string(++number);
+        const std::string location = fmt::format("{}, point {}", where, ++number);
         const std::string active = point.attribute("active").as_string("1");
         if (active == "0" || active == "false") {
             ++inactive;
@@ -60,10 +62,10 @@ LandmarkSet read_picked_points(const std::string& bytes, const std::string& wher
         for (std::size_t k = 0; k < 3; ++k) {
             const char* name = std::array{"x", "y", "z"}[k];
             const auto value = number_of(point.attribute(name).as_string());
-            if (!value) fail_input(at, std::string("the attribute ") + name + " is not a number", "give x, y and z");
+            if (!value) fail_input(location, fmt::format("the attribute {} is not a number", name), "give x, y and z");
             landmark.position[k] = *value;
         }
-        check_place(landmark.position, at);
+        check_place(landmark.position, location);
         landmark.name = as_utf8(point.attribute("name").as_string(std::to_string(number).c_str()));
         set.landmarks.push_back(std::move(landmark));
     }
@@ -89,7 +91,7 @@ std::string write_picked_points(const LandmarkSet& set, const std::string& mesh_
         point.append_attribute("active") = "1";
         point.append_attribute("name") = for_xml(landmark.name, changed).c_str();
     }
-    if (changed > 0) notes.push_back(counted(changed, "name") + " held control characters or others that XML has no place for");
+    if (changed > 0) notes.push_back(counted(changed, "name") + " contained characters that XML cannot represent");
     struct Text : pugi::xml_writer {
         std::string text;
         void write(const void* part, std::size_t size) override { text.append(static_cast<const char*>(part), size); }

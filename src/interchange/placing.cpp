@@ -7,6 +7,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,10 +52,12 @@ std::vector<Index> Placer::vertex_path(const std::vector<Index>& picks, bool clo
         query.metric = PathMetric::combined;
         const std::vector<Index> leg = paths_->find(from, to, query);
         if (leg.empty())
-            fail_input(where,
-                       "the vertices " + std::to_string(from.idx()) + " and " + std::to_string(to.idx()) +
-                           ", nearest to successive points, lie on parts of the mesh that are not connected",
-                       "give the mesh that the file was made for, or one of the same connectivity");
+            fail_input(
+                where,
+                fmt::format(
+                    "the vertices {} and {}, nearest to successive points, lie on parts of the mesh that are not connected",
+                    from.idx(), to.idx()),
+                "give the mesh that the file was made for, or one of the same connectivity");
         vertices.insert(vertices.end(), leg.begin() + 1, leg.end());
     }
     // Back-tracking along an edge is dropped.

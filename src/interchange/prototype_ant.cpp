@@ -10,16 +10,18 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 namespace ostraka {
 
 namespace {
 
 using namespace interchange;
 
-std::string in_words(const Descriptor& descriptor) {
+std::string value_text(const Descriptor& descriptor) {
     std::string text = joined_numbers(descriptor.values);
     if (!descriptor.file.empty()) text += descriptor.file;
-    return descriptor.unit.empty() ? text : text + " " + descriptor.unit;
+    return descriptor.unit.empty() ? text : fmt::format("{} {}", text, descriptor.unit);
 }
 
 }  // namespace
@@ -28,8 +30,8 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
     const Json native = annotations_to_json(set, mesh, "", {});
     Json document(rapidjson::kObjectType);
     auto& a = document.GetAllocator();
-    JsonValue list(rapidjson::kArrayType);
-    std::size_t descriptors = 0, unbounded = 0, renamed = 0, remarks = 0, untaken = 0;
+    JsonValue entries(rapidjson::kArrayType);
+    std::size_t descriptors = 0, unbounded = 0, renamed = 0, remarks = 0, unevaluated = 0;
     FreeIds ids(set.annotations);
     for (std::size_t i = 0; i < set.annotations.size(); ++i) {
         const Annotation& annotation = set.annotations[i];
@@ -63,31 +65,31 @@ std::string prototype_annotations(const Mesh& mesh, const AnnotationSet& set, st
                 try {
                     if (!measure.value) value = evaluate(mesh, annotation, measure);
                 } catch (const Error&) {
-                    ++untaken;
+                    ++unevaluated;
                 }
                 add_members(flat, a, "type", "Geometric", "value", value, "points", measure.points, "tool", measure.tool);
                 add_given(flat, a, "direction", measure.direction);
             } else {
                 const bool semantic = attribute.type == AttributeType::semantic;
                 descriptors += semantic ? 0 : 1;
-                add_members(flat, a, "type", "Semantic", "value", semantic ? attribute.note : in_words(attribute.descriptor));
+                add_members(flat, a, "type", "Semantic", "value", semantic ? attribute.note : value_text(attribute.descriptor));
             }
             attributes.PushBack(flat, a);
         }
         add_member(entry, "attributes", std::move(attributes), a);
-        list.PushBack(entry, a);
+        entries.PushBack(entry, a);
     }
-    add_member(document, "annotations", std::move(list), a);
-    const auto say = [&](std::size_t count, const char* noun, const char* what) {
-        if (count > 0) notes.push_back(counted(count, noun) + what);
+    add_member(document, "annotations", std::move(entries), a);
+    const auto add_note = [&](std::size_t count, const char* noun, const char* description) {
+        if (count > 0) notes.push_back(counted(count, noun) + description);
     };
-    say(descriptors, "descriptor", " written as text: the prototype knows measures and texts only");
-    say(unbounded, "region", " without an outline that tells it: the prototype will not see it whole");
-    say(renamed, "id", " below zero replaced: the prototype knows none");
-    say(remarks, "note", " left out");
-    say(untaken, "measure", " without a value that could be taken written as 0");
+    add_note(descriptors, "descriptor", " written as text: the prototype supports measures and texts only");
+    add_note(unbounded, "region", " without a complete outline: the prototype will not see all of it");
+    add_note(renamed, "id", " below zero replaced: the prototype does not support them");
+    add_note(remarks, "note", " left out");
+    add_note(unevaluated, "measure", " that could not be evaluated written as 0");
     if (!set.unit.empty() || !set.object_class.empty() || set.up)
-        notes.emplace_back("class, unit and upward direction left out: the format has no place for them");
+        notes.emplace_back("class, unit and upward direction left out: the format cannot store them");
     return json_text(document);
 }
 

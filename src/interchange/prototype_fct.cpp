@@ -9,6 +9,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/core/flood.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -37,13 +39,13 @@ public:
         if (!count || *count < 0) fail("the number of facets is not a number", "correct the header");
         AnnotationSet set;
         for (int i = 0; i < *count; ++i) set.annotations.push_back(facet(i));
-        if (next()) set.notes.push_back("line " + std::to_string(number_) + ": text behind the last facet is not read");
+        if (next()) set.notes.push_back(fmt::format("line {}: text after the last facet is ignored", number_));
         return set;
     }
 
 private:
-    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
-        fail_input(where_ + ", line " + std::to_string(std::max<std::size_t>(number_, 1)), what, remedy);
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const {
+        fail_input(fmt::format("{}, line {}", where_, std::max<std::size_t>(number_, 1)), problem, remedy);
     }
 
     /// Reads the next line into `line_`; false at the end.
@@ -61,22 +63,21 @@ private:
     }
     std::string_view field(std::string_view name) {
         if (!next() || !line_.starts_with(name))
-            fail("'" + std::string(name) + "' is expected here", "give a complete .fct file of the prototype");
+            fail(fmt::format("'{}' is expected", name), "give a complete .fct file of the prototype");
         return trimmed(line_.substr(name.size()));
     }
 
     std::vector<Index> indices() const {
-        std::vector<Index> list;
+        std::vector<Index> result;
         for (const std::string_view word : words_of(line_, " \t,;[]")) {
             const auto value = whole_of(word);
-            if (!value) fail("'" + one_line(word.substr(0, 40)) + "' is not a vertex", "give vertex indices");
+            if (!value) fail(fmt::format("'{}' is not a vertex index", one_line(word.substr(0, 40))), "give vertex indices");
             if (*value < 0 || static_cast<std::size_t>(*value) >= mesh_.number_of_vertices())
-                fail("vertex " + std::to_string(*value) + " of a mesh with " + std::to_string(mesh_.number_of_vertices()) +
-                         " vertices",
+                fail(fmt::format("vertex {} does not exist: the mesh has {} vertices", *value, mesh_.number_of_vertices()),
                      "give the mesh that the facets were made for");
-            list.push_back(static_cast<Index>(*value));
+            result.push_back(static_cast<Index>(*value));
         }
-        return list;
+        return result;
     }
 
     Annotation facet(int id) {
@@ -87,7 +88,7 @@ private:
         Attribute type;
         type.name = "facet";
         type.note = field("Type:");
-        if (!is_facet_type(type.note)) fail("the type is not known", "use external, internal or fracture");
+        if (!is_facet_type(type.note)) fail("unknown type", "use external, internal or fracture");
         annotation.attributes.push_back(type);
         (void)field("Border:");
         std::vector<Outline> borders;
@@ -102,24 +103,24 @@ private:
             for (std::size_t k = 0; k < border.size(); ++k) {
                 const Index a = border[k], b = border[(k + 1) % border.size()];
                 if (border.size() < 3 || !find_halfedge(mesh_, Vertex(a), Vertex(b)).is_valid())
-                    fail("the border is no closed way along edges of the mesh: " + std::to_string(a) + " to " + std::to_string(b),
+                    fail(fmt::format("the border is not a closed path along edges of the mesh: {} to {}", a, b),
                          "give the mesh that the facets were made for");
             }
             if (!border.empty()) borders.push_back(std::move(border));
         }
-        if (!has_vertices) fail("'Vertices:' is expected here", "the file may be cut off");
+        if (!has_vertices) fail("'Vertices:' is expected", "the file may be cut off");
         std::vector<Index> inner;
         if (next_line()) inner = indices();
         annotation.faces = flagged(side(borders, inner));
         if (annotation.faces.empty())
-            fail("the facet '" + one_line(annotation.tag).substr(0, 40) + "' holds no face", "correct its border");
+            fail(fmt::format("the facet '{}' contains no face", one_line(annotation.tag).substr(0, 40)), "correct its border");
         return annotation;
     }
 
     /// The side of the borders that contains the inner vertices, plus the components without a border that contain inner
     /// vertices.
     [[nodiscard]] std::vector<bool> side(std::vector<Outline> borders, const std::vector<Index>& inner) const {
-        const auto held = [&](const std::vector<bool>& selected) {
+        const auto count_inside = [&](const std::vector<bool>& selected) {
             std::size_t count = 0;
             for (const Index vertex : inner) {
                 const Halfedge h = mesh_.halfedge(Vertex(vertex));
@@ -133,18 +134,18 @@ private:
         };
         std::vector<bool> selected = fill_outlines(mesh_, borders).selected;
         for (Outline& border : borders) std::reverse(border.begin(), border.end());
-        std::vector<bool> other = fill_outlines(mesh_, borders).selected;
-        if (held(other) > held(selected)) selected = std::move(other);
+        std::vector<bool> opposite_side = fill_outlines(mesh_, borders).selected;
+        if (count_inside(opposite_side) > count_inside(selected)) selected = std::move(opposite_side);
 
-        std::vector<bool> seen(selected.size(), false);
+        std::vector<bool> visited(selected.size(), false);
         for (const Index vertex : inner) {
             const Halfedge h = mesh_.halfedge(Vertex(vertex));
             if (!h.is_valid()) continue;
             const Face start = mesh_.is_border(h) ? mesh_.face(mesh_.opposite(h)) : mesh_.face(h);
-            if (selected[start] || seen[start]) continue;
-            const std::vector<Face> part = flood_faces(mesh_, start, seen);
-            if (std::any_of(part.begin(), part.end(), [&](Face face) { return selected[face]; })) continue;
-            for (const Face face : part) selected[face] = true;
+            if (selected[start] || visited[start]) continue;
+            const std::vector<Face> component = flood_faces(mesh_, start, visited);
+            if (std::any_of(component.begin(), component.end(), [&](Face face) { return selected[face]; })) continue;
+            for (const Face face : component) selected[face] = true;
         }
         return selected;
     }
@@ -165,16 +166,16 @@ bool has_facet(const Annotation& annotation) {
 std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const std::string& mesh_file,
                              std::vector<std::string>& notes) {
     std::string body;
-    std::size_t count = 0, others = 0, attributes = 0, changed = 0;
+    std::size_t count = 0, unsupported = 0, attributes = 0, changed = 0;
     for (const Annotation& annotation : set.annotations) {
         if (!has_facet(annotation)) {
-            ++others;
+            ++unsupported;
             continue;
         }
         ++count;
         attributes += annotation.attributes.size();
         changed += has_control(annotation.tag) ? 1 : 0;
-        body += "Facet ID: " + one_line(annotation.tag) + "\nType: " + facet_type(annotation) + "\nBorder:\n";
+        body += fmt::format("Facet ID: {}\nType: {}\nBorder:\n", one_line(annotation.tag), facet_type(annotation));
         std::vector<bool> on_border(mesh.number_of_vertices(), false);
         for (Outline outline : extract_outlines(mesh, annotation.faces)) {
             for (const Index vertex : outline) on_border[vertex] = true;
@@ -183,13 +184,14 @@ std::string prototype_facets(const Mesh& mesh, const AnnotationSet& set, const s
         }
         std::vector<Index> inner = touched_vertices(mesh, annotation);
         std::erase_if(inner, [&](Index vertex) { return on_border[vertex]; });
-        body += "Vertices:\n" + joined_numbers(inner) + "\n\n";
+        body += fmt::format("Vertices:\n{}\n\n", joined_numbers(inner));
     }
-    if (others > 0) notes.push_back(counted(others, "annotation") + " left out: the format holds regions with a border only");
-    if (attributes > 0) notes.push_back(counted(attributes, "attribute") + " left out, but for the facet's type");
-    if (changed > 0) notes.push_back(counted(changed, "tag") + " held line breaks or control characters, which became blanks");
-    return "Filename: " + one_line(Path(mesh_file).filename().string()) + "\nNumber of Facets: " + std::to_string(count) +
-           "\n\n" + body;
+    if (unsupported > 0)
+        notes.push_back(counted(unsupported, "annotation") + " left out: the format stores regions with a border only");
+    if (attributes > 0) notes.push_back(counted(attributes, "attribute") + " left out, except for the facet's type");
+    if (changed > 0)
+        notes.push_back(counted(changed, "tag") + " contained line breaks or control characters, which were replaced by blanks");
+    return fmt::format("Filename: {}\nNumber of Facets: {}\n\n{}", one_line(Path(mesh_file).filename().string()), count, body);
 }
 
 AnnotationSet read_prototype_facets(const std::string& bytes, const Mesh& mesh, const std::string& where) {

@@ -11,6 +11,8 @@
 #include "ostraka/core/json_build.h"
 #include "ostraka/measure/measure.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -23,26 +25,26 @@ namespace {
 using namespace interchange;
 
 /// Whether `text` is one of the strings of a JSON-LD member, which may be a single value or a list.
-bool holds(const JsonValue* value, std::string_view text) {
+bool has_value(const JsonValue* value, std::string_view text) {
     if (value == nullptr) return false;
     if (value->IsString()) return text == text_of(*value);
     if (!value->IsArray()) return false;
-    return std::any_of(value->Begin(), value->End(), [&](const JsonValue& entry) { return holds(&entry, text); });
+    return std::any_of(value->Begin(), value->End(), [&](const JsonValue& entry) { return has_value(&entry, text); });
 }
 
 /// The objects of a member, which may be a single value or a list.
 std::vector<const JsonValue*> listed(const JsonValue* value) {
-    std::vector<const JsonValue*> list;
-    if (value == nullptr) return list;
-    if (!value->IsArray()) list.push_back(value);
+    std::vector<const JsonValue*> objects;
+    if (value == nullptr) return objects;
+    if (!value->IsArray()) objects.push_back(value);
     else
-        for (const auto& entry : value->GetArray()) list.push_back(&entry);
-    return list;
+        for (const auto& entry : value->GetArray()) objects.push_back(&entry);
+    return objects;
 }
 
 bool is_selector(const JsonValue& value, const std::string& name) {
     const JsonValue* type = find_member(value, "type");
-    return holds(type, name) || holds(type, web::terms + name.substr(name.find(':') + 1));
+    return has_value(type, name) || has_value(type, web::terms + name.substr(name.find(':') + 1));
 }
 
 /// The part of a region on one connected component of its original mesh.
@@ -76,9 +78,9 @@ std::vector<Index> region_of(Placer& placer, const std::vector<RegionPart>& part
                 area += face_area(mesh, Face(static_cast<Index>(f)));
                 selected[f] = true;
             }
-        if (area == 0) remarks.emplace_back("a part of the region shrank to nothing on this mesh");
+        if (area == 0) remarks.emplace_back("a part of the region vanished on this mesh");
         else if (std::abs(area - part.area) > part.area / 20)
-            remarks.push_back("a part's area of " + digits(part.area) + " became " + digits(area) + " on this mesh");
+            remarks.push_back(fmt::format("a part's area of {} became {} on this mesh", digits(part.area), digits(area)));
     }
     return flagged(selected);
 }
@@ -91,55 +93,57 @@ public:
     }
 
     PlacedAnnotations read(const JsonValue& document) {
-        JsonValue list(rapidjson::kArrayType);
+        JsonValue annotations(rapidjson::kArrayType);
         for (const auto& [item, pointer] : items_of(document)) {
-            if (!holds(find_member(*item, "type"), "Annotation")) {
-                note(pointer, "is no Annotation, left out");
+            if (!has_value(find_member(*item, "type"), "Annotation")) {
+                note(pointer, "is not an Annotation; left out");
                 continue;
             }
-            validate(*item, "web-annotation", where_ + ", in " + (pointer.empty() ? "the root" : pointer));
+            validate(*item, "web-annotation", fmt::format("{}, in {}", where_, pointer.empty() ? "the root" : pointer));
             JsonValue annotation = annotation_of(*item, pointer);
-            if (annotation.IsObject()) list.PushBack(annotation, a());
+            if (annotation.IsObject()) annotations.PushBack(annotation, a());
         }
-        if (list.Empty() && left_out_ > 0)
+        if (annotations.Empty() && left_out_ > 0)
             fail_input(where_, "none of its annotations could be placed on this mesh",
                        "see the notes, or give the mesh it is about");
-        return placed_annotations(native_, std::move(list), find_member(document, "about"), mesh_, where_, !by_place_,
+        return placed_annotations(native_, std::move(annotations), find_member(document, "about"), mesh_, where_, !by_place_,
                                   std::move(notes_), std::move(placements_));
     }
 
 private:
     JsonAllocator& a() { return native_.GetAllocator(); }
-    void note(const std::string& at, const std::string& text) {
-        notes_.push_back("at " + (at.empty() ? "the root" : at) + ": " + text);
+    void note(const std::string& pointer, const std::string& text) {
+        notes_.push_back(fmt::format("at {}: {}", pointer.empty() ? "the root" : pointer, text));
     }
 
     std::vector<std::pair<const JsonValue*, std::string>> items_of(const JsonValue& document) {
         std::vector<std::pair<const JsonValue*, std::string>> items;
-        const auto add_list = [&](const JsonValue& list, const std::string& pointer) {
-            if (!list.IsArray()) fail_input(where_, "at " + pointer + ": is not a list", "correct or regenerate the file");
-            for (rapidjson::SizeType i = 0; i < list.Size(); ++i) items.emplace_back(&list[i], pointer + "/" + std::to_string(i));
+        const auto add_list = [&](const JsonValue& page_items, const std::string& pointer) {
+            if (!page_items.IsArray())
+                fail_input(where_, fmt::format("at {}: is not a list", pointer), "correct or regenerate the file");
+            for (rapidjson::SizeType i = 0; i < page_items.Size(); ++i)
+                items.emplace_back(&page_items[i], fmt::format("{}/{}", pointer, i));
         };
         const JsonValue* type = find_member(document, "type");
         if (document.IsArray()) {
             add_list(document, "");
-        } else if (holds(type, "AnnotationCollection")) {
+        } else if (has_value(type, "AnnotationCollection")) {
             const JsonValue* page = find_member(document, "first");
-            const JsonValue* list = page == nullptr ? nullptr : find_member(*page, "items");
-            if (list == nullptr)
-                fail_input(where_, "at /first: the collection's page stands elsewhere",
-                           "give the page, or a collection that holds it");
-            add_list(*list, "/first/items");
+            const JsonValue* page_items = page == nullptr ? nullptr : find_member(*page, "items");
+            if (page_items == nullptr)
+                fail_input(where_, "at /first: the collection's page is not embedded",
+                           "give the page, or a collection that contains it");
+            add_list(*page_items, "/first/items");
             if (find_member(*page, "next") != nullptr) note("/first/next", "further pages are not fetched");
-        } else if (holds(type, "AnnotationPage")) {
-            const JsonValue* list = find_member(document, "items");
-            if (list == nullptr) fail_input(where_, "at /items: the page has no items", "give a page with its annotations");
-            add_list(*list, "/items");
+        } else if (has_value(type, "AnnotationPage")) {
+            const JsonValue* page_items = find_member(document, "items");
+            if (page_items == nullptr) fail_input(where_, "at /items: the page has no items", "give a page with its annotations");
+            add_list(*page_items, "/items");
             if (find_member(document, "next") != nullptr) note("/next", "further pages are not fetched");
-        } else if (holds(type, "Annotation")) {
+        } else if (has_value(type, "Annotation")) {
             items.emplace_back(&document, "");
         } else {
-            fail_input(where_, "holds no Annotation, AnnotationPage or AnnotationCollection", "give a file of the W3C model");
+            fail_input(where_, "contains no Annotation, AnnotationPage or AnnotationCollection", "give a file of the W3C model");
         }
         return items;
     }
@@ -152,13 +156,13 @@ private:
         for (const JsonValue* body : listed(find_member(item, "body"))) {
             if (!body->IsObject()) continue;
             const std::string value = text_in(*body, "value");
-            if (holds(find_member(*body, "format"), "application/json")) {
-                Json parsed = parse_json(value, where_ + ", in " + pointer + "/body");
+            if (has_value(find_member(*body, "format"), "application/json")) {
+                Json parsed = parse_json(value, fmt::format("{}, in {}/body", where_, pointer));
                 if (parsed.IsObject() && find_member(parsed, "id") != nullptr && find_member(parsed, "tag") != nullptr)
                     return parsed;
             }
             const JsonValue* purpose = find_member(*body, "purpose");
-            (holds(purpose, "tagging") || holds(purpose, "classifying") ? tags : descriptions).push_back(value);
+            (has_value(purpose, "tagging") || has_value(purpose, "classifying") ? tags : descriptions).push_back(value);
         }
         auto& allocator = data.GetAllocator();
         if (tags.empty() && !descriptions.empty()) {
@@ -181,7 +185,7 @@ private:
     /// Null if it cannot be placed.
     JsonValue annotation_of(const JsonValue& item, const std::string& pointer) {
         const auto targets = listed(find_member(item, "target"));
-        if (targets.size() > 1) note(pointer, "has " + counted(targets.size(), "target") + "; the first is taken");
+        if (targets.size() > 1) note(pointer, fmt::format("has {}; the first is used", counted(targets.size(), "target")));
         const JsonValue* by_index = nullptr;
         const JsonValue* by_place = nullptr;
         const JsonValue* source = find_member(*targets.front(), "source");
@@ -214,8 +218,8 @@ private:
             add_members(result, a(), "type", "region", "all", true);
             placement.how = "whole";
         } else {
-            note(pointer, by_index != nullptr ? "made for another mesh and without coordinates, left out"
-                                              : "selects in a way that is not known here, left out");
+            note(pointer, by_index != nullptr ? "made for another mesh and without coordinates; left out"
+                                              : "has an unknown selector; left out");
             ++left_out_;
             return {};
         }
@@ -225,11 +229,11 @@ private:
     }
 
     int id_of(const JsonValue& data, const std::string& tag) {
-        const JsonValue* stated = find_member(data, "id");
-        int id = stated != nullptr && stated->IsInt() ? stated->GetInt() : 0;
-        if (stated != nullptr && stated->IsInt() && ids_.insert(id).second) return id;
+        const JsonValue* given_id = find_member(data, "id");
+        int id = given_id != nullptr && given_id->IsInt() ? given_id->GetInt() : 0;
+        if (given_id != nullptr && given_id->IsInt() && ids_.insert(id).second) return id;
         for (id = 0; !ids_.insert(id).second;) ++id;
-        if (stated != nullptr) notes_.push_back("'" + tag + "' got the id " + std::to_string(id) + ", as its own is taken");
+        if (given_id != nullptr) notes_.push_back(fmt::format("'{}' received the id {}, because its own is in use", tag, id));
         return id;
     }
 
@@ -244,18 +248,19 @@ private:
         const double limit = options_.tolerance * placer().diagonal();
         for (const auto& entry : list.GetArray()) {
             const auto position = triple(&entry);
-            if (!position) fail_input(where_, "in " + pointer + ": a place that is not finite", "correct or regenerate the file");
-            check_place(*position, where_ + ", in " + pointer);
+            if (!position)
+                fail_input(where_, fmt::format("in {}: a position that is not finite", pointer),
+                           "correct or regenerate the file");
+            check_place(*position, fmt::format("{}, in {}", where_, pointer));
             const Placed p = placer().place(Point((*position)[0], (*position)[1], (*position)[2]));
             if (p.to_surface > limit) {
-                const std::string what =
-                    "a point lies " + digits(p.to_surface) + " from the surface, farther than " + digits(limit);
+                const std::string problem =
+                    fmt::format("a point lies {} from the surface, farther than {}", digits(p.to_surface), digits(limit));
                 if (!options_.skip_far)
-                    fail_input(
-                        where_, "in " + pointer + ": " + what,
-                        "give the mesh the file is about in the same unit and position, raise --tolerance, or leave such out "
-                        "with --skip-far");
-                note(pointer, what + "; left out, as asked");
+                    fail_input(where_, fmt::format("in {}: {}", pointer, problem),
+                               "give the mesh the file is about in the same unit and position, raise --tolerance, or skip such "
+                               "points with --skip-far");
+                note(pointer, problem + "; skipped as requested");
                 return {};
             }
             ++placement.points;
@@ -267,55 +272,57 @@ private:
     }
 
     static std::vector<Index> vertices(const std::vector<Placed>& places) {
-        std::vector<Index> list;
-        for (const Placed& p : places) list.push_back(p.vertex);
-        return list;
+        std::vector<Index> result;
+        for (const Placed& p : places) result.push_back(p.vertex);
+        return result;
     }
 
     bool place(const JsonValue& places, JsonValue& result, JsonValue& attributes, PlacedAnnotation& placement,
                const std::string& pointer) {
         placement.how = "places";
         if (const JsonValue* points = find_member(places, "points")) {
-            const auto found = placed(*points, placement, pointer);
-            if (!found) return false;
-            add_members(result, a(), "type", "point", "points", vertices(*found));
+            const auto placed_points = placed(*points, placement, pointer);
+            if (!placed_points) return false;
+            add_members(result, a(), "type", "point", "points", vertices(*placed_points));
         } else if (const JsonValue* polylines = find_member(places, "polylines")) {
-            std::vector<std::vector<Index>> list;
+            std::vector<std::vector<Index>> placed_polylines;
             for (const auto& polyline : polylines->GetArray()) {
-                const auto found = placed(polyline["points"], placement, pointer);
-                if (!found) return false;
-                std::vector<Index> vertex_path =
-                    placer().vertex_path(vertices(*found), polyline["closed"].GetBool(), where_ + ", in " + pointer);
-                if (vertex_path.size() > 1) list.push_back(std::move(vertex_path));
-                else note(pointer, "a poly-line shrank to a point on this mesh and was left out");
+                const auto placed_points = placed(polyline["points"], placement, pointer);
+                if (!placed_points) return false;
+                std::vector<Index> vertex_path = placer().vertex_path(vertices(*placed_points), polyline["closed"].GetBool(),
+                                                                      fmt::format("{}, in {}", where_, pointer));
+                if (vertex_path.size() > 1) placed_polylines.push_back(std::move(vertex_path));
+                else note(pointer, "a poly-line collapsed to a point on this mesh and was left out");
             }
-            if (list.empty()) return false;
-            add_members(result, a(), "type", "line", "polylines", list);
+            if (placed_polylines.empty()) return false;
+            add_members(result, a(), "type", "line", "polylines", placed_polylines);
         } else if (flag_in(places, "all")) {
             add_members(result, a(), "type", "region", "all", true);
         } else if (const JsonValue* parts = find_member(places, "parts")) {
-            std::vector<RegionPart> wanted;
+            std::vector<RegionPart> region_parts;
             for (const auto& part : parts->GetArray()) {
-                RegionPart& next = wanted.emplace_back();
-                next.area = part["area"].GetDouble();
+                RegionPart& region_part = region_parts.emplace_back();
+                region_part.area = part["area"].GetDouble();
                 const auto inside = triple(&part["inside"]);
                 if (!inside)
-                    fail_input(where_, "in " + pointer + ": a place that is not finite", "correct or regenerate the file");
-                check_place(*inside, where_ + ", in " + pointer);
-                next.inside = Point((*inside)[0], (*inside)[1], (*inside)[2]);
+                    fail_input(where_, fmt::format("in {}: a position that is not finite", pointer),
+                               "correct or regenerate the file");
+                check_place(*inside, fmt::format("{}, in {}", where_, pointer));
+                region_part.inside = Point((*inside)[0], (*inside)[1], (*inside)[2]);
                 for (const auto& outline : part["outlines"].GetArray()) {
-                    const auto found = placed(outline, placement, pointer);
-                    if (!found) return false;
-                    next.outlines.push_back(vertices(*found));
+                    const auto placed_points = placed(outline, placement, pointer);
+                    if (!placed_points) return false;
+                    region_part.outlines.push_back(vertices(*placed_points));
                 }
             }
             std::vector<std::string> remarks;
-            const std::vector<Index> faces = region_of(placer(), wanted, where_ + ", in " + pointer, remarks);
+            const std::vector<Index> faces =
+                region_of(placer(), region_parts, fmt::format("{}, in {}", where_, pointer), remarks);
             for (const auto& remark : remarks) note(pointer, remark);
             if (faces.empty()) return false;
             add_members(result, a(), "type", "region", "faces", faces);
         } else {
-            note(pointer, "a selector without places, left out");
+            note(pointer, "a selector without positions; left out");
             return false;
         }
         if (const JsonValue* pins = find_member(places, "pins"))
@@ -329,30 +336,31 @@ private:
         for (auto& attribute : attributes.GetArray()) {
             if (!attribute.IsObject() || text_in(attribute, "type") != "measure") continue;
             const JsonValue* id = find_member(attribute, "id");
-            const JsonValue* list = id != nullptr && id->IsInt() ? find_member(pins, std::to_string(id->GetInt())) : nullptr;
-            if (list == nullptr || !attribute.HasMember("measure") || !attribute["measure"].IsObject()) continue;
+            const JsonValue* pin_list = id != nullptr && id->IsInt() ? find_member(pins, std::to_string(id->GetInt())) : nullptr;
+            if (pin_list == nullptr || !attribute.HasMember("measure") || !attribute["measure"].IsObject()) continue;
             PlacedAnnotation pinned;  // pins may lie inside faces, so the distance to vertices is not meaningful
-            const auto found = placed(*list, pinned, pointer);
+            const auto placed_pins = placed(*pin_list, pinned, pointer);
             JsonValue& measure = attribute["measure"];
-            if (!found) continue;
+            if (!placed_pins) continue;
             for (const char* name : {"points", "locations", "stale", "repeats"}) measure.RemoveMember(name);
             JsonValue locations(rapidjson::kArrayType);
             bool inside = false;
-            for (rapidjson::SizeType i = 0; i < list->Size(); ++i) {
-                const auto p = triple(&(*list)[i]);
+            for (rapidjson::SizeType i = 0; i < pin_list->Size(); ++i) {
+                const auto p = triple(&(*pin_list)[i]);
                 const SurfaceHit hit = placer().nearest(Point((*p)[0], (*p)[1], (*p)[2]));
                 JsonValue location = json_object(a(), "face", hit.face, "barycentric", hit.barycentric);
                 locations.PushBack(location, a());
-                inside = inside || (*found)[i].to_vertex > 1e-9 * placer().diagonal();
+                inside = inside || (*placed_pins)[i].to_vertex > 1e-9 * placer().diagonal();
             }
-            add_members(measure, a(), "points", vertices(*found));
+            add_members(measure, a(), "points", vertices(*placed_pins));
             if (inside) add_member(measure, "locations", std::move(locations), a());
             add_members(measure, a(), "stale", true);
             if (repeats == nullptr) continue;
-            std::vector<std::vector<Index>> again;
+            std::vector<std::vector<Index>> placed_repeats;
             for (const auto& picked : list_in(*repeats, std::to_string(id->GetInt())))
-                if (const auto places = placed(picked, pinned, pointer)) again.push_back(vertices(*places));
-            add_given(measure, a(), "repeats", again);
+                if (const auto placed_picking = placed(picked, pinned, pointer))
+                    placed_repeats.push_back(vertices(*placed_picking));
+            add_given(measure, a(), "repeats", placed_repeats);
         }
     }
 

@@ -9,6 +9,8 @@
 #include "ostraka/core/flood.h"
 #include "ostraka/core/json_build.h"
 
+#include <fmt/core.h>
+
 #include <map>
 
 namespace ostraka {
@@ -22,8 +24,8 @@ std::string uuid_of(const std::string& content) {
     std::string hex = sha256(content).substr(0, 32);
     hex[12] = '8';
     hex[16] = "89ab"[static_cast<std::size_t>(hex[16] >= 'a' ? hex[16] - 'a' + 10 : hex[16] - '0') % 4];
-    return "urn:uuid:" + hex.substr(0, 8) + "-" + hex.substr(8, 4) + "-" + hex.substr(12, 4) + "-" + hex.substr(16, 4) + "-" +
-           hex.substr(20);
+    return fmt::format("urn:uuid:{}-{}-{}-{}-{}", hex.substr(0, 8), hex.substr(8, 4), hex.substr(12, 4), hex.substr(16, 4),
+                       hex.substr(20));
 }
 
 class WebWriter {
@@ -38,14 +40,14 @@ public:
 
     std::string write() {
         JsonValue items(rapidjson::kArrayType);
-        std::string all = checksum_;
-        const JsonValue& list = native_["annotations"];
-        for (rapidjson::SizeType i = 0; i < list.Size(); ++i) {
-            JsonValue item = annotation(list[i], set_.annotations[i]);
-            all += text_in(item, "id");
+        std::string content = checksum_;
+        const JsonValue& entries = native_["annotations"];
+        for (rapidjson::SizeType i = 0; i < entries.Size(); ++i) {
+            JsonValue item = annotation(entries[i], set_.annotations[i]);
+            content += text_in(item, "id");
             items.PushBack(item, a());
         }
-        const std::string collection = uuid_of(all);
+        const std::string collection = uuid_of(content);
         add_members(document_, a(), "@context", context(), "id", collection, "type", "AnnotationCollection", "label",
                     set_.object_class.empty() ? "annotations" : set_.object_class);
         JsonValue generator = json_object(a(), "id", "urn:x-ostraka:tool", "type", "Software", "name", "ostraka " + version());
@@ -53,7 +55,7 @@ public:
         JsonValue about(rapidjson::kObjectType);
         copy_members(about, a(), native_, {"class", "unit", "up", "provenance"});
         add_members(document_, a(), "about", std::move(about));
-        JsonValue page = json_object(a(), "id", uuid_of(all + "page"), "type", "AnnotationPage", "partOf", collection,
+        JsonValue page = json_object(a(), "id", uuid_of(content + "page"), "type", "AnnotationPage", "partOf", collection,
                                      "startIndex", 0, "items", std::move(items));
         add_member(document_, "first", std::move(page), a());
         return json_text(document_);
@@ -67,17 +69,17 @@ private:
         for (const char* name : {"sha256", "vertices", "faces"}) add_member(terms, name, std::string("ostraka:") + name, a());
         for (const char* name : {"indices", "places", "about"})
             add_members(terms, a(), name, json_object(a(), "@id", std::string("ostraka:") + name, "@type", "@json"));
-        JsonValue list = json_value(std::array{web::context}, a());
-        list.PushBack(terms, a());
-        return list;
+        JsonValue contexts = json_value(std::array{web::context}, a());
+        contexts.PushBack(terms, a());
+        return contexts;
     }
 
     JsonValue body(const char* purpose, const char* format, const std::string& value) {
         return json_object(a(), "type", "TextualBody", "purpose", purpose, "format", format, "value", value);
     }
 
-    static std::string in_words(const Attribute& attribute) {
-        if (attribute.type == AttributeType::semantic) return attribute.name + ": " + attribute.note;
+    static std::string description_of(const Attribute& attribute) {
+        if (attribute.type == AttributeType::semantic) return fmt::format("{}: {}", attribute.name, attribute.note);
         const auto [values, unit, stale] = figures_of(attribute);
         std::string text = attribute.name + ":";
         for (std::size_t i = 0; i < values.size() && i < 8; ++i) text += " " + digits(values[i]);
@@ -97,7 +99,7 @@ private:
         JsonValue bodies(rapidjson::kArrayType);
         bodies.PushBack(body("tagging", "text/plain", annotation.tag), a());
         for (const Attribute& attribute : annotation.attributes)
-            bodies.PushBack(body("describing", "text/plain", in_words(attribute)), a());
+            bodies.PushBack(body("describing", "text/plain", description_of(attribute)), a());
         bodies.PushBack(body("describing", "application/json", data_text), a());
 
         JsonValue selectors = json_list_of(json_object(a(), "type", web::index_selector, "indices", std::move(indices)), a());
@@ -120,11 +122,11 @@ private:
     /// The index of the connected component of each face.
     [[nodiscard]] std::vector<Index> components() const {
         std::vector<Index> number(mesh_.number_of_faces());
-        std::vector<bool> seen(number.size(), false);
+        std::vector<bool> visited(number.size(), false);
         Index count = 0;
         for (const Face start : mesh_.faces()) {
-            if (seen[start]) continue;
-            for (const Face face : flood_faces(mesh_, start, seen)) number[face] = count;
+            if (visited[start]) continue;
+            for (const Face face : flood_faces(mesh_, start, visited)) number[face] = count;
             ++count;
         }
         return number;
@@ -138,9 +140,9 @@ private:
             double largest_area = -1;
             std::vector<Outline> outlines;
         };
-        std::map<Index, Part> found;
+        std::map<Index, Part> component_parts;
         for (const Index face : annotation.faces) {
-            Part& part = found[number_[face]];
+            Part& part = component_parts[number_[face]];
             const double area = face_area(mesh_, Face(face));
             part.area += area;
             if (area > part.largest_area) {
@@ -150,9 +152,9 @@ private:
         }
         for (Outline& outline : extract_outlines(mesh_, annotation.faces)) {
             const Halfedge first = find_halfedge(mesh_, Vertex(outline[0]), Vertex(outline[1]));
-            found[number_[mesh_.face(first)]].outlines.push_back(std::move(outline));
+            component_parts[number_[mesh_.face(first)]].outlines.push_back(std::move(outline));
         }
-        return json_list(found, a(), [&](const auto& entry) {
+        return json_list(component_parts, a(), [&](const auto& entry) {
             const Part& part = entry.second;
             return json_object(a(), "area", part.area, "inside", place(centroid(mesh_, Face(part.largest))), "outlines",
                                json_list(part.outlines, a(), [&](const Outline& outline) { return vertex_list(outline); }));

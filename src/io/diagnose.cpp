@@ -5,6 +5,8 @@
 #include "soup_edges.h"
 #include "soup_geometry.h"
 
+#include <fmt/core.h>
+
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -39,16 +41,16 @@ std::vector<Index> find_components(const TriangleSoup& soup, MeshDiagnosis& diag
         component[v] = component[root];
         ++diagnosis.components[component[v]].vertices;
     }
-    std::vector<Index> of_triangle(soup.triangles.size(), no_index);
+    std::vector<Index> component_of_triangle(soup.triangles.size(), no_index);
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
         if (detail::repeats_corner(soup.triangles[t])) {
             ++diagnosis.repeated_corners;
             continue;
         }
-        of_triangle[t] = component[soup.triangles[t][0]];
-        ++diagnosis.components[of_triangle[t]].triangles;
+        component_of_triangle[t] = component[soup.triangles[t][0]];
+        ++diagnosis.components[component_of_triangle[t]].triangles;
     }
-    return of_triangle;
+    return component_of_triangle;
 }
 
 /// Counts triangles with the same three vertices, at the edge of their two lowest vertices.
@@ -88,12 +90,12 @@ private:
             flip ^= flip_[root];
             root = parent_[root];
         }
-        for (std::uint8_t rest = flip; i != root && parent_[i] != root;) {  // path compression
+        for (std::uint8_t remaining_flip = flip; i != root && parent_[i] != root;) {  // path compression
             const Index above = parent_[i];
-            const std::uint8_t own = flip_[i];
+            const std::uint8_t parent_flip = flip_[i];
             parent_[i] = root;
-            flip_[i] = rest;
-            rest ^= own;
+            flip_[i] = remaining_flip;
+            remaining_flip ^= parent_flip;
             i = above;
         }
         return {root, flip};
@@ -187,11 +189,11 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
             }
             edge = no_index;
             // Used edges are skipped permanently: each list is traversed once, however many edges meet at a fan.
-            const auto list = std::lower_bound(at_fan.begin(), at_fan.end(), std::pair<Index, Index>{fan, 0});
-            auto& passed = walked[static_cast<std::size_t>(list - at_fan.begin())];
-            auto i = list + passed;
+            const auto entries = std::lower_bound(at_fan.begin(), at_fan.end(), std::pair<Index, Index>{fan, 0});
+            auto& passed = walked[static_cast<std::size_t>(entries - at_fan.begin())];
+            auto i = entries + passed;
             while (i != at_fan.end() && i->first == fan && border[i->second].used) ++i;
-            passed = static_cast<Index>(i - list);
+            passed = static_cast<Index>(i - entries);
             if (i != at_fan.end() && i->first == fan) edge = i->second;
             if (edge == no_index) break;
             const bool forward = border[edge].first_fan == fan;
@@ -199,14 +201,14 @@ void examine_border(const TriangleSoup& soup, const SoupEdges& edges, DisjointSe
             const Index next = border[edge].halfedge;
             at = forward ? target(soup, next) : origin(soup, next);
         }
-        BorderLoop rest;  // the remainder of a walk that ends at a non-manifold edge
+        BorderLoop remainder;  // the remainder of a walk that ends at a non-manifold edge
         for (const Step& step : walk) {
             on_walk[step.vertex] = 0;
             if (&step == &walk.back()) break;
-            rest.edges += step.leaving.edges;
-            rest.length += step.leaving.length;
+            remainder.edges += step.leaving.edges;
+            remainder.length += step.leaving.length;
         }
-        if (rest.edges > 0) diagnosis.border_loops.push_back(rest);
+        if (remainder.edges > 0) diagnosis.border_loops.push_back(remainder);
     }
     std::stable_sort(diagnosis.border_loops.begin(), diagnosis.border_loops.end(),
                      [](const BorderLoop& a, const BorderLoop& b) { return a.length > b.length; });
@@ -295,11 +297,11 @@ long long MeshDiagnosis::euler() const {
 }
 
 std::vector<std::string> MeshDiagnosis::defects() const {
-    std::vector<std::string> list;
-    const auto add = [&](std::size_t count, const char* one, const char* many) {
-        if (count > 0) list.push_back(std::to_string(count) + " " + (count == 1 ? one : many));
+    std::vector<std::string> descriptions;
+    const auto add = [&](std::size_t count, const char* singular, const char* plural) {
+        if (count > 0) descriptions.push_back(fmt::format("{} {}", count, count == 1 ? singular : plural));
     };
-    if (triangles == repeated_corners) list.emplace_back("no triangles");
+    if (triangles == repeated_corners) descriptions.emplace_back("no triangles");
     add(repeated_corners, "triangle that names a vertex twice", "triangles that name a vertex twice");
     add(degenerate_triangles, "triangle without area", "triangles without area");
     add(duplicate_triangles, "duplicate triangle", "duplicate triangles");
@@ -311,8 +313,8 @@ std::vector<std::string> MeshDiagnosis::defects() const {
     add(inside_out_components, "component inside out", "components inside out");
     add(self_intersections, "pair of intersecting triangles", "pairs of intersecting triangles");
     if (self_intersections_checked && !self_intersections_complete)
-        list.emplace_back("the search for intersecting triangles was given up, there may be more");
-    return list;
+        descriptions.emplace_back("the search for intersecting triangles was given up, there may be more");
+    return descriptions;
 }
 
 MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options) {
@@ -349,13 +351,13 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
     diagnosis.oriented_box = oriented_box(soup.points);
     lap("oriented box");
     if (!options.skip_self_intersections) {
-        const SelfIntersections found = detail::self_intersections(soup, place, without_area, 1'000'000);
+        const SelfIntersections intersections = detail::self_intersections(soup, place, without_area, 1'000'000);
         diagnosis.self_intersections_checked = true;
-        diagnosis.self_intersections_complete = found.complete;
-        diagnosis.self_intersections = found.pairs.size();
+        diagnosis.self_intersections_complete = intersections.complete;
+        diagnosis.self_intersections = intersections.pairs.size();
         diagnosis.self_intersection_examples.assign(
-            found.pairs.begin(),
-            found.pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(10, found.pairs.size())));
+            intersections.pairs.begin(),
+            intersections.pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(10, intersections.pairs.size())));
         lap("self-intersections");
     }
     return diagnosis;
@@ -364,7 +366,7 @@ MeshDiagnosis diagnose(const TriangleSoup& soup, const DiagnoseOptions& options)
 double crack_width(const TriangleSoup& soup) { return detail::crack_width(soup); }
 
 void DiagnoseOptions::describe(OptionList& visit) {
-    visit("skip-self-intersections", skip_self_intersections, "leave out the search for self-intersections", Anything{});
+    visit("skip-self-intersections", skip_self_intersections, "skip the search for self-intersections", Anything{});
 }
 
 }  // namespace ostraka

@@ -24,9 +24,10 @@ bool looks_like_stl(std::string_view bytes);
 /// Index.
 void close_polygon(PolygonSoup& soup, const std::string& file);
 
-/// Colour channels from a file, given as 0..1 or as 0..255. NaN and values out of range are clamped and counted in `bad`.
-std::uint8_t channel_from_unit(double value, std::size_t& bad);
-std::uint8_t channel_from_byte(double value, std::size_t& bad);
+/// Colour channels from a file, given as 0..1 or as 0..255. NaN and values out of range are clamped and counted in
+/// `out_of_range`.
+std::uint8_t channel_from_unit(double value, std::size_t& out_of_range);
+std::uint8_t channel_from_byte(double value, std::size_t& out_of_range);
 
 inline constexpr Colour white{255, 255, 255, 255};
 

@@ -6,6 +6,8 @@
 #include "ostraka/core/provenance.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -143,18 +145,20 @@ std::string Builder::head(const std::string& where, const std::string& remedy) {
 
 Reader::Reader(const std::string& bytes, const std::string& where)
     : where_(where), allowed_(6.0 * static_cast<double>(bytes.size()) + 128e6) {
-    const std::string_view all(bytes);
-    const auto damaged = [&](const std::string& what) { fail_input(where_, what, "give a binary glTF 2.0 file (.glb)"); };
-    if (all.size() < 20 || value_at<std::uint32_t>(all, 0) != magic) damaged("is no GLB file");
-    if (value_at<std::uint32_t>(all, 4) != 2) damaged("is of glTF version " + std::to_string(value_at<std::uint32_t>(all, 4)));
-    if (value_at<std::uint32_t>(all, 8) > all.size()) damaged("is cut off: its header says more bytes than there are");
-    const std::size_t end = value_at<std::uint32_t>(all, 8);
+    const std::string_view contents(bytes);
+    const auto damaged = [&](const std::string& problem) { fail_input(where_, problem, "give a binary glTF 2.0 file (.glb)"); };
+    if (contents.size() < 20 || value_at<std::uint32_t>(contents, 0) != magic) damaged("is not a GLB file");
+    if (value_at<std::uint32_t>(contents, 4) != 2)
+        damaged("has glTF version " + std::to_string(value_at<std::uint32_t>(contents, 4)));
+    if (value_at<std::uint32_t>(contents, 8) > contents.size())
+        damaged("is truncated: its header states more bytes than the file has");
+    const std::size_t end = value_at<std::uint32_t>(contents, 8);
     bool has_json = false;
     for (std::size_t at = 12; at + 8 <= end;) {
-        const std::size_t length = value_at<std::uint32_t>(all, at);
-        const std::uint32_t kind = value_at<std::uint32_t>(all, at + 4);
+        const std::size_t length = value_at<std::uint32_t>(contents, at);
+        const std::uint32_t kind = value_at<std::uint32_t>(contents, at + 4);
         if (length > end - at - 8) damaged("a chunk is longer than the file");
-        const std::string_view chunk = all.substr(at + 8, length);
+        const std::string_view chunk = contents.substr(at + 8, length);
         if (!has_json && kind != json_chunk) damaged("the first chunk is not JSON");
         if (!has_json) document_ = parse_json(chunk, where_ + ", JSON chunk");
         else if (kind == binary_chunk && binary_.empty()) binary_ = chunk;
@@ -164,33 +168,34 @@ Reader::Reader(const std::string& bytes, const std::string& where)
     if (!has_json || !document_.IsObject()) damaged("has no JSON chunk with an object");
 }
 
-void Reader::fail(const std::string& pointer, const std::string& what) const {
-    fail_input(where_, "at " + pointer + ": " + what, "correct or regenerate the file");
+void Reader::fail(const std::string& pointer, const std::string& problem) const {
+    fail_input(where_, fmt::format("at {}: {}", pointer, problem), "correct or regenerate the file");
 }
 
 std::size_t Reader::number(const JsonValue& object, const char* name, const std::string& pointer, std::size_t fallback) const {
     const JsonValue* value = find_member(object, name);
     if (value == nullptr) return fallback;
-    if (!value->IsUint()) fail(pointer + "/" + name, "is not a whole number from 0");
+    if (!value->IsUint()) fail(pointer + "/" + name, "is not a non-negative integer");
     return value->GetUint();
 }
 
-const JsonValue& Reader::element(const char* list, std::size_t index, const std::string& pointer) const {
-    const JsonValue* found = find_member(document_, list);
-    if (found == nullptr || !found->IsArray() || index >= found->Size() ||
-        !(*found)[static_cast<rapidjson::SizeType>(index)].IsObject())
-        fail(pointer, std::string("names element ") + std::to_string(index) + " of " + list + ", which the file does not have");
-    return (*found)[static_cast<rapidjson::SizeType>(index)];
+const JsonValue& Reader::element(const char* list_name, std::size_t index, const std::string& pointer) const {
+    const JsonValue* list = find_member(document_, list_name);
+    if (list == nullptr || !list->IsArray() || index >= list->Size() ||
+        !(*list)[static_cast<rapidjson::SizeType>(index)].IsObject())
+        fail(pointer, fmt::format("refers to element {} of {}, which does not exist", index, list_name));
+    return (*list)[static_cast<rapidjson::SizeType>(index)];
 }
 
 std::string_view Reader::view(std::size_t index, const std::string& pointer) const {
     const JsonValue& entry = element("bufferViews", index, pointer);
-    const std::string here = "/bufferViews/" + std::to_string(index);
-    if (number(entry, "buffer", here, 1) != 0) fail(here + "/buffer", "is not the file's own buffer");
-    const JsonValue& buffer = element("buffers", 0, here);
-    if (find_member(buffer, "uri") != nullptr) fail("/buffers/0/uri", "data outside of the file are not read");
-    const std::size_t offset = number(entry, "byteOffset", here, 0), length = number(entry, "byteLength", here, 0);
-    if (offset > binary_.size() || length > binary_.size() - offset) fail(here, "reaches beyond the buffer");
+    const std::string entry_pointer = "/bufferViews/" + std::to_string(index);
+    if (number(entry, "buffer", entry_pointer, 1) != 0) fail(entry_pointer + "/buffer", "is not the file's own buffer");
+    const JsonValue& buffer = element("buffers", 0, entry_pointer);
+    if (find_member(buffer, "uri") != nullptr) fail("/buffers/0/uri", "external data is not supported");
+    const std::size_t offset = number(entry, "byteOffset", entry_pointer, 0),
+                      length = number(entry, "byteLength", entry_pointer, 0);
+    if (offset > binary_.size() || length > binary_.size() - offset) fail(entry_pointer, "exceeds the buffer");
     return binary_.substr(offset, length);
 }
 
@@ -198,8 +203,9 @@ void Reader::charge(double bytes, const std::string& pointer) const {
     charged_ += bytes;
     if (charged_ > allowed_)
         fail_input(where_,
-                   "at " + pointer + ": the file would take more than " + digits(allowed_ / 1e6, 3) +
-                       " MB, many times its size, as its parts name the same data again and again",
+                   fmt::format("at {}: the file would take more than {} MB, many times its size, because its parts refer to the "
+                               "same data repeatedly",
+                               pointer, digits(allowed_ / 1e6, 3)),
                    "export each surface once, without copies of it");
 }
 
@@ -211,33 +217,34 @@ Reader::Values Reader::accessor(std::size_t index, std::size_t width, const std:
 
 std::vector<double> Reader::read_accessor(std::size_t index, std::size_t width, const std::string& pointer) const {
     const JsonValue& entry = element("accessors", index, pointer);
-    const std::string here = "/accessors/" + std::to_string(index);
-    if (find_member(entry, "sparse") != nullptr) fail(here + "/sparse", "sparse accessors are not read");
+    const std::string entry_pointer = "/accessors/" + std::to_string(index);
+    if (find_member(entry, "sparse") != nullptr) fail(entry_pointer + "/sparse", "sparse accessors are not supported");
     const std::string type = text_in(entry, "type");
-    const std::size_t stated = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
-    if (stated != width)
-        fail(here + "/type", "'" + without_controls(type, " ").substr(0, 20) + "' is not what is asked for here");
-    const std::size_t kind = number(entry, "componentType", here, 0);
-    const auto* const held =
-        std::find_if(components.begin(), components.end(), [&](const Component& one) { return one.kind == kind; });
-    if (held == components.end()) fail(here + "/componentType", "is not known");
-    const std::size_t which = number(entry, "bufferView", here, static_cast<std::size_t>(-1));
-    if (which == static_cast<std::size_t>(-1)) fail(here, "has no bufferView");
-    const std::string_view bytes = view(which, here);
-    const std::size_t element_size = held->size * width;
-    const std::size_t stride =
-        number(element("bufferViews", which, here), "byteStride", "/bufferViews/" + std::to_string(which), element_size);
-    const std::size_t offset = number(entry, "byteOffset", here, 0), count = number(entry, "count", here, 0);
-    if (stride < element_size || stride > 252) fail(here, "has a stride that does not fit");
+    const std::size_t type_width = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
+    if (type_width != width)
+        fail(entry_pointer + "/type", fmt::format("'{}' is not the expected type", without_controls(type, " ").substr(0, 20)));
+    const std::size_t kind = number(entry, "componentType", entry_pointer, 0);
+    const auto* const stored_type =
+        std::find_if(components.begin(), components.end(), [&](const Component& candidate) { return candidate.kind == kind; });
+    if (stored_type == components.end()) fail(entry_pointer + "/componentType", "is not a known component type");
+    const std::size_t view_index = number(entry, "bufferView", entry_pointer, static_cast<std::size_t>(-1));
+    if (view_index == static_cast<std::size_t>(-1)) fail(entry_pointer, "has no bufferView");
+    const std::string_view bytes = view(view_index, entry_pointer);
+    const std::size_t element_size = stored_type->size * width;
+    const std::size_t stride = number(element("bufferViews", view_index, entry_pointer), "byteStride",
+                                      "/bufferViews/" + std::to_string(view_index), element_size);
+    const std::size_t offset = number(entry, "byteOffset", entry_pointer, 0), count = number(entry, "count", entry_pointer, 0);
+    if (stride < element_size || stride > 252) fail(entry_pointer, "has a stride that does not fit");
     if (count == 0) return {};
     if (offset > bytes.size() || element_size > bytes.size() - offset ||
         (count - 1) > (bytes.size() - offset - element_size) / stride)
-        fail(here, "reaches beyond its view");
-    charge(8.0 * static_cast<double>(count * width), here);
+        fail(entry_pointer, "exceeds its bufferView");
+    charge(8.0 * static_cast<double>(count * width), entry_pointer);
     std::vector<double> values;
     values.reserve(count * width);
     for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t k = 0; k < width; ++k) values.push_back(held->number_at(bytes, offset + i * stride + k * held->size));
+        for (std::size_t k = 0; k < width; ++k)
+            values.push_back(stored_type->number_at(bytes, offset + i * stride + k * stored_type->size));
     return values;
 }
 

@@ -3,6 +3,8 @@
 #include "ostraka/core/error.h"
 #include "text_reader.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -17,8 +19,8 @@ std::optional<PlyType> parse_type(std::string_view word) {
         {"short", PlyType::int16},   {"int16", PlyType::int16},     {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},
         {"int", PlyType::int32},     {"int32", PlyType::int32},     {"uint", PlyType::uint32},    {"uint32", PlyType::uint32},
         {"float", PlyType::float32}, {"float32", PlyType::float32}, {"double", PlyType::float64}, {"float64", PlyType::float64}};
-    const auto found = types.find(word);
-    return found == types.end() ? std::nullopt : std::optional(found->second);
+    const auto type = types.find(word);
+    return type == types.end() ? std::nullopt : std::optional(type->second);
 }
 
 PlyType type_word(TextReader& reader) {
@@ -51,7 +53,7 @@ PlyElement element_line(TextReader& reader, const PlyHeader& header) {
     PlyElement element;
     element.name = reader.word();
     if (element.name.empty()) reader.fail("an element has no name");
-    if (header.find(element.name) != nullptr) reader.fail("element " + in_quotes(element.name) + " is declared twice");
+    if (header.find(element.name) != nullptr) reader.fail(fmt::format("element {} is declared twice", in_quotes(element.name)));
     const std::int64_t count = reader.integer("the number of elements");
     if (count < 0) reader.fail("the number of elements is negative");
     element.count = static_cast<std::size_t>(count);
@@ -73,8 +75,8 @@ std::size_t PlyElement::min_bytes(PlyFormat format) const {
 }
 
 const PlyElement* PlyHeader::find(std::string_view name) const {
-    const auto found = std::find_if(elements.begin(), elements.end(), [name](const PlyElement& e) { return e.name == name; });
-    return found == elements.end() ? nullptr : &*found;
+    const auto element = std::find_if(elements.begin(), elements.end(), [name](const PlyElement& e) { return e.name == name; });
+    return element == elements.end() ? nullptr : &*element;
 }
 
 PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
@@ -110,7 +112,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
             // Binary data begin directly after the line feed; blanks at the end of the line belong to the header.
             while (!reader.take('\n')) {
                 if (reader.remaining() == 0) break;
-                if (!reader.at_word_end()) reader.fail("end_header is followed by more on its line", {}, line);
+                if (!reader.at_word_end()) reader.fail("end_header is followed by further text on its line", {}, line);
                 reader.set_position(reader.position() + 1);
             }
             header.size = static_cast<std::size_t>(reader.position() - bytes.data());

@@ -5,6 +5,8 @@
 #include "ply_header.h"
 #include "text_reader.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -22,18 +24,16 @@ public:
     void begin(const PlyElement& element, std::size_t row) {
         if (element.properties.empty()) return;
         if (!reader_.skip_space())
-            reader_.fail("the file ends at " + element.name + " " + std::to_string(row) + " of " + std::to_string(element.count),
-                         "the file is cut off");
+            reader_.fail(fmt::format("the file ends at {} {} of {}", element.name, row, element.count), "the file is cut off");
     }
     void end(const PlyElement& element, std::size_t row) {
-        if (!reader_.line_done())
-            reader_.fail(element.name + " " + std::to_string(row) + " has more values than the header declares");
+        if (!reader_.line_done()) reader_.fail(fmt::format("{} {} has more values than the header declares", element.name, row));
     }
     double value(PlyType type) {
         if (is_real(type)) return reader_.number("a value");
-        const std::int64_t whole = reader_.integer("a whole number");
-        if (whole < -largest_whole || whole > largest_whole) reader_.fail("a whole number does not fit 32 bits");
-        return static_cast<double>(whole);
+        const std::int64_t integer = reader_.integer("a whole number");
+        if (integer < -largest_whole || integer > largest_whole) reader_.fail("a whole number does not fit 32 bits");
+        return static_cast<double>(integer);
     }
     /// Minimum number of bytes for `count` values.
     static std::size_t minimum(PlyType, std::size_t count) { return 2 * count; }
@@ -42,7 +42,7 @@ public:
             if (reader_.word().empty()) reader_.fail("the line ends inside a list", "the file may be cut off or damaged");
     }
     [[nodiscard]] std::size_t remaining() const { return reader_.remaining() + 1; }  // the last line end may be missing
-    [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) { reader_.fail(what, remedy); }
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}) { reader_.fail(problem, remedy); }
     bool only_space_left() { return !reader_.skip_space(); }
 
 private:
@@ -88,8 +88,8 @@ public:
         position_ += minimum(type, count);
     }
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
-    [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}) {
-        fail_input(file_ + ", byte " + std::to_string(position_ - begin_), what, remedy);
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}) {
+        fail_input(fmt::format("{}, byte {}", file_, position_ - begin_), problem, remedy);
     }
     bool only_space_left() { return position_ == end_; }
 
@@ -104,8 +104,7 @@ private:
         return std::bit_cast<T>(bytes);
     }
     [[noreturn]] void cut_off() {
-        fail("the file ends inside " + element_->name + " " + std::to_string(row_) + " of " + std::to_string(element_->count),
-             "the file is cut off");
+        fail(fmt::format("the file ends inside {} {} of {}", element_->name, row_, element_->count), "the file is cut off");
     }
 
     const char* begin_;

@@ -140,17 +140,17 @@ void PolygonCutter::project(const std::vector<Point3>& points, const std::uint32
 
 /// Cuts off every second corner until none is left: no corner is in more triangles than the logarithm of their number.
 void PolygonCutter::halve(std::vector<std::uint32_t> ring, const std::uint32_t* corners, std::vector<Triple>& triangles) const {
-    std::vector<std::uint32_t> left;
+    std::vector<std::uint32_t> remaining_ring;
     while (ring.size() > 2) {
-        left.clear();
+        remaining_ring.clear();
         for (std::size_t i = 0; i < ring.size(); i += 2) {
-            left.push_back(ring[i]);
+            remaining_ring.push_back(ring[i]);
             if (i + 1 == ring.size()) continue;
             const Triple piece{kept_[ring[i]], kept_[ring[i + 1]], kept_[ring[i + 2 < ring.size() ? i + 2 : 0]]};
             const auto u = corners[piece[0]], v = corners[piece[1]], w = corners[piece[2]];
             if (u != v && v != w && w != u) triangles.push_back(piece);
         }
-        ring.swap(left);
+        ring.swap(remaining_ring);
     }
 }
 
@@ -236,18 +236,18 @@ bool PolygonCutter::is_ear(std::uint32_t previous, std::uint32_t tip, std::uint3
 }
 
 CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Triple>& triangles) {
-    auto left = static_cast<std::uint32_t>(kept_.size());
-    alive_.assign(left, 1);
-    next_.resize(left);
-    previous_.resize(left);
-    for (std::uint32_t i = 0; i < left; ++i) {
-        next_[i] = i + 1 == left ? 0 : i + 1;
-        previous_[i] = i == 0 ? left - 1 : i - 1;
+    auto remaining = static_cast<std::uint32_t>(kept_.size());
+    alive_.assign(remaining, 1);
+    next_.resize(remaining);
+    previous_.resize(remaining);
+    for (std::uint32_t i = 0; i < remaining; ++i) {
+        next_[i] = i + 1 == remaining ? 0 : i + 1;
+        previous_[i] = i == 0 ? remaining - 1 : i - 1;
     }
-    const std::size_t count = left;
+    const std::size_t count = remaining;
     budget_ = std::clamp<std::size_t>(count * count, 1'000'000, 20'000'000) + 200 * count;
     build_grid(0);
-    std::uint32_t in_grid = left;
+    std::uint32_t in_grid = remaining;
     CutResult result = CutResult::clean;
     const auto distinct = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const auto u = corners[kept_[a]], v = corners[kept_[b]], w = corners[kept_[c]];
@@ -259,13 +259,13 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
         next_[before] = after;
         previous_[after] = before;
         alive_[tip] = 0;
-        --left;
+        --remaining;
     };
     // Iterates over candidates: clipping an ear only changes its two neighbours, which are deferred to the next round (thus
     // every second corner is clipped first, which gives fewer slivers than a fan). When no candidate is left, all corners are
     // tested again, since a corner that blocked an ear may be gone.
     std::uint32_t last = 0, clipped_since_scan = 1, round = 0;
-    round_of_.assign(left, 0);
+    round_of_.assign(remaining, 0);
     candidates_.clear();
     const auto clip_and_note = [&](std::uint32_t tip) {
         clip(tip);
@@ -277,12 +277,12 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
             waiting_.push_back(neighbour);
         }
     };
-    while (left > 3) {
+    while (remaining > 3) {
         ++round;
         waiting_.clear();
         if (budget_ == 0) {
             std::vector<std::uint32_t> ring;
-            for (std::uint32_t i = last, n = 0; n < left; i = next_[i], ++n) ring.push_back(i);
+            for (std::uint32_t i = last, n = 0; n < remaining; i = next_[i], ++n) ring.push_back(i);
             halve(std::move(ring), corners, triangles);
             return CutResult::gave_up;
         }
@@ -292,17 +292,17 @@ CutResult PolygonCutter::clip_ears(const std::uint32_t* corners, std::vector<Tri
         } else {
             if (candidates_.empty()) {
                 clipped_since_scan = 0;
-                for (std::uint32_t i = next_[last], n = 0; n < left; i = next_[i], ++n) candidates_.push_back(i);
+                for (std::uint32_t i = next_[last], n = 0; n < remaining; i = next_[i], ++n) candidates_.push_back(i);
             }
             for (const std::uint32_t tip : candidates_) {
-                if (left <= 3 || budget_ == 0) break;
+                if (remaining <= 3 || budget_ == 0) break;
                 --budget_;
                 if (alive_[tip] == 0 || round_of_[tip] == round || !distinct(previous_[tip], tip, next_[tip])) continue;
                 if (is_ear(previous_[tip], tip, next_[tip])) clip_and_note(tip);
             }
-            if (left < in_grid / 2) {  // ears are larger now: rebuild with coarser cells and without the clipped corners
+            if (remaining < in_grid / 2) {  // ears are larger now: rebuild with coarser cells and without the clipped corners
                 build_grid(last);
-                in_grid = left;
+                in_grid = remaining;
             }
         }
         std::swap(candidates_, waiting_);

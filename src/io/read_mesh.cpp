@@ -3,6 +3,8 @@
 #include "ostraka/core/limits.h"
 #include "ostraka/io/mesh_of_polygons.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,17 +18,17 @@ void close_polygon(PolygonSoup& soup, const std::string& file) {
     soup.polygon_begin.push_back(static_cast<Index>(soup.corners.size()));
 }
 
-std::uint8_t channel_from_byte(double value, std::size_t& bad) {
+std::uint8_t channel_from_byte(double value, std::size_t& out_of_range) {
     if (!(value >= 0 && value <= 255)) {
-        ++bad;
+        ++out_of_range;
         return value > 255 ? 255 : 0;
     }
     return static_cast<std::uint8_t>(std::lround(value));
 }
 
-std::uint8_t channel_from_unit(double value, std::size_t& bad) {
+std::uint8_t channel_from_unit(double value, std::size_t& out_of_range) {
     if (!(value >= 0 && value <= 1)) {
-        ++bad;
+        ++out_of_range;
         return value > 1 ? 255 : 0;
     }
     return static_cast<std::uint8_t>(std::lround(255 * value));
@@ -49,8 +51,8 @@ Format format_of_extension(const Path& file) {
     if (ending == ".stl") return Format::stl;
     if (ending == ".mesh") return Format::medit;
     if (ending == ".vtu") return Format::vtu;
-    throw Error(ErrorKind::usage, file.string(), "has no extension of a mesh file that can be read",
-                "use .obj, .off, .ply or .stl, of tetrahedra .mesh or .vtu");
+    throw Error(ErrorKind::usage, file.string(), "does not have the extension of a readable mesh format",
+                "use .obj, .off, .ply or .stl, or .mesh or .vtu for tetrahedra");
 }
 
 /// The format of the extension, unless the content clearly has another format.
@@ -80,14 +82,14 @@ std::string wide_encoding(std::string_view bytes) {
 
 std::string defects_in_words(const ManifoldDefects& defects) {
     std::string text;
-    const auto add = [&text](std::size_t count, const char* what) {
-        if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+    const auto add = [&text](std::size_t count, const char* description) {
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, description);
     };
     add(defects.repeated_corners, "triangles that repeat a vertex");
     add(defects.nonmanifold_edges, "edges with more than two triangles");
     add(defects.misoriented_edges, "edges whose triangles are oriented differently");
     add(defects.nonmanifold_vertices, "vertices where several sheets touch");
-    return text + "; the first at triangle " + std::to_string(defects.example_triangle);
+    return fmt::format("{}; the first at triangle {}", text, defects.example_triangle);
 }
 
 }  // namespace
@@ -96,15 +98,15 @@ std::string defects_in_words(const ManifoldDefects& defects) {
 
 PolygonSoup read_polygons(const Path& file) {
     using namespace io;
-    const Format named = format_of_extension(file);
+    const Format format_of_name = format_of_extension(file);
     std::string bytes = read_file(file);
     const std::string name = file.string();
     if (bytes.empty()) fail_input(name, "is empty", "export it again");
     if (const std::string encoding = wide_encoding(bytes); !encoding.empty())
         fail_input(name, "is text in UTF-16: convert to UTF-8",
-                   "run: iconv -f " + encoding + " -t UTF-8 " + name + " > " +
-                       (file.parent_path() / ("utf8-" + file.filename().string())).string());
-    const Format format = format_of_content(named, bytes);
+                   fmt::format("run: iconv -f {} -t UTF-8 {} > {}", encoding, name,
+                               (file.parent_path() / ("utf8-" + file.filename().string())).string()));
+    const Format format = format_of_content(format_of_name, bytes);
     PolygonSoup soup = format == Format::obj     ? read_obj(bytes, name)
                        : format == Format::off   ? read_off(bytes, name)
                        : format == Format::ply   ? read_ply(bytes, name)
@@ -112,8 +114,9 @@ PolygonSoup read_polygons(const Path& file) {
                        : format == Format::vtu   ? read_vtu(bytes, name)
                                                  : read_stl(bytes, name);
     if (soup.points.size() >= no_index) fail_work(name, "has more than four thousand million vertices", "split it");
-    if (format != named)
-        soup.notes.push_back("named " + extension(file) + " but holds " + name_of(format) + ", and was read as such");
+    if (format != format_of_name)
+        soup.notes.push_back(
+            fmt::format("has the extension {} but contains {}, and was read as such", extension(file), name_of(format)));
     return soup;
 }
 
@@ -122,7 +125,7 @@ MeshFile read_mesh(const Path& file) { return mesh_of_polygons(read_polygons(fil
 MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
     MeshFile result;
     if (polygons.polygon_count() == 0)
-        fail_input(name, "has no faces (" + std::to_string(polygons.points.size()) + " vertices)", "use a file with a surface");
+        fail_input(name, fmt::format("has no faces ({} vertices)", polygons.points.size()), "use a file with a surface");
     TriangulatedSoup triangles = triangulate(std::move(polygons));
     if (triangles.soup.triangles.empty())
         fail_input(name, "has no face with three distinct corners", "use a file with a surface");
@@ -131,12 +134,12 @@ MeshFile mesh_of_polygons(PolygonSoup polygons, const std::string& name) {
         fail_input(name, "is not an oriented manifold: " + io::defects_in_words(defects), "run: ostraka mesh repair " + name);
     const CGAL::Bbox_3 box = bounding_box(result.mesh);
     if (!(box.x_span() > 0 || box.y_span() > 0 || box.z_span() > 0))
-        fail_input(name, "has no size: all its faces are at one place", "use a file with a surface");
+        fail_input(name, "has no extent: all its faces are at one point", "use a file with a surface");
     double largest = 0;
     for (const auto& point : triangles.soup.points)
         for (const double x : point) largest = std::max(largest, std::abs(x));
     if (largest > largest_coordinate || box_diagonal(result.mesh) < 1e-60)
-        fail_input(name, "has coordinates beyond what can be computed with (1e-60 to 1e60)", "choose another unit");
+        fail_input(name, "has coordinates outside the supported range (1e-60 to 1e60)", "choose another unit");
     result.extras = std::move(triangles.extras);
     result.triangle_polygon = std::move(triangles.triangle_polygon);
     result.notes = std::move(triangles.notes);

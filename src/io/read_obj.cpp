@@ -2,6 +2,8 @@
 #include "ostraka/core/words.h"
 #include "text_reader.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -60,20 +62,20 @@ private:
         soup_.points.push_back(point);
         if (reader_.line_done()) return;
         const char* first = reader_.position();
-        std::array<float, 4> more{0, 0, 0, 1};
+        std::array<float, 4> extra_values{0, 0, 0, 1};
         std::size_t count = 0;
         while (!reader_.line_done()) {
             if (count == 4) reader_.fail("a vertex has more than seven numbers", {}, first);
-            more[count++] = static_cast<float>(reader_.number("a colour or weight"));
+            extra_values[count++] = static_cast<float>(reader_.number("a colour or weight"));
         }
         if (count == 1) {
-            if (more[0] != 1) ++weights_;
+            if (extra_values[0] != 1) ++weights_;
             return;
         }
         if (count == 2) reader_.fail("a vertex has five numbers", "write x y z, x y z w, or x y z red green blue", first);
         colours_.resize(soup_.points.size(), {-1, -1, -1, -1});
-        if (count == 3) more[3] = -1;
-        colours_.back() = more;
+        if (count == 3) extra_values[3] = -1;
+        colours_.back() = extra_values;
     }
 
     void texture() {
@@ -86,34 +88,34 @@ private:
     }
 
     /// Converts an index from 1, or from -1 backwards, to an index from 0.
-    Index resolve(std::int64_t value, std::size_t count, const char* what, const char* at, std::int64_t& largest,
-                  const char*& largest_at) {
+    Index resolve(std::int64_t value, std::size_t count, const char* element, const char* position, std::int64_t& largest,
+                  const char*& largest_position) {
         const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(count) + value;
         if (value == 0 || index < 0 || index >= static_cast<std::int64_t>(no_index))
-            reader_.fail(std::string("a face names ") + what + " " + std::to_string(value) + " of " + std::to_string(count),
-                         "indices start at 1", at);
+            reader_.fail(fmt::format("a face names {} {} of {}", element, value, count), "indices start at 1", position);
         if (index > largest) {
             largest = index;
-            largest_at = at;
+            largest_position = position;
         }
         return static_cast<Index>(index);
     }
 
     void face() {
         while (!reader_.line_done()) {
-            const char* at = reader_.position();
+            const char* start = reader_.position();
             soup_.corners.push_back(
-                resolve(reader_.integer_part("a vertex index"), soup_.points.size(), "vertex", at, largest_, largest_at_));
+                resolve(reader_.integer_part("a vertex index"), soup_.points.size(), "vertex", start, largest_, largest_at_));
             Index uv = no_index;
             if (reader_.take('/')) {
                 if (reader_.at_integer())
-                    uv = resolve(reader_.integer_part("a texture index"), texture_.size(), "texture coordinate", at, largest_uv_,
-                                 largest_uv_at_);
+                    uv = resolve(reader_.integer_part("a texture index"), texture_.size(), "texture coordinate", start,
+                                 largest_uv_, largest_uv_at_);
                 if (reader_.take('/') && reader_.at_integer()) reader_.integer_part("a normal index");
             }
             if (!reader_.at_word_end()) {
-                reader_.set_position(at);
-                reader_.fail("face corner " + in_quotes(reader_.word()) + " is not of the form 1, 1/1, 1//1 or 1/1/1", {}, at);
+                reader_.set_position(start);
+                reader_.fail(fmt::format("face corner {} is not of the form 1, 1/1, 1//1 or 1/1/1", in_quotes(reader_.word())),
+                             {}, start);
             }
             if (uv != no_index) {
                 corner_uv_.resize(soup_.corners.size(), no_index);
@@ -126,12 +128,11 @@ private:
     /// Faces may refer to later vertices, so the largest index is checked at the end.
     void check_forward_references() {
         if (largest_ >= static_cast<std::int64_t>(soup_.points.size()))
-            reader_.fail("a face names vertex " + std::to_string(largest_ + 1) + " of " + std::to_string(soup_.points.size()),
+            reader_.fail(fmt::format("a face names vertex {} of {}", largest_ + 1, soup_.points.size()),
                          "the file may be cut off or damaged", largest_at_);
         if (largest_uv_ >= static_cast<std::int64_t>(texture_.size()))
-            reader_.fail(
-                "a face names texture coordinate " + std::to_string(largest_uv_ + 1) + " of " + std::to_string(texture_.size()),
-                "the file may be cut off or damaged", largest_uv_at_);
+            reader_.fail(fmt::format("a face names texture coordinate {} of {}", largest_uv_ + 1, texture_.size()),
+                         "the file may be cut off or damaged", largest_uv_at_);
     }
 
     void finish_colours() {
@@ -141,9 +142,9 @@ private:
         for (const auto& c : colours_)
             for (const float x : c)
                 if (std::isfinite(x)) largest = std::max(largest, x);
-        const bool bytes = largest > 1;
-        if (bytes) soup_.notes.emplace_back("vertex colours exceed 1 and were read as 0 to 255");
-        std::size_t missing = 0, bad = 0;
+        const bool byte_range = largest > 1;
+        if (byte_range) soup_.notes.emplace_back("vertex colours exceed 1 and were read as 0 to 255");
+        std::size_t missing = 0, out_of_range = 0;
         soup_.extras.vertex_colours.assign(soup_.points.size(), white);
         for (std::size_t v = 0; v < colours_.size(); ++v) {
             if (colours_[v][0] == -1 && colours_[v][1] == -1) {
@@ -152,12 +153,13 @@ private:
             }
             for (std::size_t k = 0; k < 4; ++k) {
                 if (k == 3 && colours_[v][3] == -1) continue;
-                soup_.extras.vertex_colours[v][k] =
-                    bytes ? channel_from_byte(colours_[v][k], bad) : channel_from_unit(colours_[v][k], bad);
+                soup_.extras.vertex_colours[v][k] = byte_range ? channel_from_byte(colours_[v][k], out_of_range)
+                                                               : channel_from_unit(colours_[v][k], out_of_range);
             }
         }
         if (missing > 0) soup_.notes.push_back(std::to_string(missing) + " vertices have no colour and were made white");
-        if (bad > 0) soup_.notes.push_back(std::to_string(bad) + " colour values are out of range and were clamped");
+        if (out_of_range > 0)
+            soup_.notes.push_back(std::to_string(out_of_range) + " colour values are out of range and were clamped");
     }
 
     /// Texture coordinates are per vertex if every corner refers to those with the number of its vertex, else per corner.

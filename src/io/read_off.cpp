@@ -2,6 +2,8 @@
 #include "ostraka/core/error.h"
 #include "text_reader.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -19,7 +21,7 @@ struct Header {
 
 std::optional<Header> parse_header(std::string_view word) {
     Header header;
-    const std::size_t whole = word.size();
+    const std::size_t full_length = word.size();
     const auto take = [&word](std::string_view prefix) {
         if (!word.starts_with(prefix)) return false;
         word.remove_prefix(prefix.size());
@@ -30,7 +32,7 @@ std::optional<Header> parse_header(std::string_view word) {
     header.normals = take("N");
     if (!take("OFF") && !take("off")) return std::nullopt;
     if (word.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
-    header.length = whole - word.size();
+    header.length = full_length - word.size();
     return header;
 }
 
@@ -47,12 +49,12 @@ public:
         for (std::size_t f = 0; f < faces_; ++f) face(f);
         if (!soup_.extras.face_colours.empty()) soup_.extras.face_colours.resize(faces_, white);
         if (header_.normals) soup_.notes.emplace_back("vertex normals are not kept");
-        if (palette_ > 0)
-            soup_.notes.push_back(std::to_string(palette_) + " faces name a colour of a palette, which is not kept");
+        if (palette_ > 0) soup_.notes.push_back(std::to_string(palette_) + " faces refer to a palette colour, which is not kept");
         if (uncoloured_ > 0 && uncoloured_ < faces_)
             soup_.notes.push_back(std::to_string(uncoloured_) + " faces have no colour and were made white");
-        if (bad_ > 0) soup_.notes.push_back(std::to_string(bad_) + " colour values are out of range and were clamped");
-        if (reader_.skip_space()) soup_.notes.emplace_back("what follows the last face is not read");
+        if (out_of_range_ > 0)
+            soup_.notes.push_back(std::to_string(out_of_range_) + " colour values are out of range and were clamped");
+        if (reader_.skip_space()) soup_.notes.emplace_back("the data after the last face is ignored");
         return std::move(soup_);
     }
 
@@ -77,17 +79,17 @@ private:
         if (!reader_.line_done()) reader_.integer("the number of edges");
         // A vertex has at least six characters, a face two.
         if (vertices_ > reader_.remaining() / 6 + 1 || faces_ > reader_.remaining() / 2 + 1)
-            reader_.fail("the header promises " + std::to_string(vertices_) + " vertices and " + std::to_string(faces_) +
-                             " faces, but only " + std::to_string(reader_.remaining()) + " bytes follow",
+            reader_.fail(fmt::format("the header promises {} vertices and {} faces, but only {} bytes follow", vertices_, faces_,
+                                     reader_.remaining()),
                          "the file is cut off or its header is wrong");
         find_undeclared_colours();
     }
 
-    std::size_t count(const char* what) {
+    std::size_t count(const char* quantity) {
         if (!reader_.skip_space())
-            reader_.fail(std::string("the file ends where ") + what + " is expected", "the file is cut off");
-        const std::int64_t value = reader_.integer(what);
-        if (value < 0) reader_.fail(std::string(what) + " is negative");
+            reader_.fail(fmt::format("the file ends where {} is expected", quantity), "the file is cut off");
+        const std::int64_t value = reader_.integer(quantity);
+        if (value < 0) reader_.fail(std::string(quantity) + " is negative");
         return static_cast<std::size_t>(value);
     }
 
@@ -114,8 +116,7 @@ private:
 
     void vertex(std::size_t v) {
         if (!reader_.skip_space())
-            reader_.fail("the file ends at vertex " + std::to_string(v) + " of " + std::to_string(vertices_),
-                         "the file is cut off");
+            reader_.fail(fmt::format("the file ends at vertex {} of {}", v, vertices_), "the file is cut off");
         std::array<double, 3> point{};
         for (double& x : point) x = coordinate("a coordinate");
         soup_.points.push_back(point);
@@ -133,20 +134,20 @@ private:
         }
     }
 
-    double coordinate(const char* what) {
+    double coordinate(const char* quantity) {
         reader_.skip_space();
-        return reader_.finite(what);
+        return reader_.finite(quantity);
     }
 
     /// The colour in the remaining words of the line, of which the last `after` belong to other data. Integers range from 0 to
     /// 255, other numbers from 0 to 1.
-    std::optional<Colour> colour(std::size_t after) {
+    std::optional<Colour> colour(std::size_t reserved_words) {
         std::array<double, 6> values{};
         const char* first = reader_.position();
         std::size_t words = 0;
         bool real = false;
         const char* before_last[3] = {first, first, first};
-        while (words < 4 + after && !reader_.line_done()) {
+        while (words < 4 + reserved_words && !reader_.line_done()) {
             before_last[words % 3] = reader_.position();
             const char* start = reader_.position();
             values[words++] = reader_.number("a colour");
@@ -154,9 +155,9 @@ private:
                 for (const char* c = start; c != reader_.position(); ++c)
                     real = real || *c == '.' || *c == 'e' || *c == 'n' || *c == 'N';
         }
-        if (words < after) reader_.fail("the line ends where texture coordinates are expected");
-        const std::size_t channels = words - after;
-        if (after > 0) reader_.set_position(before_last[channels % 3]);
+        if (words < reserved_words) reader_.fail("the line ends where texture coordinates are expected");
+        const std::size_t channels = words - reserved_words;
+        if (reserved_words > 0) reader_.set_position(before_last[channels % 3]);
         if (channels == 0) return std::nullopt;
         if (channels == 1) {
             ++palette_;
@@ -165,26 +166,23 @@ private:
         if (channels == 2) reader_.fail("a colour has two numbers", "write red, green, blue and perhaps alpha", first);
         Colour result = white;
         for (std::size_t k = 0; k < channels; ++k)
-            result[k] = real ? channel_from_unit(values[k], bad_) : channel_from_byte(values[k], bad_);
+            result[k] = real ? channel_from_unit(values[k], out_of_range_) : channel_from_byte(values[k], out_of_range_);
         return result;
     }
 
     void face(std::size_t f) {
-        if (!reader_.skip_space())
-            reader_.fail("the file ends at face " + std::to_string(f) + " of " + std::to_string(faces_), "the file is cut off");
+        if (!reader_.skip_space()) reader_.fail(fmt::format("the file ends at face {} of {}", f, faces_), "the file is cut off");
         const char* first = reader_.position();
         const std::int64_t size = reader_.integer("a number of corners");
         if (size < 0 || static_cast<std::size_t>(size) > reader_.remaining() / 2 + 1)
-            reader_.fail("face " + std::to_string(f) + " promises " + std::to_string(size) + " corners",
-                         "the file is cut off or damaged", first);
+            reader_.fail(fmt::format("face {} promises {} corners", f, size), "the file is cut off or damaged", first);
         for (std::int64_t k = 0; k < size; ++k) {
             if (!reader_.skip_space()) reader_.fail("the file ends inside face " + std::to_string(f), "the file is cut off");
-            const char* at = reader_.position();
+            const char* position = reader_.position();
             const std::int64_t index = reader_.integer("a vertex index");
             if (index < 0 || static_cast<std::size_t>(index) >= vertices_)
-                reader_.fail(
-                    "face " + std::to_string(f) + " names vertex " + std::to_string(index) + " of " + std::to_string(vertices_),
-                    "indices start at 0; correct or remove the face", at);
+                reader_.fail(fmt::format("face {} names vertex {} of {}", f, index, vertices_),
+                             "indices start at 0; correct or remove the face", position);
             soup_.corners.push_back(static_cast<Index>(index));
         }
         close_polygon(soup_, reader_.file());
@@ -192,18 +190,18 @@ private:
             ++uncoloured_;
             return;
         }
-        const auto found = colour(0);
+        const auto face_colour = colour(0);
         if (!reader_.line_done())
-            reader_.fail("face " + std::to_string(f) + " is followed by more than a colour", "put each face on its own line");
-        if (!found) return;
+            reader_.fail(fmt::format("face {} is followed by more than a colour", f), "put each face on its own line");
+        if (!face_colour) return;
         soup_.extras.face_colours.resize(f + 1, white);
-        soup_.extras.face_colours.back() = *found;
+        soup_.extras.face_colours.back() = *face_colour;
     }
 
     TextReader reader_;
     PolygonSoup soup_;
     Header header_;
-    std::size_t vertices_ = 0, faces_ = 0, palette_ = 0, uncoloured_ = 0, bad_ = 0;
+    std::size_t vertices_ = 0, faces_ = 0, palette_ = 0, uncoloured_ = 0, out_of_range_ = 0;
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include "ostraka/io/ply.h"
 #include "ply_rows.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -93,10 +95,11 @@ public:
             else if (element.name == "tristrips") strips(element);
             else skip_element(element);
         }
-        if (!rows_.only_space_left()) soup_.notes.emplace_back("what follows the last element is not read");
+        if (!rows_.only_space_left()) soup_.notes.emplace_back("the data after the last element is ignored");
         if (header_.has_texture_file) soup_.notes.emplace_back("the name of the texture image is not kept");
         if (wrapped_ > 0) soup_.notes.push_back(std::to_string(wrapped_) + " labels above 2147483647 were made negative");
-        if (bad_ > 0) soup_.notes.push_back(std::to_string(bad_) + " colour values are out of range and were clamped");
+        if (out_of_range_ > 0)
+            soup_.notes.push_back(std::to_string(out_of_range_) + " colour values are out of range and were clamped");
         if (bad_texture_ > 0)
             soup_.notes.push_back(std::to_string(bad_texture_) +
                                   " texture coordinates are missing or not finite and were set to 0");
@@ -106,28 +109,29 @@ public:
     /// The floating-point properties of an element for which `wanted` is true, in the order of the file; empty if there is no
     /// such element.
     template <class Wanted>
-    std::vector<PlyColumn> columns(std::string_view of, Wanted wanted) {
+    std::vector<PlyColumn> columns(std::string_view element_name, Wanted wanted) {
         std::vector<PlyColumn> result;
         for (const PlyElement& element : header_.elements) {
             check_size(element);
-            if (element.name != of) {
+            if (element.name != element_name) {
                 skip_element(element);
                 continue;
             }
             constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-            std::vector<std::size_t> place(element.properties.size(), none);
-            for (std::size_t k = 0; k < place.size(); ++k) {
+            std::vector<std::size_t> column_index(element.properties.size(), none);
+            for (std::size_t k = 0; k < column_index.size(); ++k) {
                 const PlyProperty& property = element.properties[k];
                 if (property.is_list || !is_real(property.type) || !wanted(property.name)) continue;
-                place[k] = result.size();
+                column_index[k] = result.size();
                 result.push_back({property.name, {}});
             }
             if (result.empty()) break;
             for (PlyColumn& column : result) column.values.reserve(element.count);
             for (std::size_t i = 0; i < element.count; ++i) {
                 rows_.begin(element, i);
-                for (std::size_t k = 0; k < place.size(); ++k) {
-                    if (place[k] != none) result[place[k]].values.push_back(rows_.value(element.properties[k].type));
+                for (std::size_t k = 0; k < column_index.size(); ++k) {
+                    if (column_index[k] != none)
+                        result[column_index[k]].values.push_back(rows_.value(element.properties[k].type));
                     else skip_property(element.properties[k]);
                 }
                 rows_.end(element, i);
@@ -142,15 +146,15 @@ private:
     void check_size(const PlyElement& element) {
         const std::size_t minimum = element.min_bytes(header_.format);
         if (minimum > 0 && element.count > rows_.remaining() / minimum)
-            rows_.fail("the header promises " + std::to_string(element.count) + " elements '" + element.name + "' of at least " +
-                           std::to_string(minimum) + " bytes, but only " + std::to_string(rows_.remaining()) + " bytes follow",
+            rows_.fail(fmt::format("the header promises {} elements '{}' of at least {} bytes, but only {} bytes follow",
+                                   element.count, element.name, minimum, rows_.remaining()),
                        "the file is cut off or its header is wrong");
     }
 
     std::size_t list_length(const PlyProperty& property) {
         const double length = rows_.value(property.count_type);
         if (!(length >= 0) || Rows::minimum(property.type, 1) * length > static_cast<double>(rows_.remaining()))
-            rows_.fail("a list '" + property.name + "' claims " + std::to_string(static_cast<std::int64_t>(length)) + " entries",
+            rows_.fail(fmt::format("a list '{}' claims {} entries", property.name, static_cast<std::int64_t>(length)),
                        "the file is cut off or damaged");
         return static_cast<std::size_t>(length);
     }
@@ -169,7 +173,7 @@ private:
 
     void note_unused(const PlyElement& element, const Plan& plan) {
         if (element.count == 0 || plan.unused.empty()) return;
-        soup_.notes.push_back(element.name + " properties not kept: " + joined(plan.unused));
+        soup_.notes.push_back(fmt::format("{} properties not kept: {}", element.name, joined(plan.unused)));
     }
 
     Colour colour(const std::array<double, role_count>& row, const Plan& plan) {
@@ -178,8 +182,8 @@ private:
             const std::size_t role = static_cast<std::size_t>(Role::red) + k;
             if (!plan.has[role]) continue;
             const PlyType type = plan.type[role];
-            if (is_real(type)) result[k] = channel_from_unit(row[role], bad_);
-            else result[k] = channel_from_byte(type == PlyType::uint16 ? std::round(row[role] / 257) : row[role], bad_);
+            if (is_real(type)) result[k] = channel_from_unit(row[role], out_of_range_);
+            else result[k] = channel_from_byte(type == PlyType::uint16 ? std::round(row[role] / 257) : row[role], out_of_range_);
         }
         return result;
     }
@@ -207,22 +211,21 @@ private:
         if (labelled) extras.vertex_labels.reserve(element.count);
         if (textured) extras.vertex_texture.reserve(element.count);
         std::array<double, role_count> row{};
-        const auto at = [&row](Role role) { return row[static_cast<std::size_t>(role)]; };
+        const auto value_of = [&row](Role role) { return row[static_cast<std::size_t>(role)]; };
         for (std::size_t i = 0; i < element.count; ++i) {
             rows_.begin(element, i);
             for (std::size_t k = 0; k < plan.roles.size(); ++k) {
                 if (plan.roles[k] == Role::none) skip_property(element.properties[k]);
                 else row[static_cast<std::size_t>(plan.roles[k])] = rows_.value(element.properties[k].type);
             }
-            if (!(std::isfinite(at(Role::x)) && std::isfinite(at(Role::y)) && std::isfinite(at(Role::z))))
-                rows_.fail("vertex " + std::to_string(i) + " has a coordinate that is not finite",
-                           "correct or remove the vertex");
+            if (!(std::isfinite(value_of(Role::x)) && std::isfinite(value_of(Role::y)) && std::isfinite(value_of(Role::z))))
+                rows_.fail(fmt::format("vertex {} has a coordinate that is not finite", i), "correct or remove the vertex");
             rows_.end(element, i);
-            soup_.points.push_back({at(Role::x), at(Role::y), at(Role::z)});
+            soup_.points.push_back({value_of(Role::x), value_of(Role::y), value_of(Role::z)});
             if (coloured) extras.vertex_colours.push_back(colour(row, plan));
-            if (labelled) extras.vertex_labels.push_back(label(at(Role::label)));
+            if (labelled) extras.vertex_labels.push_back(label(value_of(Role::label)));
             if (textured) {
-                extras.vertex_texture.push_back({static_cast<float>(at(Role::s)), static_cast<float>(at(Role::t))});
+                extras.vertex_texture.push_back({static_cast<float>(value_of(Role::s)), static_cast<float>(value_of(Role::t))});
                 for (float& x : extras.vertex_texture.back()) {
                     if (std::isfinite(x)) continue;
                     x = 0;
@@ -235,8 +238,7 @@ private:
     Index corner(PlyType type, const std::string& element, std::size_t row) {
         const double index = rows_.value(type);
         if (!(index >= 0 && index < static_cast<double>(vertex_count_)))
-            rows_.fail(element + " " + std::to_string(row) + " names vertex " + std::to_string(static_cast<std::int64_t>(index)) +
-                           " of " + std::to_string(vertex_count_),
+            rows_.fail(fmt::format("{} {} names vertex {} of {}", element, row, static_cast<std::int64_t>(index), vertex_count_),
                        "correct or remove the " + element);
         return static_cast<Index>(index);
     }
@@ -281,14 +283,15 @@ private:
         }
     }
 
-    void add_texture(const std::vector<float>& list) {
+    void add_texture(const std::vector<float>& coordinates) {
         auto& texture = soup_.extras.corner_texture;
         const std::size_t count = soup_.corners.size() - texture.size();
-        const bool usable =
-            list.size() == 2 * count && std::all_of(list.begin(), list.end(), [](float x) { return std::isfinite(x); });
+        const bool usable = coordinates.size() == 2 * count &&
+                            std::all_of(coordinates.begin(), coordinates.end(), [](float x) { return std::isfinite(x); });
         if (!usable) ++bad_texture_;
         for (std::size_t k = 0; k < count; ++k)
-            texture.push_back(usable ? std::array<float, 2>{list[2 * k], list[2 * k + 1]} : std::array<float, 2>{0, 0});
+            texture.push_back(usable ? std::array<float, 2>{coordinates[2 * k], coordinates[2 * k + 1]}
+                                     : std::array<float, 2>{0, 0});
     }
 
     /// Each strip is a sequence of vertices; every three consecutive ones form a triangle, every second triangle is reversed;
@@ -310,25 +313,25 @@ private:
     }
 
     void strip(const PlyProperty& property, std::size_t row) {
-        std::size_t met = 0;
+        std::size_t strip_length = 0;
         Index a = 0, b = 0;
         for (std::size_t n = list_length(property); n > 0; --n) {
             const double value = rows_.value(property.type);
             if (value == -1) {
-                met = 0;
+                strip_length = 0;
                 continue;
             }
             if (!(value >= 0 && value < static_cast<double>(vertex_count_)) || value != std::floor(value))
-                rows_.fail("strip " + std::to_string(row) + " names vertex " + std::to_string(value) + " of " +
-                           std::to_string(vertex_count_));
+                rows_.fail(fmt::format("strip {} names vertex {} of {}", row, std::to_string(value), vertex_count_));
             const auto c = static_cast<Index>(value);
-            if (met >= 2 && a != b && b != c && c != a) {  // a repeated vertex only connects two strips
-                for (const Index v : {met % 2 == 0 ? a : b, met % 2 == 0 ? b : a, c}) soup_.corners.push_back(v);
+            if (strip_length >= 2 && a != b && b != c && c != a) {  // a repeated vertex only connects two strips
+                for (const Index v : {strip_length % 2 == 0 ? a : b, strip_length % 2 == 0 ? b : a, c})
+                    soup_.corners.push_back(v);
                 close_polygon(soup_, file_);
             }
             a = b;
             b = c;
-            ++met;
+            ++strip_length;
         }
     }
 
@@ -336,18 +339,18 @@ private:
     const PlyHeader& header_;
     std::string file_;
     PolygonSoup soup_;
-    std::size_t vertex_count_ = 0, wrapped_ = 0, bad_ = 0, bad_texture_ = 0;
+    std::size_t vertex_count_ = 0, wrapped_ = 0, out_of_range_ = 0, bad_texture_ = 0;
 };
 
 /// Calls read(body) for a file in any of the three encodings.
 template <class Read>
 auto read_body(const std::string& bytes, const std::string& file, Read&& read) {
     const PlyHeader header = read_ply_header(bytes, file);
-    const auto with = [&](auto rows) { return read(PlyBody(std::move(rows), header, file)); };
+    const auto read_rows = [&](auto rows) { return read(PlyBody(std::move(rows), header, file)); };
     constexpr bool little = std::endian::native == std::endian::little;
-    if (header.format == PlyFormat::ascii) return with(AsciiRows(bytes, header.size, file));
-    if ((header.format == PlyFormat::little_endian) == little) return with(BinaryRows<false>(bytes, header.size, file));
-    return with(BinaryRows<true>(bytes, header.size, file));
+    if (header.format == PlyFormat::ascii) return read_rows(AsciiRows(bytes, header.size, file));
+    if ((header.format == PlyFormat::little_endian) == little) return read_rows(BinaryRows<false>(bytes, header.size, file));
+    return read_rows(BinaryRows<true>(bytes, header.size, file));
 }
 
 }  // namespace
@@ -380,16 +383,16 @@ std::vector<std::array<double, 3>> read_ply_vectors(const Path& file, const std:
 PlyNumbers read_ply_numbers(const Path& file) {
     const std::string bytes = read_file(file);
     if (!io::looks_like_ply(bytes)) return {};
-    const auto of = [&](const char* element) {
+    const auto numbers_of = [&](const char* element) {
         const auto wanted = [](const std::string& name) {
-            const std::initializer_list<const char*> known{"x",     "y",    "z",     "nx", "ny", "nz", "red",
-                                                           "green", "blue", "alpha", "s",  "t",  "u",  "v"};
-            return std::find(known.begin(), known.end(), name) == known.end() && !name.starts_with("texture_") &&
-                   !name.starts_with("diffuse_");
+            const std::initializer_list<const char*> standard_names{"x",     "y",    "z",     "nx", "ny", "nz", "red",
+                                                                    "green", "blue", "alpha", "s",  "t",  "u",  "v"};
+            return std::find(standard_names.begin(), standard_names.end(), name) == standard_names.end() &&
+                   !name.starts_with("texture_") && !name.starts_with("diffuse_");
         };
         return io::read_body(bytes, file.string(), [&](auto body) { return body.columns(element, wanted); });
     };
-    return {of("vertex"), of("face")};
+    return {numbers_of("vertex"), numbers_of("face")};
 }
 
 }  // namespace ostraka

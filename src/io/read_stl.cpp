@@ -2,6 +2,8 @@
 #include "ostraka/core/error.h"
 #include "text_reader.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <bit>
 #include <cctype>
@@ -68,8 +70,8 @@ PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
     const std::size_t count = facet_count(bytes);
     if (count > (bytes.size() - header_size) / facet_size)
         fail_input(file,
-                   "the header promises " + std::to_string(count) + " triangles, but the file has room for " +
-                       std::to_string((bytes.size() - header_size) / facet_size),
+                   fmt::format("the header promises {} triangles, but the file has room for {}", count,
+                               (bytes.size() - header_size) / facet_size),
                    "the file is cut off or not an STL file");
     PolygonSoup soup;
     soup.corners.reserve(3 * count);
@@ -83,7 +85,7 @@ PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
             std::memcpy(values, facet + 12 + 12 * k, sizeof values);
             for (const float x : values)
                 if (!std::isfinite(x))
-                    fail_input(file + ", triangle " + std::to_string(f), "has a coordinate that is not finite",
+                    fail_input(fmt::format("{}, triangle {}", file, f), "has a coordinate that is not finite",
                                "correct or remove the triangle");
             soup.corners.push_back(merge({values[0], values[1], values[2]}));
         }
@@ -91,7 +93,7 @@ PolygonSoup read_binary(std::string_view bytes, const std::string& file) {
         attributes = attributes || facet[48] != 0 || facet[49] != 0;
     }
     if (attributes) soup.notes.emplace_back("attribute bytes of the triangles (colours, in some programs) are not kept");
-    if (bytes.size() > header_size + count * facet_size) soup.notes.emplace_back("what follows the last triangle is not read");
+    if (bytes.size() > header_size + count * facet_size) soup.notes.emplace_back("the data after the last triangle is ignored");
     return soup;
 }
 
@@ -108,7 +110,7 @@ public:
     PolygonSoup read() {
         bool in_solid = false;
         while (reader_.skip_space()) {
-            const char* at = reader_.position();
+            const char* start = reader_.position();
             const std::string_view word = keyword();
             if (same_word(word, "solid") && !in_solid) {
                 reader_.rest_of_line();
@@ -119,7 +121,7 @@ public:
             } else if (same_word(word, "facet") && in_solid) {
                 facet();
             } else {
-                reader_.fail("unexpected word " + in_quotes(word), "a text STL file has solid, facet, endsolid", at);
+                reader_.fail("unexpected word " + in_quotes(word), "a text STL file has solid, facet, endsolid", start);
             }
         }
         if (in_solid)
@@ -133,11 +135,12 @@ private:
         return reader_.word();
     }
 
-    void expect(const char* wanted) {
+    void expect(const char* expected) {
         reader_.skip_space();
-        const char* at = reader_.position();
+        const char* start = reader_.position();
         const std::string_view word = keyword();
-        if (!same_word(word, wanted)) reader_.fail("expected " + std::string(wanted) + " instead of " + in_quotes(word), {}, at);
+        if (!same_word(word, expected))
+            reader_.fail(fmt::format("expected {} instead of {}", expected, in_quotes(word)), {}, start);
     }
 
     void facet() {
@@ -147,10 +150,10 @@ private:
         expect("loop");
         for (;;) {
             reader_.skip_space();
-            const char* at = reader_.position();
+            const char* start = reader_.position();
             const std::string_view word = keyword();
             if (same_word(word, "endloop")) break;
-            if (!same_word(word, "vertex")) reader_.fail("expected vertex or endloop instead of " + in_quotes(word), {}, at);
+            if (!same_word(word, "vertex")) reader_.fail("expected vertex or endloop instead of " + in_quotes(word), {}, start);
             std::array<double, 3> point{};
             for (double& x : point) {
                 reader_.skip_space();

@@ -8,6 +8,8 @@
 #include "soup_geometry.h"
 #include "triangle_tree.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
 
@@ -27,12 +29,11 @@ std::size_t count_of(const detail::Counts& counts, const std::string& name) {
 void check_triangles(const TriangleSoup& soup) {
     detail::check_soup(soup);
     if (soup.triangles.empty())
-        fail_input("mesh",
-                   soup.points.empty() ? "is empty" : "has " + std::to_string(soup.points.size()) + " points and no faces",
+        fail_input("mesh", soup.points.empty() ? "is empty" : fmt::format("has {} points and no faces", soup.points.size()),
                    "give a file with faces; points alone are not a surface");
     for (const auto& t : soup.triangles)
         if (!detail::has_no_area(soup, t)) return;
-    fail_input("mesh", "has no face with an area", "look at the scale and the precision of the file's coordinates");
+    fail_input("mesh", "has no face with an area", "check the scale and the precision of the file's coordinates");
 }
 
 /// For each new element, the value of the old element in `like`.
@@ -41,14 +42,13 @@ std::vector<Value> carried(const std::vector<Value>& values, const std::vector<I
     std::vector<Value> result;
     if (values.empty()) return result;
     result.reserve(like.size());
-    for (const Index old : like) result.push_back(values[old]);
+    for (const Index old_element : like) result.push_back(values[old_element]);
     return result;
 }
 
 void check_extras(const TriangleSoup& soup, const MeshExtras& extras) {
-    const auto check = [](std::size_t size, std::size_t count, const char* what) {
-        if (size != 0 && size != count)
-            fail_input(what, "has " + std::to_string(size) + " entries for " + std::to_string(count) + " elements");
+    const auto check = [](std::size_t size, std::size_t count, const char* attribute) {
+        if (size != 0 && size != count) fail_input(attribute, fmt::format("has {} entries for {} elements", size, count));
     };
     check(extras.vertex_colours.size(), soup.points.size(), "vertex colours");
     check(extras.vertex_labels.size(), soup.points.size(), "vertex labels");
@@ -138,16 +138,17 @@ void wrap(Worksoup& work, const TriangleSoup& original, const RepairOptions& opt
 /// Notes further changes made by removing self-intersections or wrapping.
 void note_losses(const MeshDiagnosis& before, const MeshDiagnosis& after, std::vector<std::string>& notes) {
     if (before.components.size() != after.components.size())
-        notes.push_back("the number of components changed from " + std::to_string(before.components.size()) + " to " +
-                        std::to_string(after.components.size()));
+        notes.push_back(
+            fmt::format("the number of components changed from {} to {}", before.components.size(), after.components.size()));
     else if (before.closed() && after.closed() && before.euler() != after.euler())
-        notes.push_back("the number of handles changed: the Euler number was " + std::to_string(before.euler()) + " and is " +
-                        std::to_string(after.euler()));
+        notes.push_back(
+            fmt::format("the number of handles changed: the Euler number was {} and is {}", before.euler(), after.euler()));
     constexpr double visible = 0.01;
-    const auto compare = [&](const char* what, double was, double is) {
-        if (was != 0 && std::abs(is - was) > visible * std::abs(was))
-            notes.push_back(std::string("the ") + what + " changed by " + digits(100 * (is - was) / std::abs(was), 2) +
-                            " %, from " + digits(was, 5) + " to " + digits(is, 5));
+    const auto compare = [&](const char* quantity, double old_value, double new_value) {
+        if (old_value != 0 && std::abs(new_value - old_value) > visible * std::abs(old_value))
+            notes.push_back(fmt::format("the {} changed by {} %, from {} to {}", quantity,
+                                        digits(100 * (new_value - old_value) / std::abs(old_value), 2), digits(old_value, 5),
+                                        digits(new_value, 5)));
     };
     compare("area", before.area, after.area);
     if (before.closed() && after.closed()) compare("volume", before.volume, after.volume);
@@ -175,7 +176,7 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     step("T-junctions", detail::sew_junctions(work, std::max({1e-6 * size, crack, options.merge_distance * size})));
     const auto& orientation = step("orient", detail::orient_patches(work));
     if (count_of(orientation, "edges cut because the surface has one side only") > 0)
-        result.notes.emplace_back("a part of the surface has one side only (a Moebius strip): it was cut open to be oriented");
+        result.notes.emplace_back("a part of the surface is one-sided (a Moebius strip) and was cut open to be oriented");
     step("take apart", detail::take_apart(work));
     if (options.keep_largest || options.min_component_share > 0)
         step("drop components", detail::drop_components(work, options.keep_largest, options.min_component_share));
@@ -190,7 +191,7 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
         const auto& flat = step("fillings without area", detail::flip_degenerate(work));
         if (count_of(flat, "border triangles dropped") > 0) detail::take_apart(work);
     }
-    if (work.soup.triangles.empty()) fail_input("mesh", "has no face with an area left", "look at the file's coordinates");
+    if (work.soup.triangles.empty()) fail_input("mesh", "has no face with non-zero area left", "check the file's coordinates");
     if (options.remove_self_intersections || options.wrap) result.before = diagnose(work.soup, {.skip_self_intersections = true});
     if (options.remove_self_intersections) {
         step("self-intersections", detail::remove_self_intersections(work, result.notes));
@@ -210,16 +211,17 @@ RepairResult repair(const TriangleSoup& original, const MeshExtras& extras, cons
     result.after = diagnose(work.soup);
     if (result.before) note_losses(*result.before, result.after, result.notes);
     if (result.after.border_edges > 0) {
-        const double near = 1.1 * detail::crack_width(work.soup) / size;
-        result.notes.emplace_back(near > 0
-                                      ? "cracks are left: most points of the border have another one within " + digits(near, 2) +
-                                            " of the diagonal (join them with --merge-distance " + digits(near, 2) + ")"
-                                      : "holes are left (close wider or longer ones with --fill-holes-size 1 "
+        const double crack_fraction = 1.1 * detail::crack_width(work.soup) / size;
+        result.notes.emplace_back(crack_fraction > 0
+                                      ? fmt::format("cracks remain: most border points have another border point within {} of "
+                                                    "the diagonal (join them with --merge-distance {})",
+                                                    digits(crack_fraction, 2), digits(crack_fraction, 2))
+                                      : "holes remain (close wider or longer ones with --fill-holes-size 1 "
                                         "--fill-holes N, or use --wrap)");
     }
     if (result.after.self_intersections > 0)
         result.notes.emplace_back(options.remove_self_intersections
-                                      ? "intersecting triangles are left (use --wrap)"
+                                      ? "intersecting triangles remain (use --wrap)"
                                       : "triangles intersect (use --remove-self-intersections or --wrap)");
     return result;
 }
@@ -228,28 +230,28 @@ namespace {
 
 /// The soup as an STL reader sees it.
 TriangleSoup as_stl(const TriangleSoup& soup) {
-    TriangleSoup read;
+    TriangleSoup stl_soup;
     std::vector<std::array<double, 3>> rounded = soup.points;
     for (auto& p : rounded)
         for (double& x : p) x = static_cast<double>(static_cast<float>(x));
     const std::vector<Index> place = detail::same_place(rounded);
-    std::vector<Index> number_of(soup.points.size(), no_index);
+    std::vector<Index> new_index(soup.points.size(), no_index);
     for (auto t : soup.triangles) {
         for (Index& v : t) {
-            Index& n = number_of[place[v]];
-            if (n == no_index) {
-                n = static_cast<Index>(read.points.size());
-                read.points.push_back(rounded[v]);
+            Index& index = new_index[place[v]];
+            if (index == no_index) {
+                index = static_cast<Index>(stl_soup.points.size());
+                stl_soup.points.push_back(rounded[v]);
             }
-            v = n;
+            v = index;
         }
-        read.triangles.push_back(t);
+        stl_soup.triangles.push_back(t);
     }
-    return read;
+    return stl_soup;
 }
 
 /// Moves vertices that coincide in single precision towards the centroid of their triangles; returns their number.
-std::size_t move_apart(TriangleSoup& soup, double hair) {
+std::size_t move_apart(TriangleSoup& soup, double distance) {
     std::vector<std::array<double, 3>> rounded = soup.points;
     for (auto& p : rounded)
         for (double& x : p) x = static_cast<double>(static_cast<float>(x));
@@ -265,7 +267,7 @@ std::size_t move_apart(TriangleSoup& soup, double hair) {
     for (Index v = 0; v < inwards.size(); ++v) {
         const double length = std::sqrt(inwards[v].squared_length());
         if (length == 0) continue;
-        const Point p = detail::point(soup, v) + hair / length * inwards[v];
+        const Point p = detail::point(soup, v) + distance / length * inwards[v];
         soup.points[v] = {p.x(), p.y(), p.z()};
         ++moved;
     }
@@ -275,26 +277,28 @@ std::size_t move_apart(TriangleSoup& soup, double hair) {
 }  // namespace
 
 void prepare_for_stl(RepairResult& result) {
-    MeshDiagnosis read = diagnose(as_stl(to_soup(result.mesh)));
-    if (!read.manifold() && result.after.manifold()) {
+    MeshDiagnosis stl_diagnosis = diagnose(as_stl(to_soup(result.mesh)));
+    if (!stl_diagnosis.manifold() && result.after.manifold()) {
         TriangleSoup soup = to_soup(result.mesh);
         const auto& box = result.after.box;
         double farthest = 0;
         for (int k = 0; k < 3; ++k) farthest = std::max({farthest, std::abs(box.min(k)), std::abs(box.max(k))});
-        const double hair =
+        const double distance =
             std::max(1e-6 * result.after.diagonal, 8 * farthest * static_cast<double>(std::numeric_limits<float>::epsilon()));
-        const std::size_t moved = move_apart(soup, hair);
-        MeshDiagnosis apart = diagnose(as_stl(soup));
-        if (apart.defects().size() < read.defects().size()) {
+        const std::size_t moved = move_apart(soup, distance);
+        MeshDiagnosis separated_diagnosis = diagnose(as_stl(soup));
+        if (separated_diagnosis.defects().size() < stl_diagnosis.defects().size()) {
             for (Index v = 0; v < soup.points.size(); ++v) result.mesh.point(Vertex(v)) = detail::point(soup, v);
-            read = std::move(apart);
-            result.notes.push_back("STL joins vertices at one place: " + std::to_string(moved) +
-                                   " copies of vertices were moved apart by " + digits(hair, 2));
+            stl_diagnosis = std::move(separated_diagnosis);
+            result.notes.push_back(
+                fmt::format("STL merges vertices at the same position: {} copies of vertices were moved apart by {}", moved,
+                            digits(distance, 2)));
         }
-        if (!read.manifold())
-            result.notes.emplace_back("STL joins vertices at one place, so that what is read again is no manifold (write PLY)");
+        if (!stl_diagnosis.manifold())
+            result.notes.emplace_back(
+                "STL merges vertices at the same position, so that the mesh read from it is not manifold (write PLY)");
     }
-    result.after = std::move(read);
+    result.after = std::move(stl_diagnosis);
 }
 
 void RepairOptions::describe(OptionList& visit) {

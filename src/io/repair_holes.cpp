@@ -59,8 +59,8 @@ public:
         for (Index i = 0; i < n; ++i)
             for (Index h = hole[i];;) {  // the fan at position i, starting at the border
                 const Index other = origin(soup, previous_halfedge(h));
-                const auto found = std::lower_bound(positions.begin(), positions.end(), std::pair<Index, Index>{other, 0});
-                if (found != positions.end() && found->first == other) edges_.insert(key(i, found->second));
+                const auto match = std::lower_bound(positions.begin(), positions.end(), std::pair<Index, Index>{other, 0});
+                if (match != positions.end() && match->first == other) edges_.insert(key(i, match->second));
                 h = opposite[previous_halfedge(h)];
                 if (h == no_index) break;
             }
@@ -110,31 +110,31 @@ private:
                 queue.push({CGAL::squared_distance(places_[previous[i]], places_[next[i]]), i, stamp[i]});
         };
         for (Index i = 0; i < n; ++i) push(i);
-        std::size_t left = n;
-        std::vector<std::uint8_t> gone(n, 0);
-        while (left > maximum && !queue.empty()) {
+        std::size_t remaining = n;
+        std::vector<std::uint8_t> clipped(n, 0);
+        while (remaining > maximum && !queue.empty()) {
             const Corner corner = queue.top();
             queue.pop();
             const Index i = corner.position, p = previous[i], q = next[i];
-            if (gone[i] != 0 || corner.stamp != stamp[i] || is_edge(p, q)) continue;
+            if (clipped[i] != 0 || corner.stamp != stamp[i] || is_edge(p, q)) continue;
             Triple t{p, i, q};
             std::sort(t.begin(), t.end());
             triangles.push_back(t);
-            const Vector across = unit(filling_normal(t[0], t[1], t[2]));
+            const Vector normal = unit(filling_normal(t[0], t[1], t[2]));
             edges_.insert(key(p, q));
-            outside_[p] = across;  // the new side from p to q
-            gone[i] = 1;
+            outside_[p] = normal;  // the new side from p to q
+            clipped[i] = 1;
             next[p] = q;
             previous[q] = p;
             ++stamp[p], ++stamp[q];
             push(p);
             push(q);
-            --left;
+            --remaining;
         }
         ring.clear();
         for (Index i = 0; i < n; ++i)
-            if (gone[i] == 0) ring.push_back(i);
-        return left <= maximum;
+            if (clipped[i] == 0) ring.push_back(i);
+        return remaining <= maximum;
     }
 
     struct Weight {
@@ -160,16 +160,16 @@ private:
                 for (std::size_t m = i + 1; m < k; ++m) {
                     const Weight &left = weight[i * n + m], &right = weight[m * n + k];
                     if (left.bend == never || right.bend == never) continue;
-                    const Vector across = filling_normal(ring[i], ring[m], ring[k]);
-                    const double length = std::sqrt(across.squared_length());
-                    const Vector direction = length > 0 ? across / length : across;
-                    Weight own{
+                    const Vector filling = filling_normal(ring[i], ring[m], ring[k]);
+                    const double length = std::sqrt(filling.squared_length());
+                    const Vector direction = length > 0 ? filling / length : filling;
+                    Weight candidate{
                         std::max({left.bend, right.bend, 1 - direction * normals[i * n + m], 1 - direction * normals[m * n + k]}),
                         left.area + right.area + length / 2};
-                    if (closing) own.bend = std::max(own.bend, 1 - direction * outside_[ring[k]]);
-                    if (length == 0) own.bend = std::max(own.bend, 3.0);  // a degenerate triangle is the last resort
-                    if (own < weight[i * n + k]) {
-                        weight[i * n + k] = own;
+                    if (closing) candidate.bend = std::max(candidate.bend, 1 - direction * outside_[ring[k]]);
+                    if (length == 0) candidate.bend = std::max(candidate.bend, 3.0);  // a degenerate triangle is the last resort
+                    if (candidate < weight[i * n + k]) {
+                        weight[i * n + k] = candidate;
                         middle[i * n + k] = m;
                         normals[i * n + k] = direction;
                     }

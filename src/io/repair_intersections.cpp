@@ -79,12 +79,12 @@ struct Folds {
 };
 
 Folds find_folds(const TriangleSoup& soup, const Pairs& pairs, int rings) {
-    const auto chosen = neighbourhood(soup, pairs, rings);
+    const auto near_folds = neighbourhood(soup, pairs, rings);
     DisjointSets sets(soup.points.size());
     for (const auto& [a, b] : pairs) sets.unite(soup.triangles[a][0], soup.triangles[b][0]);
     std::vector<std::uint8_t> inside(soup.points.size(), 0);
-    for (std::size_t t = 0; t < chosen.size(); ++t) {
-        if (chosen[t] == 0) continue;
+    for (std::size_t t = 0; t < near_folds.size(); ++t) {
+        if (near_folds[t] == 0) continue;
         for (const Index v : soup.triangles[t]) {
             inside[v] = 1;
             sets.unite(soup.triangles[t][0], v);
@@ -125,27 +125,27 @@ void smooth(TriangleSoup& soup, const Folds& folds) {
 
 /// For each set, 1 if folds cover a large part of a component, which would shrink as a whole if smoothed.
 std::vector<std::uint8_t> wide_folds(const TriangleSoup& soup, const Folds& folds) {
-    constexpr double wide = 0.2;
+    constexpr double min_share = 0.2;
     DisjointSets components = joined_vertices(soup);
-    std::vector<std::size_t> all(soup.points.size(), 0), folded(soup.points.size(), 0);
-    for (Index v = 0; v < all.size(); ++v) {
-        ++all[components.find(v)];
+    std::vector<std::size_t> totals(soup.points.size(), 0), folded(soup.points.size(), 0);
+    for (Index v = 0; v < totals.size(); ++v) {
+        ++totals[components.find(v)];
         folded[components.find(v)] += folds.set[v] != no_index;
     }
     std::vector<std::uint8_t> result(soup.points.size(), 0);
     for (const Index v : folds.moved)
-        if (const Index c = components.find(v); static_cast<double>(folded[c]) > wide * static_cast<double>(all[c]))
+        if (const Index c = components.find(v); static_cast<double>(folded[c]) > min_share * static_cast<double>(totals[c]))
             result[folds.set[v]] = 1;
     return result;
 }
 
 /// Smooths folds without changing the topology. The new positions are kept only if a fold is removed completely. Returns the
 /// number of moved vertices.
-std::size_t relax(Worksoup& work, Pairs& found) {
+std::size_t relax(Worksoup& work, Pairs& intersections) {
     constexpr int max_rings = 2;
     std::vector<std::uint8_t> moved(work.soup.points.size(), 0);
-    for (int rings = 0; rings <= max_rings && !found.empty(); ++rings) {
-        const Folds folds = find_folds(work.soup, found, rings);
+    for (int rings = 0; rings <= max_rings && !intersections.empty(); ++rings) {
+        const Folds folds = find_folds(work.soup, intersections, rings);
         TriangleSoup trial = work.soup;
         smooth(trial, folds);
         std::vector<std::uint8_t> stays_folded = wide_folds(work.soup, folds);
@@ -155,12 +155,12 @@ std::size_t relax(Worksoup& work, Pairs& found) {
                     if (folds.set[v] != no_index) stays_folded[folds.set[v]] = 1;
         for (const Index v : folds.moved)
             if (stays_folded[folds.set[v]] != 0) trial.points[v] = work.soup.points[v];
-        auto left = ostraka::self_intersections(trial, pair_limit).pairs;
-        if (left.size() >= found.size()) continue;
+        auto remaining = ostraka::self_intersections(trial, pair_limit).pairs;
+        if (remaining.size() >= intersections.size()) continue;
         for (const Index v : folds.moved)
             if (stays_folded[folds.set[v]] == 0) moved[v] = 1;
         work.soup.points = std::move(trial.points);
-        found = std::move(left);
+        intersections = std::move(remaining);
     }
     return static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
 }
@@ -225,27 +225,27 @@ namespace {
 /// Cuts with 0 to 5 rings, more only if fewer did not help. An attempt is accepted if fewer pairs are left and the border has
 /// not grown and, with `same_topology`, if the number of components and the Euler characteristic are unchanged. Returns the
 /// number of removed triangles.
-std::size_t cut_and_close(Worksoup& work, Pairs& found, bool same_topology, std::vector<std::string>& notes) {
+std::size_t cut_and_close(Worksoup& work, Pairs& intersections, bool same_topology, std::vector<std::string>& notes) {
     constexpr int max_rings = 6, max_tries = 12;
     std::size_t removed = 0;
     Topology before = topology(work.soup);
-    for (int rings = 0, tries = 0; rings < max_rings && tries < max_tries && !found.empty(); ++tries) {
-        Attempt attempt = cut_out(work, found, rings);
+    for (int rings = 0, tries = 0; rings < max_rings && tries < max_tries && !intersections.empty(); ++tries) {
+        Attempt attempt = cut_out(work, intersections, rings);
         if (attempt.too_much) {
             if (!same_topology)
                 notes.emplace_back(
                     "self-intersections: cutting them out would take more than a fifth of the surface (use --wrap)");
             break;
         }
-        auto left = ostraka::self_intersections(attempt.work.soup, pair_limit);
+        auto remaining = ostraka::self_intersections(attempt.work.soup, pair_limit);
         const Topology after = topology(attempt.work.soup);
         const bool changed = after.components != before.components || after.euler != before.euler;
-        if (left.pairs.size() >= found.size() || after.border > before.border || (same_topology && changed)) {
+        if (remaining.pairs.size() >= intersections.size() || after.border > before.border || (same_topology && changed)) {
             ++rings;
             continue;
         }
         work = std::move(attempt.work);
-        found = std::move(left.pairs);
+        intersections = std::move(remaining.pairs);
         before = after;
         removed += attempt.removed;
     }
@@ -255,21 +255,21 @@ std::size_t cut_and_close(Worksoup& work, Pairs& found, bool same_topology, std:
 }  // namespace
 
 Counts remove_self_intersections(Worksoup& work, std::vector<std::string>& notes) {
-    Pairs found = ostraka::self_intersections(work.soup, pair_limit).pairs;
-    const std::size_t before = found.size();
+    Pairs intersections = ostraka::self_intersections(work.soup, pair_limit).pairs;
+    const std::size_t before = intersections.size();
     std::size_t walls = 0;
-    if (before > 0 && (walls = drop_walls(work)) > 0) found = ostraka::self_intersections(work.soup, pair_limit).pairs;
+    if (before > 0 && (walls = drop_walls(work)) > 0) intersections = ostraka::self_intersections(work.soup, pair_limit).pairs;
     // The least destructive method first; skipped if there are at least as many pairs as triangles, since there are no separate
     // folds then.
-    const bool local = found.size() < work.soup.triangles.size();
-    const std::size_t moved = local ? relax(work, found) : 0;
-    std::size_t removed = local ? cut_and_close(work, found, true, notes) : 0;
-    removed += cut_and_close(work, found, false, notes);
+    const bool local = intersections.size() < work.soup.triangles.size();
+    const std::size_t moved = local ? relax(work, intersections) : 0;
+    std::size_t removed = local ? cut_and_close(work, intersections, true, notes) : 0;
+    removed += cut_and_close(work, intersections, false, notes);
     return {{"pairs found", before},
             {"walls between solids dropped", walls},
             {"vertices moved to smooth folds", moved},
             {"triangles cut out", removed},
-            {"pairs left", found.size()}};
+            {"pairs left", intersections.size()}};
 }
 
 }  // namespace ostraka::detail

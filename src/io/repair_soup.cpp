@@ -25,8 +25,8 @@ Worksoup::Worksoup(const TriangleSoup& original)
     face_like = duplicate_of = face_source;
 }
 
-Index Worksoup::add_vertex(const std::array<double, 3>& place, Index source, Index like, bool is_touched) {
-    soup.points.push_back(place);
+Index Worksoup::add_vertex(const std::array<double, 3>& position, Index source, Index like, bool is_touched) {
+    soup.points.push_back(position);
     vertex_source.push_back(source);
     vertex_like.push_back(like);
     touched.push_back(is_touched ? 1 : 0);
@@ -53,11 +53,11 @@ namespace {
 /// Removes the elements of lists whose flag is zero.
 template <class... Lists>
 void keep_flagged(const std::vector<std::uint8_t>& keep, Lists&... lists) {
-    const auto compact = [&](auto& list) {
+    const auto compact = [&](auto& values) {
         std::size_t next = 0;
-        for (std::size_t i = 0; i < list.size(); ++i)
-            if (keep[i] != 0) list[next++] = list[i];
-        list.resize(next);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (keep[i] != 0) values[next++] = values[i];
+        values.resize(next);
     };
     (compact(lists), ...);
 }
@@ -154,8 +154,8 @@ Border find_border(const TriangleSoup& soup, double gap) {
     border.mate.assign(border.vertices.size(), std::numeric_limits<double>::infinity());
     const PointTree tree(border.places);
     parallel_for(border.mate.size(), [&](std::size_t i) {
-        for (const auto& near : tree.neighbours(border.places[i], 2))
-            if (near.index != i) border.mate[i] = std::min(border.mate[i], std::sqrt(near.squared));
+        for (const auto& neighbour : tree.neighbours(border.places[i], 2))
+            if (neighbour.index != i) border.mate[i] = std::min(border.mate[i], std::sqrt(neighbour.squared));
         if (border.mate[i] > gap * border.shortest[i]) border.mate[i] = std::numeric_limits<double>::infinity();
     });
     return border;
@@ -192,10 +192,10 @@ public:
     void unite(Index a, Index b) {
         a = sets_.find(a), b = sets_.find(b);
         if (a == b || !may_unite(a, b)) return;
-        auto &kept = beside_[std::min(a, b)], &gone = beside_[std::max(a, b)];
-        if (kept.size() < gone.size()) kept.swap(gone);
-        kept.insert(kept.end(), gone.begin(), gone.end());
-        std::vector<Index>().swap(gone);
+        auto &merged = beside_[std::min(a, b)], &absorbed = beside_[std::max(a, b)];
+        if (merged.size() < absorbed.size()) merged.swap(absorbed);
+        merged.insert(merged.end(), absorbed.begin(), absorbed.end());
+        std::vector<Index>().swap(absorbed);
         sets_.unite(a, b);  // the lower root stays
     }
 
@@ -224,29 +224,29 @@ private:
 /// coincident points from neighbours: first the ends of pairs of opposite border edges, then single points; the nearest pairs
 /// first, and never two corners of one triangle. `crack`: maximum distance of coincident points in the mesh's unit; 0: nothing
 /// is done. Returns for each border vertex whether it is at such a position.
-std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& border, const PointTree& tree, double crack,
-                                       DisjointSets& sets) {
+std::vector<std::uint8_t> merge_knots(const TriangleSoup& soup, const Border& border, const PointTree& tree, double crack,
+                                      DisjointSets& sets) {
     const std::size_t count = border.vertices.size();
-    constexpr std::size_t most = 64;  // maximum number of neighbours examined per point, which
-                                      // avoids quadratic time for large sets of coincident points
+    constexpr std::size_t max_neighbours = 64;  // maximum number of neighbours examined per point, which
+                                                // avoids quadratic time for large sets of coincident points
     std::vector<std::uint8_t> knotted(count, 0);
-    std::vector<Index> open;
+    std::vector<Index> queue;
     for (Index i = 0; i < count; ++i)
-        if (border.shortest[i] < 3 * crack) knotted[i] = 1, open.push_back(i);
-    if (open.empty()) return knotted;
+        if (border.shortest[i] < 3 * crack) knotted[i] = 1, queue.push_back(i);
+    if (queue.empty()) return knotted;
     struct Pair {
         double squared;
         Index a, q, b, p;
         auto operator<=>(const Pair&) const = default;
     };
     std::vector<Pair> points, sides;
-    while (!open.empty()) {  // propagates to all points within a crack width
-        const Index i = open.back();
-        open.pop_back();
-        for (const auto& near : tree.neighbours(border.places[i], most)) {
-            if (near.squared > crack * crack || near.index == i) continue;
-            points.push_back({near.squared, std::min(i, near.index), std::max(i, near.index), 0, 0});
-            if (knotted[near.index] == 0) knotted[near.index] = 1, open.push_back(near.index);
+    while (!queue.empty()) {  // propagates to all points within a crack width
+        const Index i = queue.back();
+        queue.pop_back();
+        for (const auto& neighbour : tree.neighbours(border.places[i], max_neighbours)) {
+            if (neighbour.squared > crack * crack || neighbour.index == i) continue;
+            points.push_back({neighbour.squared, std::min(i, neighbour.index), std::max(i, neighbour.index), 0, 0});
+            if (knotted[neighbour.index] == 0) knotted[neighbour.index] = 1, queue.push_back(neighbour.index);
         }
     }
     std::sort(points.begin(), points.end());
@@ -254,21 +254,21 @@ std::vector<std::uint8_t> settle_knots(const TriangleSoup& soup, const Border& b
 
     std::vector<Index> number(soup.points.size(), no_index);
     for (Index i = 0; i < count; ++i) number[border.vertices[i]] = i;
-    std::vector<std::vector<Index>> from(count), to(count);  // other ends of the border edges at knots
+    std::vector<std::vector<Index>> successors(count), predecessors(count);  // other ends of the border edges at knots
     const SoupEdges edges = group_edges(soup);
     for (std::size_t e = 0; e < edges.count(); ++e) {
         if (edges.valence(e) != 1) continue;
         const Index a = number[origin(soup, *edges.first(e))], b = number[target(soup, *edges.first(e))];
         if (a == no_index || b == no_index) continue;
-        if (knotted[a] != 0) from[a].push_back(b);
-        if (knotted[b] != 0) to[b].push_back(a);
+        if (knotted[a] != 0) successors[a].push_back(b);
+        if (knotted[b] != 0) predecessors[b].push_back(a);
     }
     const auto match = [&](Index a, Index q, double squared) {  // a -> b and p -> q
-        if (from[a].size() * to[q].size() > most * most) return;
-        for (const Index b : from[a])
-            for (const Index p : to[q]) {
-                const double other = CGAL::squared_distance(border.places[b], border.places[p]);
-                if (other <= crack * crack && b != p) sides.push_back({squared + other, a, q, b, p});
+        if (successors[a].size() * predecessors[q].size() > max_neighbours * max_neighbours) return;
+        for (const Index b : successors[a])
+            for (const Index p : predecessors[q]) {
+                const double end_distance = CGAL::squared_distance(border.places[b], border.places[p]);
+                if (end_distance <= crack * crack && b != p) sides.push_back({squared + end_distance, a, q, b, p});
             }
     };
     for (const Pair& pair : points) {
@@ -294,19 +294,19 @@ double merge_near(const TriangleSoup& soup, const MergeDistances& limits, Disjoi
     const Border border = find_border(joined, limits.gap);
     const double crack = crack_of(border, 0.5);
     const PointTree tree(border.places);
-    const std::vector<std::uint8_t> knotted = settle_knots(joined, border, tree, crack, sets);
+    const std::vector<std::uint8_t> knotted = merge_knots(joined, border, tree, crack, sets);
     const auto radius = [&](Index i) {
         return std::max(limits.distance, knotted[i] != 0 ? 0 : std::min(crack, border.shortest[i] / 2));
     };
-    std::vector<Index> near;
+    std::vector<Index> nearby;
     std::vector<std::uint8_t> merged(border.vertices.size(), 0);
     for (Index i = 0; i < merged.size(); ++i) {
         if (merged[i] != 0 || radius(i) == 0) continue;
-        tree.within(border.places[i], radius(i), near);
-        for (const Index other : near) {
+        tree.within(border.places[i], radius(i), nearby);
+        for (const Index other : nearby) {
             if (other <= i || merged[other] != 0) continue;
-            const double apart = std::sqrt(CGAL::squared_distance(border.places[i], border.places[other]));
-            if (apart > radius(other)) continue;
+            const double separation = std::sqrt(CGAL::squared_distance(border.places[i], border.places[other]));
+            if (separation > radius(other)) continue;
             merged[other] = 1;
             sets.unite(border.vertices[i], border.vertices[other]);
         }
@@ -318,16 +318,16 @@ double merge_near(const TriangleSoup& soup, const MergeDistances& limits, Disjoi
 
 Counts merge_points(Worksoup& work, const MergeDistances& limits, double& crack) {
     auto& soup = work.soup;
-    const std::vector<std::uint8_t> open = vertices_of_open_components(soup);
+    const std::vector<std::uint8_t> in_open_component = vertices_of_open_components(soup);
     const std::vector<Index> place = same_place(soup.points);
     DisjointSets sets(soup.points.size());
     // Coincident points: only those of open components, so that touching closed solids stay separate ...
     std::vector<Index> first_open(soup.points.size(), no_index);
     for (Index v = 0; v < soup.points.size(); ++v) {
-        if (open[v] == 0) continue;
-        Index& first = first_open[place[v]];
-        if (first == no_index) first = v;
-        else sets.unite(first, v);
+        if (in_open_component[v] == 0) continue;
+        Index& representative = first_open[place[v]];
+        if (representative == no_index) representative = v;
+        else sets.unite(representative, v);
     }
     // ... and the ends of all edges of length 0.
     for (const auto& t : soup.triangles)
@@ -363,48 +363,49 @@ Counts sew_junctions(Worksoup& work, double tolerance) {
         std::sort(sides.begin(), sides.end());
         std::sort(vertices.begin(), vertices.end());
         vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-        std::vector<Point> places;
-        for (const Index v : vertices) places.push_back(point(soup, v));
-        const PointTree tree(places);
-        std::vector<std::vector<std::pair<double, Index>>> between(sides.size());  // position along the side, vertex
+        std::vector<Point> positions;
+        for (const Index v : vertices) positions.push_back(point(soup, v));
+        const PointTree tree(positions);
+        std::vector<std::vector<std::pair<double, Index>>> junctions(sides.size());  // position along the side, vertex
         parallel_for(sides.size(), [&](std::size_t i) {
             const Index h = sides[i];
             const Point a = point(soup, origin(soup, h)), b = point(soup, target(soup, h));
             const double length = std::sqrt(CGAL::squared_distance(a, b)), margin = std::min(tolerance, length / 4);
             if (length == 0) return;
             const Vector along = (b - a) / length;
-            std::vector<Index> near;
-            tree.within(CGAL::midpoint(a, b), length / 2, near);
-            for (const Index n : near) {
+            std::vector<Index> nearby;
+            tree.within(CGAL::midpoint(a, b), length / 2, nearby);
+            for (const Index n : nearby) {
                 const Index v = vertices[n];
-                const double at = (places[n] - a) * along;
-                if (at <= margin || at >= length - margin || v == apex(soup, h)) continue;
-                if ((places[n] - (a + at * along)).squared_length() <= tolerance * tolerance) between[i].emplace_back(at, v);
+                const double position = (positions[n] - a) * along;
+                if (position <= margin || position >= length - margin || v == apex(soup, h)) continue;
+                if ((positions[n] - (a + position * along)).squared_length() <= tolerance * tolerance)
+                    junctions[i].emplace_back(position, v);
             }
-            std::sort(between[i].begin(), between[i].end());
+            std::sort(junctions[i].begin(), junctions[i].end());
         });
         std::vector<std::uint8_t> split(soup.triangles.size(), 0);
-        std::size_t now = 0;
+        std::size_t inserted = 0;
         for (std::size_t i = 0; i < sides.size(); ++i) {
             const Index t = sides[i] / 3, k = sides[i] % 3;
-            if (between[i].empty() || split[t] != 0) continue;
+            if (junctions[i].empty() || split[t] != 0) continue;
             split[t] = 1;
-            now += between[i].size();
+            inserted += junctions[i].size();
             const auto corners = soup.triangles[t];
             const auto like = work.corner_like[t];
             const Index b = corners[(k + 1) % 3], c = corners[(k + 2) % 3];
             // (a, b, c) becomes (a, m, c), (m, n, c), ..., (n, b, c).
-            soup.triangles[t][(k + 1) % 3] = between[i].front().second;
+            soup.triangles[t][(k + 1) % 3] = junctions[i].front().second;
             work.corner_like[t][(k + 1) % 3] = like[k];
-            for (std::size_t m = 0; m < between[i].size(); ++m) {
-                const bool last = m + 1 == between[i].size();
-                work.add_triangle({between[i][m].second, last ? b : between[i][m + 1].second, c}, work.face_source[t],
+            for (std::size_t m = 0; m < junctions[i].size(); ++m) {
+                const bool last = m + 1 == junctions[i].size();
+                work.add_triangle({junctions[i][m].second, last ? b : junctions[i][m + 1].second, c}, work.face_source[t],
                                   work.face_like[t], {like[k], last ? like[(k + 1) % 3] : like[k], like[(k + 2) % 3]},
                                   work.flipped[t] != 0);
             }
         }
-        if (now == 0) break;
-        sewn += now;
+        if (inserted == 0) break;
+        sewn += inserted;
     }
     return {{"vertices inserted into sides beside them", sewn}};
 }
@@ -437,9 +438,9 @@ std::size_t drop_repeated(Worksoup& work, const SoupEdges& edges, std::vector<st
         std::sort(group.begin(), group.end());
         for (std::size_t i = 0; i < group.size();) {
             std::size_t j = i;
-            std::array<Index, 2> kept{no_index, no_index};
+            std::array<Index, 2> kept_triangles{no_index, no_index};
             for (; j < group.size() && group[j].apex == group[i].apex; ++j) {
-                Index& first = kept[group[j].reversed ? 1 : 0];
+                Index& first = kept_triangles[group[j].reversed ? 1 : 0];
                 if (first == no_index) {
                     first = group[j].triangle;
                     continue;
@@ -448,8 +449,9 @@ std::size_t drop_repeated(Worksoup& work, const SoupEdges& edges, std::vector<st
                 work.duplicate_of[work.face_source[group[j].triangle]] = work.face_source[first];
                 ++dropped;
             }
-            if (kept[0] != no_index && kept[1] != no_index)
-                opposite.emplace_back(std::min(kept[0], kept[1]), std::max(kept[0], kept[1]));
+            if (kept_triangles[0] != no_index && kept_triangles[1] != no_index)
+                opposite.emplace_back(std::min(kept_triangles[0], kept_triangles[1]),
+                                      std::max(kept_triangles[0], kept_triangles[1]));
             i = j;
         }
     }
@@ -465,29 +467,30 @@ std::vector<std::uint8_t> single_sides(const TriangleSoup& soup, const SoupEdges
     std::vector<Index> pair_of(soup.triangles.size(), no_index);
     for (Index p = 0; p < pairs.size(); ++p) pair_of[pairs[p].first] = pair_of[pairs[p].second] = p;
     DisjointSets patches(pairs.size());
-    std::vector<int> odd(pairs.size(), 0), first_agrees(pairs.size(), 0);
-    std::vector<Index> here;
+    std::vector<int> odd_excess(pairs.size(), 0), first_agrees(pairs.size(), 0);
+    std::vector<Index> pair_halfedges;
     for (std::size_t e = 0; e < edges.count(); ++e) {
-        here.clear();
-        std::size_t others = 0;
+        pair_halfedges.clear();
+        std::size_t other_count = 0;
         Index other = no_index;
         for (Index i = 0; i < edges.valence(e); ++i) {
             const Index h = edges.first(e)[i];
             if (keep[h / 3] == 0) continue;
-            if (const Index p = pair_of[h / 3]; p == no_index) ++others, other = h;
-            else if (h / 3 == pairs[p].first) here.push_back(h);
+            if (const Index p = pair_of[h / 3]; p == no_index) ++other_count, other = h;
+            else if (h / 3 == pairs[p].first) pair_halfedges.push_back(h);
         }
-        if (here.size() == 2 && others % 2 == 0) patches.unite(pair_of[here[0] / 3], pair_of[here[1] / 3]);
-        if (here.size() != 1 || others == 0) continue;
-        const Index p = pair_of[here[0] / 3];
-        odd[p] += others % 2 == 1 ? 1 : -1;
-        if (others == 1) first_agrees[p] += origin(soup, here[0]) == target(soup, other) ? 1 : -1;
+        if (pair_halfedges.size() == 2 && other_count % 2 == 0)
+            patches.unite(pair_of[pair_halfedges[0] / 3], pair_of[pair_halfedges[1] / 3]);
+        if (pair_halfedges.size() != 1 || other_count == 0) continue;
+        const Index p = pair_of[pair_halfedges[0] / 3];
+        odd_excess[p] += other_count % 2 == 1 ? 1 : -1;
+        if (other_count == 1) first_agrees[p] += origin(soup, pair_halfedges[0]) == target(soup, other) ? 1 : -1;
     }
     for (Index p = 0; p < pairs.size(); ++p)
-        if (const Index root = patches.find(p); root != p) odd[root] += odd[p];
+        if (const Index root = patches.find(p); root != p) odd_excess[root] += odd_excess[p];
     std::vector<std::uint8_t> side(pairs.size(), 0);
     for (Index p = 0; p < pairs.size(); ++p)
-        if (odd[patches.find(p)] > 0) side[p] = first_agrees[p] >= 0 ? 1 : 2;
+        if (odd_excess[patches.find(p)] > 0) side[p] = first_agrees[p] >= 0 ? 1 : 2;
     return side;
 }
 
@@ -511,9 +514,9 @@ Counts drop_bad_triangles(Worksoup& work) {
             ++walls;
             continue;
         }
-        const auto [stays, goes] = side[p] == 1 ? opposite[p] : OppositePair(opposite[p].second, opposite[p].first);
-        keep[goes] = 0;
-        work.duplicate_of[work.face_source[goes]] = work.face_source[stays];
+        const auto [kept, dropped] = side[p] == 1 ? opposite[p] : OppositePair(opposite[p].second, opposite[p].first);
+        keep[dropped] = 0;
+        work.duplicate_of[work.face_source[dropped]] = work.face_source[kept];
         ++duplicates;
     }
     work.keep_triangles(keep);

@@ -10,43 +10,43 @@ Counts orient_patches(Worksoup& work) {
     auto& soup = work.soup;
     const SoupEdges edges = group_edges(soup);
     // Only edges with exactly two triangles determine the relative orientation of their triangles.
-    std::vector<Index> other(3 * soup.triangles.size(), no_index);
+    std::vector<Index> partner(3 * soup.triangles.size(), no_index);
     for (std::size_t e = 0; e < edges.count(); ++e) {
         if (edges.valence(e) != 2) continue;
         const Index* h = edges.first(e);
-        other[h[0]] = h[1];
-        other[h[1]] = h[0];
+        partner[h[0]] = h[1];
+        partner[h[1]] = h[0];
     }
     constexpr std::uint8_t unknown = 2;
-    std::vector<std::uint8_t> turned(soup.triangles.size(), unknown);
+    std::vector<std::uint8_t> flip_state(soup.triangles.size(), unknown);
     std::vector<Index> patch;
     std::size_t flipped = 0, conflicts = 0;
     for (Index seed = 0; seed < work.triangle_count(); ++seed) {
-        if (turned[seed] != unknown) continue;
+        if (flip_state[seed] != unknown) continue;
         patch.assign(1, seed);
-        turned[seed] = 0;
-        std::size_t turned_count = 0;
+        flip_state[seed] = 0;
+        std::size_t flipped_count = 0;
         for (std::size_t i = 0; i < patch.size(); ++i) {  // breadth first, so that conflicts occur far from the seed
             const Index t = patch[i];
             for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-                if (other[h] == no_index) continue;
-                const Index neighbour = other[h] / 3;
-                const std::uint8_t needed = turned[t] ^ (origin(soup, h) == origin(soup, other[h]) ? 1 : 0);
-                if (turned[neighbour] == unknown) {
-                    turned[neighbour] = needed;
-                    turned_count += needed;
+                if (partner[h] == no_index) continue;
+                const Index neighbour = partner[h] / 3;
+                const std::uint8_t expected_state = flip_state[t] ^ (origin(soup, h) == origin(soup, partner[h]) ? 1 : 0);
+                if (flip_state[neighbour] == unknown) {
+                    flip_state[neighbour] = expected_state;
+                    flipped_count += expected_state;
                     patch.push_back(neighbour);
-                } else if (turned[neighbour] != needed && h < other[h]) {
+                } else if (flip_state[neighbour] != expected_state && h < partner[h]) {
                     ++conflicts;
                 }
             }
         }
         // The orientation of the majority is kept.
-        const std::uint8_t minority = 2 * turned_count <= patch.size() ? 1 : 0;
-        for (const Index t : patch) turned[t] = turned[t] == minority ? 1 : 0;
+        const std::uint8_t minority = 2 * flipped_count <= patch.size() ? 1 : 0;
+        for (const Index t : patch) flip_state[t] = flip_state[t] == minority ? 1 : 0;
     }
     for (Index t = 0; t < work.triangle_count(); ++t)
-        if (turned[t] == 1) work.flip(t), ++flipped;
+        if (flip_state[t] == 1) work.flip(t), ++flipped;
     return {{"flipped triangles", flipped}, {"edges cut because the surface has one side only", conflicts}};
 }
 
@@ -112,12 +112,12 @@ std::size_t pair_around(const TriangleSoup& soup, const Index* halfedges, Index 
     };
     std::vector<Leaf> leaves;
     for (Index i = 0; i < valence; ++i) {
-        Vector out = point(soup, apex(soup, halfedges[i])) - start;
-        out = out - (out * axis) * axis;
-        const double length = std::sqrt(out.squared_length());
-        if (length > 0) out = out / length;
-        if (i == 0) zero = out, side = CGAL::cross_product(axis, out);
-        double angle = std::atan2(out * side, out * zero);
+        Vector direction = point(soup, apex(soup, halfedges[i])) - start;
+        direction = direction - (direction * axis) * axis;
+        const double length = std::sqrt(direction.squared_length());
+        if (length > 0) direction = direction / length;
+        if (i == 0) zero = direction, side = CGAL::cross_product(axis, direction);
+        double angle = std::atan2(direction * side, direction * zero);
         if (i > 0 && apex(soup, halfedges[i]) == apex(soup, halfedges[0])) angle = 0;
         if (angle < 0) angle += 2 * CGAL_PI;
         leaves.push_back({angle, origin(soup, halfedges[i]) == high, halfedges[i]});
@@ -222,7 +222,7 @@ Counts take_apart(Worksoup& work) {
     }
     const std::size_t copies = separate_fans(joints);
     std::size_t split = 0;
-    while (const std::size_t more = separate_edges(joints)) split += more;
+    while (const std::size_t newly_split = separate_edges(joints)) split += newly_split;
     return {{"non-manifold edges taken apart", nonmanifold},
             {"triangle sides left unjoined there", cut},
             {"copies of vertices made", copies},

@@ -153,14 +153,14 @@ void add_directions(const TriangleSoup& soup, const std::vector<Index>& place, I
         d = d / std::sqrt(d.squared_length());
         ends[end++] = {d.x(), d.y(), d.z()};
     }
-    double half = 0;  // half of the chord, squared
-    for (std::size_t k = 0; k < 3; ++k) half += (ends[1][k] - ends[0][k]) * (ends[1][k] - ends[0][k]) / 4;
-    const double beyond = half / (1 + std::sqrt(std::max(0.0, 1 - half))) + 1e-9;  // height of the arc over its chord, plus
-                                                                                   // rounding errors
+    double squared_half = 0;  // half of the chord, squared
+    for (std::size_t k = 0; k < 3; ++k) squared_half += (ends[1][k] - ends[0][k]) * (ends[1][k] - ends[0][k]) / 4;
+    const double margin = squared_half / (1 + std::sqrt(std::max(0.0, 1 - squared_half))) + 1e-9;  // height of the arc over its
+                                                                                                   // chord, plus rounding errors
     std::array<double, 3> low{}, high{};
     for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(ends[0][k], ends[1][k]) - beyond;
-        high[k] = std::max(ends[0][k], ends[1][k]) + beyond;
+        low[k] = std::min(ends[0][k], ends[1][k]) - margin;
+        high[k] = std::max(ends[0][k], ends[1][k]) + margin;
     }
     const auto first = static_cast<Index>(arcs.points.size());
     arcs.points.insert(arcs.points.end(), {low, high});
@@ -171,19 +171,19 @@ void add_directions(const TriangleSoup& soup, const std::vector<Index>& place, I
 class BoundedSearch {
 public:
     BoundedSearch(const TriangleSoup& soup, const std::vector<Index>& place, std::size_t limit)
-        : meets_(soup, place), limit_(limit), most_work_(200 * soup.triangles.size() + 100'000'000) {}
+        : meets_(soup, place), limit_(limit), max_work_(200 * soup.triangles.size() + 100'000'000) {}
 
     /// `triangle`: maps triangles of the tree to triangles of the soup; empty: identical.
     void search(const detail::TriangleTree& tree, const std::vector<Index>& triangle) {
         const std::size_t leaves = tree.leaf_count();
         for (std::size_t begin = 0; begin < leaves && result.complete;) {
             // The maximum work of a batch is about the remaining budget.
-            const std::size_t room = std::min((most_work_ - std::min(work_, most_work_)) / work_of_leaf,
-                                              (limit_ - result.pairs.size()) / pairs_of_leaf);
-            const std::size_t count = std::min(std::clamp<std::size_t>(room, 64, 8192), leaves - begin);
+            const std::size_t max_leaves =
+                std::min((max_work_ - std::min(work_, max_work_)) / work_of_leaf, (limit_ - result.pairs.size()) / pairs_of_leaf);
+            const std::size_t count = std::min(std::clamp<std::size_t>(max_leaves, 64, 8192), leaves - begin);
             search_leaves(tree, triangle, begin, count);
             begin += count;
-            result.complete = result.complete && result.pairs.size() <= limit_ && (work_ < most_work_ || begin == leaves);
+            result.complete = result.complete && result.pairs.size() <= limit_ && (work_ < max_work_ || begin == leaves);
         }
     }
 
@@ -224,7 +224,7 @@ private:
     }
 
     PairTest meets_;
-    std::size_t limit_, most_work_, work_ = 0;
+    std::size_t limit_, max_work_, work_ = 0;
     std::vector<Leaf> leaves_;
 };
 

@@ -4,6 +4,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/core/progress.h"
 
+#include <fmt/core.h>
+
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -78,8 +80,7 @@ void check_soup(const TriangleSoup& soup) {
     for (std::size_t t = 0; t < soup.triangles.size(); ++t)
         for (const Index v : soup.triangles[t])
             if (v >= soup.points.size())
-                fail_input("triangle " + std::to_string(t),
-                           "names vertex " + std::to_string(v) + " of " + std::to_string(soup.points.size()));
+                fail_input("triangle " + std::to_string(t), fmt::format("names vertex {} of {}", v, soup.points.size()));
     for (std::size_t v = 0; v < soup.points.size(); ++v)
         for (const double x : soup.points[v])
             if (!(std::abs(x) <= 1e100))
@@ -93,9 +94,9 @@ DisjointSets fans_of_corners(const TriangleSoup& soup, const SoupEdges& edges) {
     for (std::size_t e = 0; e < edges.count(); ++e) {
         const Index* h = edges.first(e);
         for (Index i = 1; i < edges.valence(e); ++i) {
-            const bool same = origin(soup, h[0]) == origin(soup, h[i]);
-            fans.unite(h[0], same ? h[i] : next_halfedge(h[i]));
-            fans.unite(next_halfedge(h[0]), same ? next_halfedge(h[i]) : h[i]);
+            const bool same_direction = origin(soup, h[0]) == origin(soup, h[i]);
+            fans.unite(h[0], same_direction ? h[i] : next_halfedge(h[i]));
+            fans.unite(next_halfedge(h[0]), same_direction ? next_halfedge(h[i]) : h[i]);
         }
     }
     return fans;

@@ -38,13 +38,13 @@ double diagonal(const CGAL::Bbox_3& box) {
 
 namespace {
 /// Parity of the crossings of the segment with each other component; returns false if the segment touches an edge or a vertex.
-/// Only the first `most` intersected boxes of the tree are examined.
-bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const std::vector<Index>& component, Index own,
-                     const Point& from, const Point& to, std::size_t most, std::vector<std::pair<Index, bool>>& parity) {
+/// Only the first `max_boxes` intersected boxes of the tree are examined.
+bool crossing_parity(const TriangleSoup& soup, const TriangleTree& tree, const std::vector<Index>& component, Index own_component,
+                     const Point& from, const Point& to, std::size_t max_boxes, std::vector<std::pair<Index, bool>>& parity) {
     bool clean = true;
     std::vector<Index> hits;
-    tree.along_segment(from, to, most, [&](Index t) {
-        if (!clean || component[t] == no_index || component[t] == own) return;
+    tree.along_segment(from, to, max_boxes, [&](Index t) {
+        if (!clean || component[t] == no_index || component[t] == own_component) return;
         const auto& [a, b, c] = soup.triangles[t];
         const Point p = point(soup, a), q = point(soup, b), r = point(soup, c);
         const auto u = CGAL::orientation(from, to, p, q), v = CGAL::orientation(from, to, q, r),
@@ -83,14 +83,14 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
     }
     const TriangleTree tree(soup);
     // Thousands of nested shells would take quadratic time.
-    const std::size_t most = std::max<std::size_t>(20'000, 200'000'000 / inner.size());
+    const std::size_t max_boxes = std::max<std::size_t>(20'000, 200'000'000 / inner.size());
     const double ray_length = 2 * diagonal(box_of_triangles(soup));
     parallel_for(
         inner.size(),
         [&](std::size_t i) {
-            const Index own = inner[i];
+            const Index own_component = inner[i];
             // Triangles of the component itself are ignored, so the ray may start on one of them.
-            const auto& t = soup.triangles[first_triangle[own]];
+            const auto& t = soup.triangles[first_triangle[own_component]];
             const Point start = CGAL::centroid(point(soup, t[0]), point(soup, t[1]), point(soup, t[2]));
             // Fixed generic directions; if a ray touches an edge, the next direction is used.
             for (int attempt = 0; attempt < 16; ++attempt) {
@@ -98,15 +98,17 @@ std::vector<std::uint8_t> enclosed_components(const TriangleSoup& soup, const st
                 const double r = std::sqrt(1 - z * z);
                 const Point end = start + ray_length * Vector(r * std::cos(s), r * std::sin(s), z);
                 std::vector<std::pair<Index, bool>> parity;
-                if (!crossing_parity(soup, tree, component_of_triangle, own, start, end, most, parity) && attempt < 15) continue;
+                if (!crossing_parity(soup, tree, component_of_triangle, own_component, start, end, max_boxes, parity) &&
+                    attempt < 15)
+                    continue;
                 bool inside = false;
-                for (const auto& [other, odd] : parity) {
-                    if (!odd || !closed[other]) continue;
-                    const auto &a = boxes[own], &b = boxes[other];
+                for (const auto& [other, is_odd] : parity) {
+                    if (!is_odd || !closed[other]) continue;
+                    const auto &a = boxes[own_component], &b = boxes[other];
                     inside = inside || (a.xmin() >= b.xmin() && a.xmax() <= b.xmax() && a.ymin() >= b.ymin() &&
                                         a.ymax() <= b.ymax() && a.zmin() >= b.zmin() && a.zmax() <= b.zmax());
                 }
-                enclosed[own] = inside ? 1 : 0;
+                enclosed[own_component] = inside ? 1 : 0;
                 break;
             }
         },

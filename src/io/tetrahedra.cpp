@@ -4,6 +4,7 @@
 #include "text_reader.h"
 #include "text_writer.h"
 
+#include <fmt/core.h>
 #include <pugixml.hpp>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ double volume_of(const PolygonSoup& soup, const Tetrahedron& t) {
 
 /// Faces of exactly one tetrahedron become the polygons of the soup, oriented outwards; their labels are those of the file's
 /// polygons with the same corners.
-void take_surface(PolygonSoup& soup, const std::string& file) {
+void extract_surface(PolygonSoup& soup, const std::string& file) {
     const std::vector<Tetrahedron>& cells = soup.extras.tetrahedra;
     if (cells.empty()) return;
     std::map<std::array<Index, 3>, std::int32_t> labels;
@@ -40,7 +41,7 @@ void take_surface(PolygonSoup& soup, const std::string& file) {
         }
     struct Side {
         std::array<Index, 3> key, corners;
-        bool operator<(const Side& other) const { return key < other.key; }
+        bool operator<(const Side& skip_section) const { return key < skip_section.key; }
     };
     std::vector<Side> sides;
     sides.reserve(4 * cells.size());
@@ -66,17 +67,17 @@ void take_surface(PolygonSoup& soup, const std::string& file) {
             soup.corners.insert(soup.corners.end(), sides[i].corners.begin(), sides[i].corners.end());
             close_polygon(soup, file);
             if (labelled) {
-                const auto found = labels.find(sides[i].key);
-                soup.extras.face_labels.push_back(found == labels.end() ? 0 : found->second);
+                const auto label = labels.find(sides[i].key);
+                soup.extras.face_labels.push_back(label == labels.end() ? 0 : label->second);
             }
         }
         i = end;
     }
 }
 
-void check_corner(std::int64_t corner, const PolygonSoup& soup, const std::string& file, const std::string& what) {
+void check_corner(std::int64_t corner, const PolygonSoup& soup, const std::string& file, const std::string& element) {
     if (corner < 0 || corner >= static_cast<std::int64_t>(soup.points.size()))
-        fail_input(file, what + " names vertex " + std::to_string(corner) + " of " + std::to_string(soup.points.size()),
+        fail_input(file, fmt::format("{} names vertex {} of {}", element, corner, soup.points.size()),
                    "the file is damaged; export it again");
 }
 
@@ -85,7 +86,7 @@ void check_cells(const PolygonSoup& soup, const std::string& file) {
         Tetrahedron sorted = soup.extras.tetrahedra[i];
         std::sort(sorted.begin(), sorted.end());
         if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-            fail_input(file, "tetrahedron " + std::to_string(i) + " names a vertex twice", "correct the file");
+            fail_input(file, fmt::format("tetrahedron {} names a vertex twice", i), "correct the file");
     }
 }
 
@@ -100,7 +101,7 @@ public:
             if (word == "MeshVersionFormatted") {
                 static_cast<void>(number("the version"));
             } else if (word == "Dimension") {
-                if (number("the dimension") != 3) reader_.fail("the mesh does not have three dimensions", "give one in space");
+                if (number("the dimension") != 3) reader_.fail("the mesh is not three-dimensional", "give a mesh in space");
             } else if (word == "Vertices") {
                 vertices();
             } else if (word == "Triangles") {
@@ -110,27 +111,27 @@ public:
             } else if (word == "Tetrahedra") {
                 tetrahedra();
             } else {
-                other(word);
+                skip_section(word);
             }
         }
         if (std::all_of(labels_.begin(), labels_.end(), [](std::int32_t l) { return l == 0; })) labels_.clear();
         soup_.extras.face_labels = std::move(labels_);
         check_cells(soup_, file_);
-        take_surface(soup_, file_);
+        extract_surface(soup_, file_);
         return std::move(soup_);
     }
 
 private:
-    std::int64_t number(const char* what) {
+    std::int64_t number(const char* quantity) {
         if (!reader_.skip_space())
-            reader_.fail(std::string("the file ends where ") + what + " is expected", "the file is cut off");
-        return reader_.integer(what);
+            reader_.fail(fmt::format("the file ends where {} is expected", quantity), "the file is cut off");
+        return reader_.integer(quantity);
     }
     std::size_t count() {
         const std::int64_t value = number("a count");
         // An entry has at least two bytes.
         if (value < 0 || static_cast<std::size_t>(value) > reader_.remaining() / 2 + 1)
-            reader_.fail("a section of " + std::to_string(value) + " entries does not fit the file", "the file is cut off");
+            reader_.fail(fmt::format("a section of {} entries does not fit the file", value), "the file is cut off");
         return static_cast<std::size_t>(value);
     }
     void vertices() {
@@ -170,14 +171,14 @@ private:
         }
     }
     /// Skips a section that is not kept: a count, then one line per entry.
-    void other(const std::string& word) {
+    void skip_section(const std::string& word) {
         if (word.empty() || !std::isalpha(static_cast<unsigned char>(word.front())))
-            reader_.fail("there is " + in_quotes(word) + " where a section should begin", "export it again as text (.mesh)");
+            reader_.fail(fmt::format("expected a section instead of {}", in_quotes(word)), "export it again as text (.mesh)");
         const std::size_t n = count();
         for (std::size_t i = 0; i < n; ++i)
             if (!reader_.next_line()) break;
         while (!reader_.line_done()) static_cast<void>(reader_.word());
-        if (n > 0) soup_.notes.push_back("the section " + in_quotes(word) + " is not kept");
+        if (n > 0) soup_.notes.push_back(fmt::format("the section {} is not kept", in_quotes(word)));
     }
 
     TextReader reader_;
@@ -188,25 +189,25 @@ private:
 
 /// The numbers of a DataArray, which must be text.
 template <class Number>
-std::vector<Number> numbers_of(const pugi::xml_node& array, const std::string& file, const char* what) {
-    if (!array) fail_input(file, std::string("has no ") + what, "export it again");
+std::vector<Number> numbers_of(const pugi::xml_node& array, const std::string& file, const char* content) {
+    if (!array) fail_input(file, std::string("has no ") + content, "export it again");
     if (const std::string format = array.attribute("format").value(); format != "ascii")
-        fail_input(file, std::string("has its ") + what + " in the format '" + format + "'", "write it as text (ascii)");
+        fail_input(file, fmt::format("has its {} in the format '{}'", content, format), "write it as text (ascii)");
     std::vector<Number> values;
     const std::string_view text = array.text().get();
-    const char *at = text.data(), *const end = text.data() + text.size();
+    const char *position = text.data(), *const end = text.data() + text.size();
     while (true) {
-        while (at != end && (*at == ' ' || *at == '\n' || *at == '\t' || *at == '\r')) ++at;
-        if (at == end) return values;
+        while (position != end && (*position == ' ' || *position == '\n' || *position == '\t' || *position == '\r')) ++position;
+        if (position == end) return values;
         Number value{};
-        const auto [next, code] = std::from_chars(at, end, value);
-        if (code != std::errc()) fail_input(file, std::string("has no number among its ") + what, "export it again");
+        const auto [next, code] = std::from_chars(position, end, value);
+        if (code != std::errc()) fail_input(file, std::string("has an invalid number in its ") + content, "export it again");
         values.push_back(value);
-        at = next;
+        position = next;
     }
 }
 
-pugi::xml_node named(const pugi::xml_node& parent, const char* name) {
+pugi::xml_node array_named(const pugi::xml_node& parent, const char* name) {
     for (const pugi::xml_node& array : parent.children("DataArray"))
         if (std::string(array.attribute("Name").value()) == name) return array;
     return {};
@@ -215,11 +216,11 @@ pugi::xml_node named(const pugi::xml_node& parent, const char* name) {
 enum : std::int64_t { vtk_triangle = 5, vtk_polygon = 7, vtk_quad = 9, vtk_tetrahedron = 10 };
 
 void write_labels_note(const MeshExtras& extras, const char* format, Notes& notes) {
-    if (!extras.vertex_labels.empty()) notes.push_back(std::string(format) + " does not hold labels of vertices");
+    if (!extras.vertex_labels.empty()) notes.push_back(std::string(format) + " cannot store labels of vertices");
     if (!extras.vertex_colours.empty() || !extras.face_colours.empty())
-        notes.push_back(std::string(format) + " does not hold colours");
+        notes.push_back(std::string(format) + " cannot store colours");
     if (!extras.vertex_texture.empty() || !extras.corner_texture.empty())
-        notes.push_back(std::string(format) + " does not hold texture coordinates");
+        notes.push_back(std::string(format) + " cannot store texture coordinates");
 }
 
 }  // namespace
@@ -232,33 +233,33 @@ PolygonSoup read_medit(std::string& bytes, const std::string& file) {
 PolygonSoup read_vtu(const std::string& bytes, const std::string& file) {
     pugi::xml_document document;
     if (const auto parsed = document.load_buffer(bytes.data(), bytes.size()); !parsed)
-        fail_input(file, "is no XML: " + std::string(parsed.description()) + " at byte " + std::to_string(parsed.offset),
+        fail_input(file, fmt::format("is not valid XML: {} at byte {}", parsed.description(), parsed.offset),
                    "export it again as text (.vtu)");
     const pugi::xml_node grid = document.child("VTKFile").child("UnstructuredGrid"), piece = grid.child("Piece");
-    if (!piece) fail_input(file, "is no VTK file of an unstructured grid", "export it as .vtu");
+    if (!piece) fail_input(file, "is not a VTK file with an unstructured grid", "export it as .vtu");
     if (piece.next_sibling("Piece")) fail_input(file, "has several pieces", "write it as one");
     PolygonSoup soup;
-    const auto places = numbers_of<double>(piece.child("Points").child("DataArray"), file, "points");
-    if (places.size() % 3 != 0) fail_input(file, "has points that are not three numbers each", "export it again");
-    for (std::size_t i = 0; i < places.size(); i += 3) {
+    const auto coordinates = numbers_of<double>(piece.child("Points").child("DataArray"), file, "points");
+    if (coordinates.size() % 3 != 0) fail_input(file, "has points without three coordinates each", "export it again");
+    for (std::size_t i = 0; i < coordinates.size(); i += 3) {
         for (std::size_t k = 0; k < 3; ++k)
-            if (!std::isfinite(places[i + k]))
-                fail_input(file, "point " + std::to_string(i / 3) + " is not finite", "give finite coordinates");
-        soup.points.push_back({places[i], places[i + 1], places[i + 2]});
+            if (!std::isfinite(coordinates[i + k]))
+                fail_input(file, fmt::format("point {} is not finite", i / 3), "give finite coordinates");
+        soup.points.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
     }
     const pugi::xml_node cells = piece.child("Cells");
-    const auto corners = numbers_of<std::int64_t>(named(cells, "connectivity"), file, "connectivity"),
-               ends = numbers_of<std::int64_t>(named(cells, "offsets"), file, "offsets"),
-               types = numbers_of<std::int64_t>(named(cells, "types"), file, "types");
-    if (ends.size() != types.size()) fail_input(file, "has other numbers of offsets and of types", "export it again");
+    const auto corners = numbers_of<std::int64_t>(array_named(cells, "connectivity"), file, "connectivity"),
+               offsets = numbers_of<std::int64_t>(array_named(cells, "offsets"), file, "offsets"),
+               types = numbers_of<std::int64_t>(array_named(cells, "types"), file, "types");
+    if (offsets.size() != types.size()) fail_input(file, "has different numbers of offsets and types", "export it again");
     std::vector<std::int64_t> labels;
-    if (const pugi::xml_node array = named(piece.child("CellData"), "label"))
+    if (const pugi::xml_node array = array_named(piece.child("CellData"), "label"))
         labels = numbers_of<std::int64_t>(array, file, "labels");
     if (!labels.empty() && labels.size() != types.size())
-        fail_input(file, "has another number of labels than of cells", "give one label per cell");
-    std::size_t others = 0;
-    for (std::size_t i = 0, begin = 0; i < ends.size(); ++i) {
-        const auto end = static_cast<std::size_t>(std::max<std::int64_t>(ends[i], 0));
+        fail_input(file, "has different numbers of labels and cells", "give one label per cell");
+    std::size_t unsupported = 0;
+    for (std::size_t i = 0, begin = 0; i < offsets.size(); ++i) {
+        const auto end = static_cast<std::size_t>(std::max<std::int64_t>(offsets[i], 0));
         if (end < begin || end > corners.size())
             fail_input(file, "has offsets that do not ascend within its connectivity", "correct or regenerate the file");
         const std::size_t n = end - begin;
@@ -273,27 +274,28 @@ PolygonSoup read_vtu(const std::string& bytes, const std::string& file) {
             close_polygon(soup, file);
             if (!labels.empty()) soup.extras.face_labels.push_back(static_cast<std::int32_t>(labels[i]));
         } else {
-            ++others;
+            ++unsupported;
         }
         begin = end;
     }
-    if (others > 0) soup.notes.push_back(std::to_string(others) + " cells are neither polygons nor tetrahedra, and not kept");
+    if (unsupported > 0)
+        soup.notes.push_back(std::to_string(unsupported) + " cells are neither polygons nor tetrahedra, and not kept");
     check_cells(soup, file);
-    take_surface(soup, file);
+    extract_surface(soup, file);
     return soup;
 }
 
 Notes write_medit(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     TextWriter writer(file);
     writer.text("MeshVersionFormatted 2\n");
-    if (!options.comment.empty()) writer.text("# " + one_line(options.comment) + "\n");
-    writer.text("Dimension 3\nVertices\n" + std::to_string(soup.points.size()) + "\n");
+    if (!options.comment.empty()) writer.text(fmt::format("# {}\n", one_line(options.comment)));
+    writer.text(fmt::format("Dimension 3\nVertices\n{}\n", soup.points.size()));
     for (const auto& [x, y, z] : soup.points) {
         writer.number(x);
         writer.numbers({y, z});
         writer.text(" 0\n");
     }
-    writer.text("Triangles\n" + std::to_string(soup.triangles.size()) + "\n");
+    writer.text(fmt::format("Triangles\n{}\n", soup.triangles.size()));
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
         writer.number(soup.triangles[t][0] + 1);
         writer.numbers({soup.triangles[t][1] + 1, soup.triangles[t][2] + 1});
@@ -301,7 +303,7 @@ Notes write_medit(const Path& file, const TriangleSoup& soup, const MeshExtras& 
         writer.end_line();
     }
     if (!extras.tetrahedra.empty()) {
-        writer.text("Tetrahedra\n" + std::to_string(extras.tetrahedra.size()) + "\n");
+        writer.text(fmt::format("Tetrahedra\n{}\n", extras.tetrahedra.size()));
         for (const Tetrahedron& t : extras.tetrahedra) {
             writer.number(t[0] + 1);
             writer.numbers({t[1] + 1, t[2] + 1, t[3] + 1});
@@ -319,10 +321,10 @@ Notes write_vtu(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     TextWriter writer(file);
     const std::size_t triangles = soup.triangles.size(), cells = triangles + extras.tetrahedra.size();
     writer.text(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
-        "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
-        std::to_string(soup.points.size()) + "\" NumberOfCells=\"" + std::to_string(cells) +
-        "\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+        fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+                    "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" "
+                    "NumberOfCells=\"{}\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
+                    soup.points.size(), cells));
     for (const auto& [x, y, z] : soup.points) {
         writer.number(x);
         writer.numbers({y, z});
@@ -356,7 +358,7 @@ Notes write_vtu(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     writer.text("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
     writer.commit();
     Notes notes;
-    write_labels_note(extras, "VTU as it is written here", notes);
+    write_labels_note(extras, "VTU (as written here)", notes);
     return notes;
 }
 

@@ -2,6 +2,8 @@
 
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -11,8 +13,8 @@
 namespace ostraka::io {
 
 void TextReader::to_line_end() {
-    const void* found = position_ == end_ ? nullptr : std::memchr(position_, '\n', remaining());
-    position_ = found == nullptr ? end_ : static_cast<const char*>(found);
+    const void* line_end = position_ == end_ ? nullptr : std::memchr(position_, '\n', remaining());
+    position_ = line_end == nullptr ? end_ : static_cast<const char*>(line_end);
 }
 
 bool TextReader::next_line() {
@@ -49,74 +51,75 @@ std::string_view TextReader::rest_of_line() {
     return {first, static_cast<std::size_t>(last - first)};
 }
 
-double TextReader::number(const char* what) {
-    if (line_done()) fail(std::string("the line ends where ") + what + " is expected", "the file may be cut off or damaged");
+double TextReader::number(const char* quantity) {
+    if (line_done()) fail(fmt::format("the line ends where {} is expected", quantity), "the file may be cut off or damaged");
     const char* first = position_;
     if (*position_ == '+' && remaining() > 1 && position_[1] != '-') ++position_;
     double value = 0;
     auto [stop, code] = std::from_chars(position_, end_, value);
     if (code == std::errc::result_out_of_range) {
         // An underflow counts as zero; an overflow is no valid coordinate.
-        long double wide = 0;
-        const auto again = std::from_chars(position_, end_, wide);
-        if (again.ec != std::errc() || std::fabs(wide) > static_cast<long double>(std::numeric_limits<double>::max())) {
+        long double wide_value = 0;
+        const auto wide_result = std::from_chars(position_, end_, wide_value);
+        if (wide_result.ec != std::errc() ||
+            std::fabs(wide_value) > static_cast<long double>(std::numeric_limits<double>::max())) {
             position_ = first;
-            fail(std::string(what) + " " + in_quotes(word()) + " is out of the range of a double", "correct or rescale it",
+            fail(fmt::format("{} {} is out of the range of a double", quantity, in_quotes(word())), "correct or rescale it",
                  first);
         }
-        value = static_cast<double>(wide);
-        stop = again.ptr;
+        value = static_cast<double>(wide_value);
+        stop = wide_result.ptr;
         code = {};
     }
     const char* parsed = position_;
     position_ = stop;
     if (code != std::errc() || stop == parsed || !(at_word_end() || (comment_ != 0 && *position_ == comment_))) {
         position_ = first;
-        fail(std::string(what) + " " + in_quotes(word()) + " is not a number", {}, first);
+        fail(fmt::format("{} {} is not a number", quantity, in_quotes(word())), {}, first);
     }
     return value;
 }
 
-double TextReader::finite(const char* what) {
+double TextReader::finite(const char* quantity) {
     skip_blanks();
     const char* first = position_;
-    const double value = number(what);
+    const double value = number(quantity);
     if (!std::isfinite(value)) {
         position_ = first;
-        fail(std::string(what) + " " + in_quotes(word()) + " is not finite", "correct or remove the element", first);
+        fail(fmt::format("{} {} is not finite", quantity, in_quotes(word())), "correct or remove the element", first);
     }
     return value;
 }
 
-std::int64_t TextReader::integer_part(const char* what) {
+std::int64_t TextReader::integer_part(const char* quantity) {
     const char* first = position_;
     if (position_ != end_ && *position_ == '+' && remaining() > 1 && position_[1] != '-') ++position_;
     std::int64_t value = 0;
     const auto [stop, code] = std::from_chars(position_, end_, value);
     if (code != std::errc()) {
         position_ = first;
-        fail(std::string(what) + " " + in_quotes(word()) + " is not a whole number that fits 64 bits", {}, first);
+        fail(fmt::format("{} {} is not a whole number that fits 64 bits", quantity, in_quotes(word())), {}, first);
     }
     position_ = stop;
     return value;
 }
 
-std::int64_t TextReader::integer(const char* what) {
-    if (line_done()) fail(std::string("the line ends where ") + what + " is expected", "the file may be cut off or damaged");
+std::int64_t TextReader::integer(const char* quantity) {
+    if (line_done()) fail(fmt::format("the line ends where {} is expected", quantity), "the file may be cut off or damaged");
     const char* first = position_;
-    const std::int64_t value = integer_part(what);
+    const std::int64_t value = integer_part(quantity);
     if (!at_word_end() && !(comment_ != 0 && *position_ == comment_)) {
         position_ = first;
-        fail(std::string(what) + " " + in_quotes(word()) + " is not a whole number", {}, first);
+        fail(fmt::format("{} {} is not a whole number", quantity, in_quotes(word())), {}, first);
     }
     return value;
 }
 
-void TextReader::fail(const std::string& what, const std::string& remedy, const char* at) const {
-    if (at == nullptr) at = position_;
+void TextReader::fail(const std::string& problem, const std::string& remedy, const char* position) const {
+    if (position == nullptr) position = position_;
     // Continued lines are counted: their line feeds were replaced by vertical tabs.
-    const auto line = 1 + std::count_if(begin_, at, [](char c) { return c == '\n' || c == '\v'; });
-    fail_input(file_ + ", line " + std::to_string(line), what, remedy);
+    const auto line = 1 + std::count_if(begin_, position, [](char c) { return c == '\n' || c == '\v'; });
+    fail_input(fmt::format("{}, line {}", file_, line), problem, remedy);
 }
 
 std::string in_quotes(std::string_view word) {

@@ -36,13 +36,13 @@ public:
 
     /// The next word of this line as a number. Throws Error if it is missing, malformed, too large for a double, infinite or
     /// NaN.
-    double finite(const char* what);
+    double finite(const char* quantity);
     /// As above, but accepts infinities and NaN (colours are checked by their reader).
-    double number(const char* what);
+    double number(const char* quantity);
     /// The next word of this line as a 64-bit integer.
-    std::int64_t integer(const char* what);
+    std::int64_t integer(const char* quantity);
     /// An integer at the current position; blanks before it are not skipped, and any character may follow.
-    std::int64_t integer_part(const char* what);
+    std::int64_t integer_part(const char* quantity);
     /// Consumes the next character if it is `c`.
     bool take(char c) {
         if (position_ == end_ || *position_ != c) return false;
@@ -61,8 +61,8 @@ public:
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - position_); }
     [[nodiscard]] const std::string& file() const { return file_; }
 
-    /// Throws Error (input) with the file and the line at `at` (default: the current position).
-    [[noreturn]] void fail(const std::string& what, const std::string& remedy = {}, const char* at = nullptr) const;
+    /// Throws Error (input) with the file and the line at `position` (default: the current position).
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}, const char* position = nullptr) const;
 
     static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 

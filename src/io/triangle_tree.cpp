@@ -92,12 +92,12 @@ void TriangleTree::find_boxes() {
         [&](std::size_t i) {
             const auto& [a, b, c] = soup_.triangles[order_[i]];
             const auto &p = soup_.points[a], &q = soup_.points[b], &r = soup_.points[c];
-            std::array<double, 3> from, to;
+            std::array<double, 3> low, high;
             for (std::size_t k = 0; k < 3; ++k) {
-                from[k] = std::min({p[k], q[k], r[k]});
-                to[k] = std::max({p[k], q[k], r[k]});
+                low[k] = std::min({p[k], q[k], r[k]});
+                high[k] = std::max({p[k], q[k], r[k]});
             }
-            boxes_[i] = scaled_box(from, to);
+            boxes_[i] = scaled_box(low, high);
         },
         4096);
     const std::vector<Box>* below = &boxes_;
@@ -148,9 +148,9 @@ bool TriangleTree::overlap(const Box& a, const Box& b) {
            a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
-std::size_t TriangleTree::pairs_of_leaf(Index leaf, std::size_t most, const std::function<bool(Index, Index)>& visit) const {
+std::size_t TriangleTree::pairs_of_leaf(Index leaf, std::size_t max_boxes, const std::function<bool(Index, Index)>& visit) const {
     const Index count = static_cast<Index>(order_.size());
-    const Box& own = levels_[0][leaf];
+    const Box& leaf_box = levels_[0][leaf];
     const Index own_begin = leaf * fan, own_end = std::min(count, own_begin + fan);
     const bool grouped = !groups_.empty();
     const Index own_group = grouped ? level_groups_[0][leaf] : 0;
@@ -162,7 +162,7 @@ std::size_t TriangleTree::pairs_of_leaf(Index leaf, std::size_t most, const std:
     };
     std::size_t compared = 0;
     std::vector<Node> stack{{static_cast<Index>(levels_.size() - 1), 0}};
-    while (!stack.empty() && compared < most) {
+    while (!stack.empty() && compared < max_boxes) {
         const Node node = stack.back();
         stack.pop_back();
         const auto& below = node.level == 0 ? boxes_ : levels_[node.level - 1];
@@ -177,14 +177,14 @@ std::size_t TriangleTree::pairs_of_leaf(Index leaf, std::size_t most, const std:
         compared += fan;
         const unsigned span = 2 * (node.level - 1);  // a node of that level covers 4^level leaves
         for (Index i = end; i-- > begin;)
-            if ((static_cast<std::uint64_t>(i + 1) << span) > leaf && overlap(own, below[i]) &&
+            if ((static_cast<std::uint64_t>(i + 1) << span) > leaf && overlap(leaf_box, below[i]) &&
                 (own_group == 0 || level_groups_[node.level - 1][i] != own_group))
                 stack.push_back({node.level - 1, i});
     }
     return compared;
 }
 
-void TriangleTree::along_segment(const Point& from, const Point& to, std::size_t most,
+void TriangleTree::along_segment(const Point& from, const Point& to, std::size_t max_boxes,
                                  const std::function<void(Index)>& visit) const {
     if (levels_.empty()) return;
     std::array<double, 3> start, step;
@@ -207,7 +207,7 @@ void TriangleTree::along_segment(const Point& from, const Point& to, std::size_t
         return enter <= leave;
     };
     std::vector<std::pair<Index, Index>> stack{{static_cast<Index>(levels_.size()), 0}};  // level + 1, number
-    for (std::size_t boxes = 0; !stack.empty() && boxes < most; ++boxes) {
+    for (std::size_t boxes = 0; !stack.empty() && boxes < max_boxes; ++boxes) {
         const auto [level, number] = stack.back();
         stack.pop_back();
         if (!meets(level == 0 ? boxes_[number] : levels_[level - 1][number])) continue;

@@ -24,12 +24,12 @@ public:
     [[nodiscard]] Index leaf_count() const { return levels_.empty() ? 0 : static_cast<Index>(levels_.front().size()); }
 
     /// Calls visit(a, b) for each pair of triangles with overlapping boxes where `a` lies in the given leaf and `b` comes later
-    /// on the curve, always in the same order. Stops when `visit` returns false or after about `most` comparisons of boxes.
+    /// on the curve, always in the same order. Stops when `visit` returns false or after about `max_boxes` comparisons of boxes.
     /// Over all leaves, each pair is visited once. Returns the number of comparisons.
-    std::size_t pairs_of_leaf(Index leaf, std::size_t most, const std::function<bool(Index, Index)>& visit) const;
+    std::size_t pairs_of_leaf(Index leaf, std::size_t max_boxes, const std::function<bool(Index, Index)>& visit) const;
 
-    /// Calls visit(t) for each triangle whose box intersects the segment; stops after about `most` boxes.
-    void along_segment(const Point& from, const Point& to, std::size_t most, const std::function<void(Index)>& visit) const;
+    /// Calls visit(t) for each triangle whose box intersects the segment; stops after about `max_boxes` boxes.
+    void along_segment(const Point& from, const Point& to, std::size_t max_boxes, const std::function<void(Index)>& visit) const;
 
     struct Nearest {
         Index triangle = no_index;

@@ -12,10 +12,10 @@ MeshExtras follow(MeshExtras&& extras, const std::vector<Index>& triangle_polygo
     result.vertex_labels = std::move(extras.vertex_labels);
     result.vertex_texture = std::move(extras.vertex_texture);
     result.tetrahedra = std::move(extras.tetrahedra);
-    const auto pick = [](const auto& from, const std::vector<Index>& map, auto& to) {
-        if (from.empty()) return;
-        to.reserve(map.size());
-        for (const Index i : map) to.push_back(from[i]);
+    const auto pick = [](const auto& values, const std::vector<Index>& map, auto& mapped) {
+        if (values.empty()) return;
+        mapped.reserve(map.size());
+        for (const Index i : map) mapped.push_back(values[i]);
     };
     pick(extras.face_colours, triangle_polygon, result.face_colours);
     pick(extras.face_labels, triangle_polygon, result.face_labels);
@@ -35,8 +35,8 @@ bool all_are_triangles(const PolygonSoup& polygons) {
 
 }  // namespace
 
-TriangulatedSoup triangulate(PolygonSoup&& given) {
-    PolygonSoup polygons = std::move(given);  // moved, so that the corners are freed on return
+TriangulatedSoup triangulate(PolygonSoup&& input) {
+    PolygonSoup polygons = std::move(input);  // moved, so that the corners are freed on return
     TriangulatedSoup result;
     result.notes = std::move(polygons.notes);
     result.soup.points = std::move(polygons.points);
@@ -50,25 +50,26 @@ TriangulatedSoup triangulate(PolygonSoup&& given) {
         return result;
     }
     std::vector<Index> triangle_corner;
-    std::vector<io::PolygonCutter::Triple> pieces;
+    std::vector<io::PolygonCutter::Triple> cut_triangles;
     io::PolygonCutter cutter;
-    std::size_t without = 0, crossing = 0, gave_up = 0;
+    std::size_t empty = 0, crossing = 0, gave_up = 0;
     for (std::size_t i = 0; i < polygons.polygon_count(); ++i) {
         const Index begin = polygons.polygon_begin[i], count = polygons.polygon_begin[i + 1] - begin;
-        pieces.clear();
-        const auto cut = count == 0 ? io::CutResult::clean : cutter.cut(result.soup.points, &corners[begin], count, pieces);
-        without += pieces.empty();
+        cut_triangles.clear();
+        const auto cut =
+            count == 0 ? io::CutResult::clean : cutter.cut(result.soup.points, &corners[begin], count, cut_triangles);
+        empty += cut_triangles.empty();
         crossing += cut == io::CutResult::crossing;
         gave_up += cut == io::CutResult::gave_up;
-        for (const auto& piece : pieces) {
+        for (const auto& piece : cut_triangles) {
             triangles.push_back({corners[begin + piece[0]], corners[begin + piece[1]], corners[begin + piece[2]]});
             result.triangle_polygon.push_back(static_cast<Index>(i));
             if (!polygons.extras.corner_texture.empty())
                 for (const auto k : piece) triangle_corner.push_back(begin + k);
         }
     }
-    if (without > 0)
-        result.notes.push_back(std::to_string(without) + " faces have fewer than three distinct corners and give no triangle");
+    if (empty > 0)
+        result.notes.push_back(std::to_string(empty) + " faces have fewer than three distinct corners and give no triangle");
     if (crossing > 0)
         result.notes.push_back(std::to_string(crossing) + " faces cross or touch themselves; their triangles may overlap");
     if (gave_up > 0)

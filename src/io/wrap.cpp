@@ -20,13 +20,13 @@ public:
         check_();
         return Triangles::do_intersect(query);
     }
-    Point closest_point(const Point& place) const {
+    Point closest_point(const Point& query) const {
         check_();
-        return Triangles::closest_point(place);
+        return Triangles::closest_point(query);
     }
-    bool first_intersection(const Point& from, const Point& to, Point& met, double offset) const {
+    bool first_intersection(const Point& from, const Point& to, Point& intersection, double offset) const {
         check_();
-        return Triangles::first_intersection(from, to, met, offset);
+        return Triangles::first_intersection(from, to, intersection, offset);
     }
 
 private:

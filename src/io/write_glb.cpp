@@ -11,7 +11,7 @@
 namespace ostraka::io {
 
 Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
-    if (soup.triangles.empty()) fail_work(file.string(), "glTF does not hold a mesh without triangles", "write PLY, OBJ or OFF");
+    if (soup.triangles.empty()) fail_work(file.string(), "glTF cannot store a mesh without triangles", "write PLY, OBJ or OFF");
     const bool corner_texture = extras.vertex_texture.empty() && !extras.corner_texture.empty();
     const bool textured = corner_texture || !extras.vertex_texture.empty();
     const bool face_coloured = extras.vertex_colours.empty() && !extras.face_colours.empty();
@@ -35,10 +35,10 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
             if (std::fabs(x) > static_cast<double>(std::numeric_limits<float>::max()))
                 fail_work(file.string(), "a coordinate does not fit the single precision of glTF",
                           "write PLY, OBJ or OFF, or rescale the mesh");
-            const auto narrow = static_cast<float>(x);
-            rounded = rounded || static_cast<double>(narrow) != x;
-            low[k] = std::min(low[k], narrow);
-            high[k] = std::max(high[k], narrow);
+            const auto single = static_cast<float>(x);
+            rounded = rounded || static_cast<double>(single) != x;
+            low[k] = std::min(low[k], single);
+            high[k] = std::max(high[k], single);
         }
     if (coloured)
         for (std::size_t i = 0; i < count && !translucent; ++i) translucent = colour_of(i)[3] != 255;
@@ -98,13 +98,13 @@ Notes write_glb(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     writer.commit();
 
     Notes notes;
-    if (rounded) notes.emplace_back("GLB holds coordinates in single precision; they were rounded");
-    if (split) notes.emplace_back("vertices were split so that GLB can hold the data of faces and corners");
+    if (rounded) notes.emplace_back("GLB stores coordinates in single precision; they were rounded");
+    if (split) notes.emplace_back("vertices were split so that GLB can store the data of faces and corners");
     if (!extras.vertex_colours.empty() && !extras.face_colours.empty())
-        notes.emplace_back("GLB holds one set of colours; those of faces are left out");
+        notes.emplace_back("GLB stores one set of colours; those of faces are dropped");
     if (!extras.vertex_texture.empty() && !extras.corner_texture.empty())
-        notes.emplace_back("GLB holds one set of texture coordinates here; those of corners are left out");
-    if (!extras.vertex_labels.empty() || !extras.face_labels.empty()) notes.emplace_back("GLB does not hold labels");
+        notes.emplace_back("GLB stores one set of texture coordinates; those of corners are dropped");
+    if (!extras.vertex_labels.empty() || !extras.face_labels.empty()) notes.emplace_back("GLB cannot store labels");
     return notes;
 }
 

@@ -1,6 +1,8 @@
 #include "formats.h"
 #include "ostraka/core/error.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <stdexcept>
 
@@ -9,13 +11,12 @@ namespace ostraka {
 namespace {
 
 void check_extras(const MeshExtras& extras, const WriteOptions& options, std::size_t vertices, std::size_t triangles) {
-    const auto check = [](std::size_t size, std::size_t wanted, const char* what) {
-        if (size != 0 && size != wanted)
-            throw std::logic_error(std::string("write_mesh: ") + what + " has " + std::to_string(size) + " entries instead of " +
-                                   std::to_string(wanted));
+    const auto check = [](std::size_t size, std::size_t expected, const char* attribute) {
+        if (size != 0 && size != expected)
+            throw std::logic_error(fmt::format("write_mesh: {} has {} entries instead of {}", attribute, size, expected));
     };
     check(options.vertex_quality.size(), vertices, "vertex_quality");
-    for (const FaceValues& one : options.face_values) check(one.values.size(), triangles, one.name.c_str());
+    for (const FaceValues& attribute : options.face_values) check(attribute.values.size(), triangles, attribute.name.c_str());
     check(extras.vertex_colours.size(), vertices, "vertex_colours");
     check(extras.vertex_labels.size(), vertices, "vertex_labels");
     check(extras.vertex_texture.size(), vertices, "vertex_texture");
@@ -24,16 +25,16 @@ void check_extras(const MeshExtras& extras, const WriteOptions& options, std::si
     check(extras.corner_texture.size(), 3 * triangles, "corner_texture");
     for (const auto& tetrahedron : extras.tetrahedra)
         for (const Index v : tetrahedron)
-            if (v >= vertices) throw std::logic_error("write_mesh: a tetrahedron of a vertex that is not there");
+            if (v >= vertices) throw std::logic_error("write_mesh: a tetrahedron refers to a vertex that does not exist");
 }
 
 /// Face attributes of the polygons, taken from their triangles.
-MeshExtras of_polygons(const MeshExtras& extras, const std::vector<Index>& triangle) {
+MeshExtras polygon_extras(const MeshExtras& extras, const std::vector<Index>& triangle) {
     MeshExtras result = extras;
-    const auto pick = [&](const auto& from, auto& to) {
-        if (from.empty()) return;
-        to.clear();
-        for (const Index t : triangle) to.push_back(from[t]);
+    const auto pick = [&](const auto& values, auto& mapped) {
+        if (values.empty()) return;
+        mapped.clear();
+        for (const Index t : triangle) mapped.push_back(values[t]);
     };
     pick(extras.face_colours, result.face_colours);
     pick(extras.face_labels, result.face_labels);
@@ -48,51 +49,48 @@ std::vector<std::string> write_polygons(const Path& file, const TriangleSoup& so
         throw std::logic_error("write_mesh: polygons without triangles");
     for (const auto& polygon : options.polygons)
         for (const Index v : polygon)
-            if (v >= soup.points.size()) throw std::logic_error("write_mesh: a polygon of a vertex that is not there");
-    WriteOptions rest = options;
+            if (v >= soup.points.size()) throw std::logic_error("write_mesh: a polygon refers to a vertex that does not exist");
+    WriteOptions triangle_options = options;
     std::vector<std::string> notes;
     if (ending != ".obj" && ending != ".off" && ending != ".ply") {
-        rest.polygons.clear();
-        rest.polygon_triangle.clear();
-        notes = write_triangles(file, soup, extras, rest);
-        notes.emplace_back("only OBJ, OFF and PLY hold polygons: they are cut into triangles");
+        triangle_options.polygons.clear();
+        triangle_options.polygon_triangle.clear();
+        notes = write_triangles(file, soup, extras, triangle_options);
+        notes.emplace_back("only OBJ, OFF and PLY can store polygons: they are triangulated");
         return notes;
     }
-    for (FaceValues& one : rest.face_values) {
+    for (FaceValues& face_attribute : triangle_options.face_values) {
         std::vector<float> values;
-        for (const Index t : options.polygon_triangle) values.push_back(one.values[t]);
-        one.values = std::move(values);
+        for (const Index t : options.polygon_triangle) values.push_back(face_attribute.values[t]);
+        face_attribute.values = std::move(values);
     }
-    const MeshExtras own = of_polygons(extras, options.polygon_triangle);
-    notes = ending == ".obj"   ? io::write_obj(file, soup, own, rest)
-            : ending == ".off" ? io::write_off(file, soup, own, rest)
-                               : io::write_ply(file, soup, own, rest);
-    if (!extras.corner_texture.empty())
-        notes.emplace_back("texture coordinates of corners are left out where polygons are written");
-    if (!extras.tetrahedra.empty()) notes.emplace_back("tetrahedra are left out: .mesh and .vtu hold them");
+    const MeshExtras attributes = polygon_extras(extras, options.polygon_triangle);
+    notes = ending == ".obj"   ? io::write_obj(file, soup, attributes, triangle_options)
+            : ending == ".off" ? io::write_off(file, soup, attributes, triangle_options)
+                               : io::write_ply(file, soup, attributes, triangle_options);
+    if (!extras.corner_texture.empty()) notes.emplace_back("corner texture coordinates are dropped when polygons are written");
+    if (!extras.tetrahedra.empty()) notes.emplace_back("tetrahedra are dropped: .mesh and .vtu can store them");
     return notes;
 }
 
 void check_soup(const Path& file, const TriangleSoup& soup) {
     for (std::size_t v = 0; v < soup.points.size(); ++v)
         for (const double x : soup.points[v])
-            if (!std::isfinite(x))
-                fail_work(file.string(), "vertex " + std::to_string(v) + " has a coordinate that is not finite");
+            if (!std::isfinite(x)) fail_work(file.string(), fmt::format("vertex {} has a coordinate that is not finite", v));
     for (std::size_t t = 0; t < soup.triangles.size(); ++t)
         for (const Index v : soup.triangles[t])
             if (v >= soup.points.size())
-                fail_work(file.string(), "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
-                                             std::to_string(soup.points.size()));
+                fail_work(file.string(), fmt::format("triangle {} names vertex {} of {}", t, v, soup.points.size()));
 }
 
 }  // namespace
 
 void check_mesh_extension(const Path& file) {
     const std::string ending = extension(file);
-    for (const char* known : {".obj", ".ply", ".off", ".stl", ".glb", ".mesh", ".vtu"})
-        if (ending == known) return;
-    throw Error(ErrorKind::usage, file.string(), "has no extension of a mesh file that can be written",
-                "use .ply, .obj, .off, .stl or .glb, of tetrahedra .mesh or .vtu");
+    for (const char* supported : {".obj", ".ply", ".off", ".stl", ".glb", ".mesh", ".vtu"})
+        if (ending == supported) return;
+    throw Error(ErrorKind::usage, file.string(), "does not have the extension of a writable mesh format",
+                "use .ply, .obj, .off, .stl or .glb, or .mesh or .vtu for tetrahedra");
 }
 
 std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& soup, const MeshExtras& extras,
@@ -102,11 +100,11 @@ std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& s
     check_soup(file, soup);
     const std::string ending = extension(file);
     if (ending != ".ply" && (!options.vertex_quality.empty() || !options.face_values.empty())) {
-        WriteOptions rest = options;
-        rest.vertex_quality.clear();
-        rest.face_values.clear();
-        std::vector<std::string> notes = write_triangles(file, soup, extras, rest);
-        notes.emplace_back("only PLY holds numbers of vertices and faces: they are left out");
+        WriteOptions other_options = options;
+        other_options.vertex_quality.clear();
+        other_options.face_values.clear();
+        std::vector<std::string> notes = write_triangles(file, soup, extras, other_options);
+        notes.emplace_back("only PLY can store values per vertex and per face: they are dropped");
         return notes;
     }
     if (!options.polygons.empty()) return write_polygons(file, soup, extras, options);
@@ -116,7 +114,7 @@ std::vector<std::string> write_triangles(const Path& file, const TriangleSoup& s
         MeshExtras surface = extras;
         surface.tetrahedra.clear();
         std::vector<std::string> notes = write_triangles(file, soup, surface, options);
-        notes.push_back(std::to_string(extras.tetrahedra.size()) + " tetrahedra are left out: .mesh and .vtu hold them");
+        notes.push_back(std::to_string(extras.tetrahedra.size()) + " tetrahedra are dropped: .mesh and .vtu can store them");
         return notes;
     }
     if (ending == ".obj") return io::write_obj(file, soup, extras, options);

@@ -1,11 +1,13 @@
 #include "formats.h"
 #include "text_writer.h"
 
+#include <fmt/core.h>
+
 namespace ostraka::io {
 
 Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     TextWriter writer(file);
-    if (!options.comment.empty()) writer.text("# " + one_line(options.comment) + "\n");
+    if (!options.comment.empty()) writer.text(fmt::format("# {}\n", one_line(options.comment)));
     bool alpha = false;
     for (std::size_t v = 0; v < soup.points.size(); ++v) {
         writer.character('v');
@@ -40,12 +42,12 @@ Notes write_obj(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     }
     writer.commit();
     Notes notes;
-    if (alpha) notes.emplace_back("OBJ does not hold the opacity of colours");
-    if (!extras.face_colours.empty()) notes.emplace_back("OBJ does not hold colours of faces");
-    if (!extras.vertex_labels.empty()) notes.emplace_back("OBJ does not hold labels of vertices");
-    if (!extras.face_labels.empty()) notes.emplace_back("OBJ does not hold labels of faces");
+    if (alpha) notes.emplace_back("OBJ cannot store the opacity of colours");
+    if (!extras.face_colours.empty()) notes.emplace_back("OBJ cannot store colours of faces");
+    if (!extras.vertex_labels.empty()) notes.emplace_back("OBJ cannot store labels of vertices");
+    if (!extras.face_labels.empty()) notes.emplace_back("OBJ cannot store labels of faces");
     if (by_vertex && !extras.corner_texture.empty())
-        notes.emplace_back("texture coordinates of corners are left out in favour of those of vertices");
+        notes.emplace_back("texture coordinates of corners are dropped in favour of those of vertices");
     return notes;
 }
 

@@ -1,15 +1,17 @@
 #include "formats.h"
 #include "text_writer.h"
 
+#include <fmt/core.h>
+
 namespace ostraka::io {
 
 Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     TextWriter writer(file);
     const WrittenFaces faces(soup, options);
     const bool textured = !extras.vertex_texture.empty(), coloured = !extras.vertex_colours.empty();
-    writer.text(std::string(textured ? "ST" : "") + (coloured ? "C" : "") + "OFF\n");
-    if (!options.comment.empty()) writer.text("# " + one_line(options.comment) + "\n");
-    writer.text(std::to_string(soup.points.size()) + " " + std::to_string(faces.size()) + " 0\n");
+    writer.text(fmt::format("{}{}OFF\n", textured ? "ST" : "", coloured ? "C" : ""));
+    if (!options.comment.empty()) writer.text(fmt::format("# {}\n", one_line(options.comment)));
+    writer.text(fmt::format("{} {} 0\n", soup.points.size(), faces.size()));
     for (std::size_t v = 0; v < soup.points.size(); ++v) {
         const auto& [x, y, z] = soup.points[v];
         writer.number(x);
@@ -29,9 +31,9 @@ Notes write_off(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     }
     writer.commit();
     Notes notes;
-    if (!extras.vertex_labels.empty()) notes.emplace_back("OFF does not hold labels of vertices");
-    if (!extras.face_labels.empty()) notes.emplace_back("OFF does not hold labels of faces");
-    if (!extras.corner_texture.empty()) notes.emplace_back("OFF does not hold texture coordinates of corners");
+    if (!extras.vertex_labels.empty()) notes.emplace_back("OFF cannot store labels of vertices");
+    if (!extras.face_labels.empty()) notes.emplace_back("OFF cannot store labels of faces");
+    if (!extras.corner_texture.empty()) notes.emplace_back("OFF cannot store texture coordinates of corners");
     return notes;
 }
 

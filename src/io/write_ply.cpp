@@ -1,6 +1,8 @@
 #include "formats.h"
 #include "text_writer.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka::io {
@@ -52,22 +54,20 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     const bool ascii = options.encoding == Encoding::ascii;
     const bool vertex_alpha = has_alpha(extras.vertex_colours), face_alpha = has_alpha(extras.face_colours);
     const WrittenFaces faces(soup, options);
-    std::size_t most = 3;
-    for (std::size_t t = 0; t < faces.size(); ++t) most = std::max(most, faces.corners(t).size());
-    const bool wide = most > 255;
-    std::string header = std::string("ply\nformat ") + (ascii ? "ascii" : "binary_little_endian") + " 1.0\n";
-    if (!options.comment.empty()) header += "comment " + one_line(options.comment) + "\n";
-    header +=
-        "element vertex " + std::to_string(soup.points.size()) + "\nproperty double x\nproperty double y\nproperty double z\n";
+    std::size_t max_corners = 3;
+    for (std::size_t t = 0; t < faces.size(); ++t) max_corners = std::max(max_corners, faces.corners(t).size());
+    const bool wide_counts = max_corners > 255;
+    std::string header = fmt::format("ply\nformat {} 1.0\n", ascii ? "ascii" : "binary_little_endian");
+    if (!options.comment.empty()) header += fmt::format("comment {}\n", one_line(options.comment));
+    header += fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n", soup.points.size());
     if (!extras.vertex_colours.empty()) header += colour_properties(vertex_alpha);
     if (!extras.vertex_labels.empty()) header += "property int label\n";
     if (!extras.vertex_texture.empty()) header += "property float s\nproperty float t\n";
     if (!options.vertex_quality.empty()) header += "property double quality\n";
-    header +=
-        "element face " + std::to_string(faces.size()) + "\nproperty list " + (wide ? "int" : "uchar") + " int vertex_indices\n";
+    header += fmt::format("element face {}\nproperty list {} int vertex_indices\n", faces.size(), wide_counts ? "int" : "uchar");
     if (!extras.face_colours.empty()) header += colour_properties(face_alpha);
     if (!extras.face_labels.empty()) header += "property int label\n";
-    for (const FaceValues& one : options.face_values) header += "property float " + one.name + "\n";
+    for (const FaceValues& attribute : options.face_values) header += fmt::format("property float {}\n", attribute.name);
     if (!extras.corner_texture.empty()) header += "property list uchar float texcoord\n";
     writer.text(header + "end_header\n");
 
@@ -83,12 +83,12 @@ Notes write_ply(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     }
     for (std::size_t t = 0; t < faces.size(); ++t) {
         const auto corners = faces.corners(t);
-        if (wide) values.put(static_cast<Index>(corners.size()));
+        if (wide_counts) values.put(static_cast<Index>(corners.size()));
         else values.put(static_cast<std::uint8_t>(corners.size()));
         for (const Index v : corners) values.put(v);
         if (!extras.face_colours.empty()) values.colour(extras.face_colours[t], face_alpha);
         if (!extras.face_labels.empty()) values.put(extras.face_labels[t]);
-        for (const FaceValues& one : options.face_values) values.put(one.values[t]);
+        for (const FaceValues& attribute : options.face_values) values.put(attribute.values[t]);
         if (!extras.corner_texture.empty()) {
             values.put(std::uint8_t{6});
             for (std::size_t k = 3 * t; k < 3 * t + 3; ++k)

@@ -2,6 +2,8 @@
 #include "ostraka/core/error.h"
 #include "text_writer.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,7 +48,7 @@ bool order_survives(const TriangleSoup& soup) {
 
 Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& extras, const WriteOptions& options) {
     if (soup.triangles.size() > std::numeric_limits<std::uint32_t>::max())
-        fail_work(file.string(), "STL does not hold so many triangles", "write PLY");
+        fail_work(file.string(), "STL cannot store this many triangles", "write PLY");
     bool rounded = false;
     for (const auto& point : soup.points)
         for (const double x : point) {
@@ -58,7 +60,7 @@ Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     TextWriter writer(file);
     const bool ascii = options.encoding == Encoding::ascii;
     if (ascii) {
-        writer.text("solid " + one_line(options.comment) + "\n");
+        writer.text(fmt::format("solid {}\n", one_line(options.comment)));
     } else {
         // Not "solid": some readers interpret that as text.
         std::string header = one_line("binary STL; " + options.comment);
@@ -93,13 +95,13 @@ Notes write_stl(const Path& file, const TriangleSoup& soup, const MeshExtras& ex
     if (ascii) writer.text("endsolid\n");
     writer.commit();
     Notes notes;
-    if (rounded) notes.emplace_back("STL holds coordinates in single precision; they were rounded");
+    if (rounded) notes.emplace_back("STL stores coordinates in single precision; they were rounded");
     if (!order_survives(soup))
-        notes.emplace_back("STL does not hold vertices; they will be numbered by first appearance on reading");
-    if (!extras.vertex_colours.empty() || !extras.face_colours.empty()) notes.emplace_back("STL does not hold colours");
-    if (!extras.vertex_labels.empty() || !extras.face_labels.empty()) notes.emplace_back("STL does not hold labels");
+        notes.emplace_back("STL does not store vertices; they will be numbered by first appearance on reading");
+    if (!extras.vertex_colours.empty() || !extras.face_colours.empty()) notes.emplace_back("STL cannot store colours");
+    if (!extras.vertex_labels.empty() || !extras.face_labels.empty()) notes.emplace_back("STL cannot store labels");
     if (!extras.vertex_texture.empty() || !extras.corner_texture.empty())
-        notes.emplace_back("STL does not hold texture coordinates");
+        notes.emplace_back("STL cannot store texture coordinates");
     return notes;
 }
 

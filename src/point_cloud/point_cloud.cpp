@@ -7,6 +7,7 @@
 #include <CGAL/jet_estimate_normals.h>
 #include <CGAL/mst_orient_normals.h>
 #include <CGAL/property_map.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <tuple>
@@ -14,12 +15,12 @@
 namespace ostraka {
 
 double point_spacing(const std::vector<Point>& points) {
-    constexpr std::size_t sixth = 6;
-    if (points.size() <= sixth) fail_input("points", "there are only " + std::to_string(points.size()), "give more");
+    constexpr std::size_t neighbour_rank = 6;
+    if (points.size() <= neighbour_rank) fail_input("points", "there are only " + std::to_string(points.size()), "give more");
     const PointTree tree(points);
     std::vector<double> distance(points.size());
     parallel_for(points.size(),
-                 [&](std::size_t i) { distance[i] = std::sqrt(tree.neighbours(points[i], sixth + 1).back().squared); });
+                 [&](std::size_t i) { distance[i] = std::sqrt(tree.neighbours(points[i], neighbour_rank + 1).back().squared); });
     double sum = 0;
     for (const double d : distance) sum += d;
     return sum / static_cast<double>(points.size());
@@ -27,31 +28,29 @@ double point_spacing(const std::vector<Point>& points) {
 
 std::vector<Vector> estimate_normals(const std::vector<Point>& points, const CloudOptions& options) {
     check_options(options, "points");
-    const auto wanted = static_cast<unsigned>(options.neighbours);
-    if (points.size() <= wanted)
-        fail_input(
-            "points",
-            "there are " + std::to_string(points.size()) + ", too few for normals from " + std::to_string(wanted) + " neighbours",
-            "give more, or fewer neighbours");
+    const auto neighbour_count = static_cast<unsigned>(options.neighbours);
+    if (points.size() <= neighbour_count)
+        fail_input("points", fmt::format("there are {}, too few for normals from {} neighbours", points.size(), neighbour_count),
+                   "give more, or fewer neighbours");
     // Normalised to centre 0 and size 1, as the coordinates are squared and multiplied below.
     CGAL::Bbox_3 box;
     for (const Point& p : points) box += p.bbox();
     const Point middle((box.xmin() + box.xmax()) / 2, (box.ymin() + box.ymax()) / 2, (box.zmin() + box.zmax()) / 2);
     const double size = std::max({box.x_span(), box.y_span(), box.z_span()});
-    if (!(size > 0)) fail_input("points", "are all at one place", "export them again");
+    if (!(size > 0)) fail_input("points", "all coincide", "export them again");
     using Oriented = std::tuple<Point, Vector, std::size_t>;
     std::vector<Oriented> cloud;
     cloud.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
         cloud.emplace_back(CGAL::ORIGIN + (points[i] - middle) / size, CGAL::NULL_VECTOR, i);
-    const auto named = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
-                           .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
-    CGAL::jet_estimate_normals<CGAL::Sequential_tag>(cloud, wanted, named);
+    const auto property_maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
+                                   .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
+    CGAL::jet_estimate_normals<CGAL::Sequential_tag>(cloud, neighbour_count, property_maps);
     // Moves the points that it can orient to the front.
-    CGAL::mst_orient_normals(cloud, wanted, named);
+    CGAL::mst_orient_normals(cloud, neighbour_count, property_maps);
     std::vector<Vector> normals(points.size());
     double flux = 0;
-    for (const auto& [place, normal, number] : cloud) normals[number] = normal;
+    for (const auto& [position, normal, number] : cloud) normals[number] = normal;
     for (std::size_t i = 0; i < points.size(); ++i) flux += normals[i] * (points[i] - middle) / size;
     if (flux < 0)
         for (Vector& n : normals) n = -n;

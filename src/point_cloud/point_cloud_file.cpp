@@ -5,6 +5,8 @@
 #include "ostraka/io/ply.h"
 #include "ostraka/point_cloud/point_cloud.h"
 
+#include <fmt/core.h>
+
 #include <charconv>
 #include <cmath>
 
@@ -15,16 +17,18 @@ namespace {
 /// Parses the numbers of a line, separated by spaces, commas, semicolons and tabs; false for any other content.
 bool numbers_of_line(std::string_view line, std::vector<double>& numbers) {
     numbers.clear();
-    const char *at = line.data(), *end = at + line.size();
+    const char *position = line.data(), *end = position + line.size();
     while (true) {
-        while (at < end && (*at == ' ' || *at == '\t' || *at == ',' || *at == ';' || *at == '\r')) ++at;
-        if (at == end) return true;
-        if (*at == '+') ++at;
+        while (position < end &&
+               (*position == ' ' || *position == '\t' || *position == ',' || *position == ';' || *position == '\r'))
+            ++position;
+        if (position == end) return true;
+        if (*position == '+') ++position;
         double value = 0;
-        const auto [next, error] = std::from_chars(at, end, value);
+        const auto [next, error] = std::from_chars(position, end, value);
         if (error != std::errc()) return false;
         numbers.push_back(value);
-        at = next;
+        position = next;
     }
 }
 
@@ -49,7 +53,7 @@ PointCloud read_text(const Path& file) {
         if (numbers.size() < 3) fail_input(where, "has fewer than three numbers", "give x y z, or x y z nx ny nz, a line");
         if (columns == 0) columns = numbers.size();
         if (numbers.size() != columns)
-            fail_input(where, "has " + std::to_string(numbers.size()) + " numbers, the first line " + std::to_string(columns),
+            fail_input(where, fmt::format("has {} numbers, the first line {}", numbers.size(), columns),
                        "give every line the same columns");
         for (const double x : numbers)
             if (!std::isfinite(x)) fail_input(where, "has a number that is not finite", "correct or remove the point");
@@ -68,22 +72,22 @@ PointCloud read_text(const Path& file) {
 }  // namespace
 
 std::optional<PointCloud> read_point_cloud(const Path& file) {
-    const std::string kind = extension(file);
+    const std::string file_extension = extension(file);
     PointCloud cloud;
-    if (kind == ".xyz" || kind == ".pts" || kind == ".asc" || kind == ".txt") {
+    if (file_extension == ".xyz" || file_extension == ".pts" || file_extension == ".asc" || file_extension == ".txt") {
         cloud = read_text(file);
     } else {
         PolygonSoup soup = read_polygons(file);
         if (soup.polygon_count() > 0) return std::nullopt;
         for (const auto& p : soup.points) cloud.points.emplace_back(p[0], p[1], p[2]);
         cloud.notes = std::move(soup.notes);
-        if (kind == ".ply")
+        if (file_extension == ".ply")
             for (const auto& n : read_ply_vectors(file, {"nx", "ny", "nz"})) cloud.normals.emplace_back(n[0], n[1], n[2]);
     }
     if (cloud.points.empty()) fail_input(file.string(), "has neither faces nor points", "export it again");
     for (std::size_t i = 0; i < cloud.points.size(); ++i)
         if (!is_place(cloud.points[i]))
-            fail_input(file.string(), "point " + std::to_string(i) + " is too far away to compute with", "remove it");
+            fail_input(file.string(), fmt::format("point {} exceeds the supported range of coordinates", i), "remove it");
     for (Vector& n : cloud.normals) {
         n = unit_vector(n);
         if (n == CGAL::NULL_VECTOR) {

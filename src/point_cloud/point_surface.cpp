@@ -4,6 +4,7 @@
 #include "ostraka/point_cloud/point_cloud.h"
 
 #include <CGAL/Advancing_front_surface_reconstruction.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -29,13 +30,14 @@ struct EdgeLimit {
 };
 
 bool on_a_line(const std::vector<Point>& points) {
-    const auto far = std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
+    const auto farthest = std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
         return CGAL::squared_distance(points.front(), p) < CGAL::squared_distance(points.front(), q);
     });
-    constexpr double none = 1e-20;  // squared, for points of size 1
-    const Vector along = *far - points.front();
-    return std::all_of(points.begin(), points.end(),
-                       [&](const Point& p) { return CGAL::cross_product(p - points.front(), along).squared_length() <= none; });
+    constexpr double tolerance = 1e-20;  // squared, for points of size 1
+    const Vector along = *farthest - points.front();
+    return std::all_of(points.begin(), points.end(), [&](const Point& p) {
+        return CGAL::cross_product(p - points.front(), along).squared_length() <= tolerance;
+    });
 }
 
 }  // namespace
@@ -56,7 +58,7 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
     if (!on_a_line(points))
         CGAL::advancing_front_surface_reconstruction(points.begin(), points.end(), std::back_inserter(facets),
                                                      EdgeLimit{options.longest * point_spacing(points)});
-    if (facets.empty()) fail_input("points", "have no surface through them", "look at them: are they on a line or at one place?");
+    if (facets.empty()) fail_input("points", "do not define a surface", "check whether they are collinear or coincide");
     CloudSurface result;
     std::vector<Index> number(cloud.points.size(), no_index);
     for (const auto& facet : facets)
@@ -68,27 +70,27 @@ CloudSurface reconstruct_surface(const PointCloud& cloud, const CloudOptions& op
         result.sources.push_back(static_cast<Index>(i));
         soup.points.push_back({cloud.points[i].x(), cloud.points[i].y(), cloud.points[i].z()});
     }
-    double agree = 0;
+    double agreement = 0;
     for (const auto& facet : facets) {
         soup.triangles.push_back({number[facet[0]], number[facet[1]], number[facet[2]]});
         const Vector area =
             CGAL::cross_product(cloud.points[facet[1]] - cloud.points[facet[0]], cloud.points[facet[2]] - cloud.points[facet[0]]);
-        agree += area * (normals[facet[0]] + normals[facet[1]] + normals[facet[2]]);
+        agreement += area * (normals[facet[0]] + normals[facet[1]] + normals[facet[2]]);
     }
-    if (agree < 0)
+    if (agreement < 0)
         for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
-    if (const std::size_t lost = cloud.points.size() - soup.points.size(); lost > 0)
-        result.notes.push_back(std::to_string(lost) + " points are on no face");
-    RepairOptions mend;
-    mend.fill_holes_size = options.close_holes;
-    RepairResult repaired = repair(soup, {}, mend);
+    if (const std::size_t unused_count = cloud.points.size() - soup.points.size(); unused_count > 0)
+        result.notes.push_back(std::to_string(unused_count) + " points are not on any face");
+    RepairOptions repair_options;
+    repair_options.fill_holes_size = options.close_holes;
+    RepairResult repaired = repair(soup, {}, repair_options);
     result.mesh = std::move(repaired.mesh);
     std::vector<Index> sources;
     for (const Index source : repaired.vertex_source) sources.push_back(source == no_index ? no_index : result.sources[source]);
     result.sources = std::move(sources);
     result.border_loops = repaired.after.border_loops.size();
     if (result.border_loops > 0)
-        result.notes.push_back("the surface has " + std::to_string(result.border_loops) + " borders where there are no points");
+        result.notes.push_back(fmt::format("the surface has {} borders where there are no points", result.border_loops));
     return result;
 }
 

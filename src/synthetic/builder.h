@@ -49,9 +49,9 @@ void add_divided_member(SyntheticObject& object, SolidPointer solid, const Items
     const auto lengths = chord_lengths(items);
     Member member{std::move(solid), blend, false, {}};
     for (const auto& [item, part] : until) {
-        const auto below = static_cast<std::size_t>(item);
-        const double share = item - static_cast<double>(below);
-        const double length = below + 1 < lengths.size() ? (1 - share) * lengths[below] + share * lengths[below + 1]
+        const auto index = static_cast<std::size_t>(item);
+        const double share = item - static_cast<double>(index);
+        const double length = index + 1 < lengths.size() ? (1 - share) * lengths[index] + share * lengths[index + 1]
                                                          : std::numeric_limits<double>::infinity();
         member.stretches.push_back({length, part});
     }

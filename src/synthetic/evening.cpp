@@ -17,15 +17,15 @@ constexpr double min_agreement = 0.35;
 /// Twice the area over the square of the longest edge: 0.87 for an equilateral triangle. Minimum after any change.
 constexpr double min_fullness = 0.12;
 
-class Evening {
+class UniformRemesher {
 public:
-    Evening(const SyntheticObject& object, Triangles&& mesh, std::size_t wanted)
+    UniformRemesher(const SyntheticObject& object, Triangles&& mesh, std::size_t target_vertices)
         : object_(object),
           table_(mesh),
-          edge_(std::sqrt(area(mesh) / static_cast<double>(wanted) * 2 / std::numbers::sqrt3)),
+          edge_(std::sqrt(area(mesh) / static_cast<double>(target_vertices) * 2 / std::numbers::sqrt3)),
           points_(std::move(mesh.points)),
           normals_(points_.size()),
-          wanted_(wanted) {
+          target_vertices_(target_vertices) {
         mesh.faces = {};
     }
 
@@ -34,13 +34,13 @@ public:
         for (const double share : {0.25, 0.4}) collapse_below(share);
         flip_all();
         relax();
-        for (double share = 0.5; share < 1.2 && !reached(); share += 0.08) {
+        for (double share = 0.5; share < 1.2 && !has_reached_target(); share += 0.08) {
             collapse_below(share);
-            if (!reached()) flip_all();
+            if (!has_reached_target()) flip_all();
             relax();
         }
         // If the shape allows no more collapses, collapse edges of any length.
-        for (double share = 1.2; share < 6 && !reached(); share *= 1.2) {
+        for (double share = 1.2; share < 6 && !has_reached_target(); share *= 1.2) {
             collapse_below(share);
             flip_all();
             relax();
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    [[nodiscard]] bool reached() const { return table_.living_vertices() <= wanted_; }
+    [[nodiscard]] bool has_reached_target() const { return table_.living_vertices() <= target_vertices_; }
 
     void set_normals() {
         parallel_for(points_.size(), [&](std::size_t v) {
@@ -64,8 +64,8 @@ private:
     }
 
     /// Whether a triangle with these corners has good shape and faces outward.
-    [[nodiscard]] static bool sound(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normals,
-                                    double fullness) {
+    [[nodiscard]] static bool has_good_shape(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normals,
+                                             double fullness) {
         const Vector3d cross = (b - a).cross(c - a);
         const double twice_area = cross.norm();
         const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
@@ -80,7 +80,7 @@ private:
     void collapse_below(double share) {
         const double limit = share * share * edge_ * edge_;
         CancelCheck check;
-        for (Index h = 0; h < table_.halfedges() && !reached(); ++h) {
+        for (Index h = 0; h < table_.halfedges() && !has_reached_target(); ++h) {
             check();
             if (!table_.alive(h) || h > table_.opposite(h)) continue;
             if ((points_[table_.origin(h)] - points_[table_.target(h)]).squaredNorm() < limit) try_collapse(h, share);
@@ -101,20 +101,20 @@ private:
                 floor = std::min(floor, fullness(v, table_.target(g), table_.target(HalfedgeTable::next(g))));
             });
         }
-        const auto fits = [&](const Vector3d& place, Index from, Index other) {
-            bool fine = true;
+        const auto is_valid_position = [&](const Vector3d& position, Index from, Index other) {
+            bool valid = true;
             table_.around(from, [&](Index g) {
                 const Index p = table_.target(g), q = table_.target(HalfedgeTable::next(g));
-                if (!fine || p == other || q == other) return;
-                fine = (points_[p] - place).squaredNorm() < longest * longest &&
-                       sound(place, points_[p], points_[q], normal + normals_[p] + normals_[q], 0.999 * floor);
+                if (!valid || p == other || q == other) return;
+                valid = (points_[p] - position).squaredNorm() < longest * longest &&
+                        has_good_shape(position, points_[p], points_[q], normal + normals_[p] + normals_[q], 0.999 * floor);
             });
-            return fine;
+            return valid;
         };
-        for (const Vector3d& place : {Vector3d(0.5 * (points_[a] + points_[b])), points_[a], points_[b]}) {
-            if (!fits(place, a, b) || !fits(place, b, a)) continue;
+        for (const Vector3d& position : {Vector3d(0.5 * (points_[a] + points_[b])), points_[a], points_[b]}) {
+            if (!is_valid_position(position, a, b) || !is_valid_position(position, b, a)) continue;
             table_.collapse(h);
-            points_[a] = place;
+            points_[a] = position;
             normals_[a] = normal;
             return;
         }
@@ -143,11 +143,11 @@ private:
         const double cosine_c = ca.dot(cb), cosine_d = da.dot(db);
         const double size = std::sqrt(ca.squaredNorm() * cb.squaredNorm() * da.squaredNorm() * db.squaredNorm());
         if (sine_c * cosine_d + sine_d * cosine_c > -1e-9 * size) return false;
-        const double before = std::min(fullness(a, b, c), fullness(b, a, d));
-        const double floor = std::min(min_fullness, before);
-        const Vector3d both = normals_[c] + normals_[d];
-        if (!sound(points_[c], points_[d], points_[b], both + normals_[b], floor)) return false;
-        if (!sound(points_[d], points_[c], points_[a], both + normals_[a], floor)) return false;
+        const double old_fullness = std::min(fullness(a, b, c), fullness(b, a, d));
+        const double floor = std::min(min_fullness, old_fullness);
+        const Vector3d normal_sum = normals_[c] + normals_[d];
+        if (!has_good_shape(points_[c], points_[d], points_[b], normal_sum + normals_[b], floor)) return false;
+        if (!has_good_shape(points_[d], points_[c], points_[a], normal_sum + normals_[a], floor)) return false;
         if (!table_.can_flip(h)) return false;
         table_.flip(h);
         return true;
@@ -183,24 +183,24 @@ private:
             points_[v] = p;
             normals_[v] = s.gradient.normalized();
         });
-        take_back(old_points, old_normals);
+        undo_degrading_moves(old_points, old_normals);
     }
 
-    void take_back(const std::vector<Vector3d>& old_points, const std::vector<Vector3d>& old_normals) {
-        std::vector<std::uint8_t> spoiled(table_.halfedges() / 3);
+    void undo_degrading_moves(const std::vector<Vector3d>& old_points, const std::vector<Vector3d>& old_normals) {
+        std::vector<std::uint8_t> degraded(table_.halfedges() / 3);
         for (int round = 0; round < 12; ++round) {
-            parallel_for(spoiled.size(), [&](std::size_t f) {
-                spoiled[f] = 0;
+            parallel_for(degraded.size(), [&](std::size_t f) {
+                degraded[f] = 0;
                 const auto h = static_cast<Index>(3 * f);
                 if (!table_.alive(h)) return;
                 const Index a = table_.origin(h), b = table_.origin(h + 1), c = table_.origin(h + 2);
-                if (sound(points_[a], points_[b], points_[c], normals_[a] + normals_[b] + normals_[c], 0.02)) return;
+                if (has_good_shape(points_[a], points_[b], points_[c], normals_[a] + normals_[b] + normals_[c], 0.02)) return;
                 const auto moved = [&](Index v) { return points_[v] != old_points[v]; };
-                spoiled[f] = moved(a) || moved(b) || moved(c);
+                degraded[f] = moved(a) || moved(b) || moved(c);
             });
             std::vector<Index> vertices;
-            for (std::size_t f = 0; f < spoiled.size(); ++f) {
-                if (spoiled[f] == 0) continue;
+            for (std::size_t f = 0; f < degraded.size(); ++f) {
+                if (degraded[f] == 0) continue;
                 for (Index k = 0; k < 3; ++k) vertices.push_back(table_.origin(static_cast<Index>(3 * f) + k));
             }
             if (vertices.empty()) return;
@@ -210,15 +210,16 @@ private:
 
     Triangles compacted() const {
         Triangles mesh;
-        std::vector<Index> fresh(points_.size(), no_index);
+        std::vector<Index> new_index(points_.size(), no_index);
         for (Index v = 0; v < points_.size(); ++v) {
             if (table_.outgoing(v) == no_index) continue;
-            fresh[v] = static_cast<Index>(mesh.points.size());
+            new_index[v] = static_cast<Index>(mesh.points.size());
             mesh.points.push_back(points_[v]);
         }
         for (Index h = 0; h < table_.halfedges(); h += 3) {
             if (table_.alive(h))
-                mesh.faces.push_back({fresh[table_.origin(h)], fresh[table_.origin(h + 1)], fresh[table_.origin(h + 2)]});
+                mesh.faces.push_back(
+                    {new_index[table_.origin(h)], new_index[table_.origin(h + 1)], new_index[table_.origin(h + 2)]});
         }
         return mesh;
     }
@@ -227,13 +228,13 @@ private:
     HalfedgeTable table_;
     double edge_;  ///< of uniform triangles: each vertex has an area of sqrt(3)/2 times its square
     std::vector<Vector3d> points_, normals_;
-    std::size_t wanted_;
+    std::size_t target_vertices_;
 };
 
 }  // namespace
 
 Triangles make_even(const SyntheticObject& object, Triangles mesh, std::size_t vertices) {
-    return Evening(object, std::move(mesh), vertices).run();
+    return UniformRemesher(object, std::move(mesh), vertices).run();
 }
 
 }  // namespace ostraka::shapes

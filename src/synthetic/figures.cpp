@@ -24,12 +24,12 @@ ObjectPointer make_hand() {
         // Each joint bends a little towards the palm.
         std::vector<Bead> beads{{knuckle, radius * 1.05}};
         double bend = 6;
-        Vector3d place = knuckle;
+        Vector3d position = knuckle;
         for (std::size_t joint = 0; joint < 3; ++joint, bend += 9) {
-            const Vector3d way = turned(spread, Vector3d::UnitY()) * turned(bend, Vector3d::UnitX()) * Vector3d::UnitZ();
-            beads.push_back({place + 0.5 * lengths[joint] * way, radius * (0.94 - 0.06 * static_cast<double>(joint))});
-            place += lengths[joint] * way;
-            beads.push_back({place, radius * (0.99 - 0.08 * static_cast<double>(joint))});
+            const Vector3d direction = turned(spread, Vector3d::UnitY()) * turned(bend, Vector3d::UnitX()) * Vector3d::UnitZ();
+            beads.push_back({position + 0.5 * lengths[joint] * direction, radius * (0.94 - 0.06 * static_cast<double>(joint))});
+            position += lengths[joint] * direction;
+            beads.push_back({position, radius * (0.99 - 0.08 * static_cast<double>(joint))});
         }
         add_member(*object, make_tube(beads), part, 5);
     };

@@ -14,10 +14,10 @@ namespace ostraka {
 
 using Eigen::Vector3d;
 
-BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions& options) {
+BrokenPiece break_off(const Mesh& object, const Point& centre, const BreakOptions& options) {
     check_options(options, "fragment");
-    const double area = surface_area(whole), diagonal = box_diagonal(whole);
-    if (!(area > 0)) fail_input("mesh", "has no area, so that nothing can be broken off it");
+    const double area = surface_area(object), diagonal = box_diagonal(object);
+    if (!(area > 0)) fail_input("mesh", "has no area, so no fragment can be cut from it");
     Random random(options.seed);
     // Random waves in space, with wavelengths of the fragment's size and shorter.
     const double size = std::sqrt(options.share * area);
@@ -34,11 +34,11 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
             {2 * pi / length * direction, random.uniform(0, 2 * pi), options.roughness * length * std::sqrt(2.0 / 12)});
     }
     const Vector3d middle = eigen(centre);
-    std::vector<double> distance(whole.number_of_faces());
-    for (const Face face : whole.faces()) {
-        const Vector3d place = eigen(centroid(whole, face));
-        distance[face] = (place - middle).norm();
-        for (const Wave& wave : waves) distance[face] += wave.height * std::sin(wave.number.dot(place) + wave.phase);
+    std::vector<double> distance(object.number_of_faces());
+    for (const Face face : object.faces()) {
+        const Vector3d position = eigen(centroid(object, face));
+        distance[face] = (position - middle).norm();
+        for (const Wave& wave : waves) distance[face] += wave.height * std::sin(wave.number.dot(position) + wave.phase);
     }
     std::vector<Index> order(distance.size());
     std::iota(order.begin(), order.end(), Index{0});
@@ -49,37 +49,38 @@ BrokenPiece break_off(const Mesh& whole, const Point& centre, const BreakOptions
     for (const Index face : order) {
         if (sum >= options.share * area * (1 - 1e-12)) break;
         keep[face] = true;
-        sum += face_area(whole, Face(face));
+        sum += face_area(object, Face(face));
     }
-    SubMesh piece = keep_faces(whole, keep, true);
+    SubMesh piece = keep_faces(object, keep, true);
     if (options.erosion > 0) {
-        std::vector<Vector3d> rim;
+        std::vector<Vector3d> fracture_border;
         for (const Vertex v : piece.mesh.vertices())
-            if (piece.mesh.is_border(v) && !whole.is_border(Vertex(piece.vertices[v]))) rim.push_back(eigen(piece.mesh.point(v)));
+            if (piece.mesh.is_border(v) && !object.is_border(Vertex(piece.vertices[v])))
+                fracture_border.push_back(eigen(piece.mesh.point(v)));
         const double width = options.erosion * diagonal;
         std::fill(keep.begin(), keep.end(), false);
         for (const Face face : piece.mesh.faces()) {
-            const Vector3d place = eigen(centroid(piece.mesh, face));
-            keep[piece.faces[face]] =
-                std::none_of(rim.begin(), rim.end(), [&](const Vector3d& p) { return (p - place).norm() < width; });
+            const Vector3d position = eigen(centroid(piece.mesh, face));
+            keep[piece.faces[face]] = std::none_of(fracture_border.begin(), fracture_border.end(),
+                                                   [&](const Vector3d& p) { return (p - position).norm() < width; });
         }
-        piece = keep_faces(whole, keep, true);
+        piece = keep_faces(object, keep, true);
     }
     if (piece.mesh.number_of_faces() == 0)
-        throw Error(ErrorKind::failure, "fragment", "nothing is left of it", "take a larger share, or wear less away");
+        throw Error(ErrorKind::failure, "fragment", "is empty after erosion", "increase the share, or reduce the erosion");
     BrokenPiece result{std::move(piece.mesh), std::move(piece.vertices), std::move(piece.faces), {}};
     std::vector<Vector> normals;
-    for (const Vertex v : result.mesh.vertices()) normals.push_back(vertex_normal(whole, Vertex(result.vertices[v])));
+    for (const Vertex v : result.mesh.vertices()) normals.push_back(vertex_normal(object, Vertex(result.vertices[v])));
     if (options.noise > 0)
         for (const Vertex v : result.mesh.vertices())
             result.mesh.point(v) = result.mesh.point(v) + options.noise * diagonal * random.normal() * normals[v];
     if (options.moved) {
-        Motion there;
+        Motion motion;
         Eigen::Quaterniond rotation(random.normal(), random.normal(), random.normal(), random.normal());
-        there.rotation = rotation.normalized().toRotationMatrix();
-        there.translation = diagonal * Vector3d(random.normal(), random.normal(), random.normal());
-        for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = point_of(there(eigen(result.mesh.point(v))));
-        result.pose = there.inverse();
+        motion.rotation = rotation.normalized().toRotationMatrix();
+        motion.translation = diagonal * Vector3d(random.normal(), random.normal(), random.normal());
+        for (const Vertex v : result.mesh.vertices()) result.mesh.point(v) = point_of(motion(eigen(result.mesh.point(v))));
+        result.pose = motion.inverse();
     }
     return result;
 }

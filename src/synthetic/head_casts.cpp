@@ -89,13 +89,13 @@ SyntheticMesh meshed(const SyntheticObject& head, MakeOptions options) {
 
 void wear_down(Mesh& mesh, double sigma, Random& draw) {
     const Waves waves(draw);
-    const Eigen::MatrixXd before = positions(mesh);
-    Eigen::MatrixXd worn = Diffusion(mesh).smoothed(before, sigma, 3);
-    for (Eigen::Index v = 0; v < worn.rows(); ++v) {
-        const double share = 0.5 + 0.5 * waves.at(before.row(v).transpose());
-        worn.row(v) = before.row(v) + share * (worn.row(v) - before.row(v));
+    const Eigen::MatrixXd original = positions(mesh);
+    Eigen::MatrixXd smoothed = Diffusion(mesh).smoothed(original, sigma, 3);
+    for (Eigen::Index v = 0; v < smoothed.rows(); ++v) {
+        const double share = 0.5 + 0.5 * waves.at(original.row(v).transpose());
+        smoothed.row(v) = original.row(v) + share * (smoothed.row(v) - original.row(v));
     }
-    set_positions(mesh, worn);
+    set_positions(mesh, smoothed);
 }
 
 void press(Mesh& mesh, double strength, Random& draw) {
@@ -122,15 +122,16 @@ void scan(Mesh& mesh, double deviation, Random& draw) {
 HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
     check_options(options, "head");
     HeadCast cast;
-    Random broken(options.seed, break_stream);
-    cast.beard = broken.uniform() < options.beard;
-    cast.chunk = broken.uniform() < options.chunk;
-    MakeOptions make;
+    Random break_random(options.seed, break_stream);
+    cast.beard = break_random.uniform() < options.beard;
+    cast.chunk = break_random.uniform() < options.chunk;
+    MakeOptions make_options;
     const HandWork work = draw_hand_work(options, cast.beard);
-    make.vertices = static_cast<std::uint64_t>(static_cast<double>(options.vertices) * (1 + work.body.area() / head_area));
-    make.seed = options.seed;
-    SyntheticMesh made = meshed(*head_object(shape, work), make);
-    Mesh& mesh = made.mesh;
+    make_options.vertices =
+        static_cast<std::uint64_t>(static_cast<double>(options.vertices) * (1 + work.body.area() / head_area));
+    make_options.seed = options.seed;
+    SyntheticMesh head_mesh = meshed(*head_object(shape, work), make_options);
+    Mesh& mesh = head_mesh.mesh;
 
     Random wear(options.seed, wear_stream), pressure(options.seed, pressure_stream), noise(options.seed, noise_stream);
     cast.wear = options.wear * wear.uniform(0.5, 1);
@@ -141,16 +142,17 @@ HeadCast cast_head(const HeadShape& shape, const CastOptions& options) {
 
     std::vector<bool> keep(mesh.number_of_faces(), true);
     // A piece is broken off the brow, a cheek or the hair, never the whole face.
-    const Vector3d struck(broken.uniform(6, 11), (broken.uniform() < 0.5 ? -1 : 1) * broken.uniform(6, 11),
-                          broken.uniform(8, 36));
-    const double reach = broken.uniform(4.5, 7);
+    const Vector3d break_centre(break_random.uniform(6, 11),
+                                (break_random.uniform() < 0.5 ? -1 : 1) * break_random.uniform(6, 11),
+                                break_random.uniform(8, 36));
+    const double break_radius = break_random.uniform(4.5, 7);
     for (const Face face : mesh.faces()) {
-        if (!options.body && made.face_labels[face] == static_cast<std::int32_t>(HeadPart::stump)) keep[face] = false;
-        if (cast.chunk && (eigen(centroid(mesh, face)) - struck).norm() < reach) keep[face] = false;
+        if (!options.body && head_mesh.face_labels[face] == static_cast<std::int32_t>(HeadPart::stump)) keep[face] = false;
+        if (cast.chunk && (eigen(centroid(mesh, face)) - break_centre).norm() < break_radius) keep[face] = false;
     }
-    SubMesh rest = keep_faces(mesh, keep, true);
-    cast.mesh = std::move(rest.mesh);
-    for (const Index face : rest.faces) cast.face_labels.push_back(made.face_labels[face]);
+    SubMesh remaining = keep_faces(mesh, keep, true);
+    cast.mesh = std::move(remaining.mesh);
+    for (const Index face : remaining.faces) cast.face_labels.push_back(head_mesh.face_labels[face]);
 
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Vector3d translation = Vector3d::Zero();
@@ -170,20 +172,20 @@ std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, co
     check_options(population, "heads");
     check_options(cast, "heads");
     Random draw(population.seed, 1);
-    const auto fresh = [&draw] { return draw.below(std::uint64_t{1} << 48); };
+    const auto draw_seed = [&draw] { return draw.below(std::uint64_t{1} << 48); };
     std::vector<PlannedHead> heads;
     std::vector<HeadShape> moulds;
     for (int mould = 0; mould < population.moulds; ++mould) {
         ArchetypeOptions archetype;
         archetype.long_hair = mould % 2 == 1;
         archetype.difference = population.difference;
-        archetype.seed = fresh();
+        archetype.seed = draw_seed();
         moulds.push_back(head_archetype(archetype));
     }
     for (int i = 0; i < population.objects + population.hand_made; ++i) {
         PlannedHead head;
         head.cast = cast;
-        head.cast.seed = fresh();
+        head.cast.seed = draw_seed();
         if (i < population.objects) {
             const int mould = i % population.moulds;
             head.mould = "mould-" + std::to_string(mould + 1);
@@ -192,7 +194,7 @@ std::vector<PlannedHead> plan_heads(const MouldPopulationOptions& population, co
             ArchetypeOptions archetype;
             archetype.hand_made = true;
             archetype.difference = population.difference;
-            archetype.seed = fresh();
+            archetype.seed = draw_seed();
             head.shape = head_archetype(archetype);
             using Hat = HeadShape::Hat;
             head.mould = head.shape.hat == Hat::pointed     ? "hand, pointed hat"

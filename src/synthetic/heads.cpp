@@ -110,15 +110,15 @@ private:
                           2.5);
             add(make_ellipsoid(at({x - 1.9, y, z}, rotation), {2.3, s_.eye_width * 0.92, s_.eye_opening * 1.1}), HeadPart::eyes,
                 0.6);
-            for (const double way : {1.0, -1.0}) {
+            for (const double lid_side : {1.0, -1.0}) {
                 std::vector<Bead> beads;
                 for (int k = 0; k <= 8; ++k) {
                     const double u = -1 + 0.25 * k;
-                    const double rise = way * s_.eye_opening * (1 - u * u) * (way > 0 ? 1.15 : 0.85);
-                    const Vector3d place =
+                    const double rise = lid_side * s_.eye_opening * (1 - u * u) * (lid_side > 0 ? 1.15 : 0.85);
+                    const Vector3d offset =
                         turned(side * -s_.eye_tilt, Vector3d::UnitX()) * Vector3d(0, u * s_.eye_width * 1.1, rise);
-                    const double yy = y + place.y(), zz = z + place.z();
-                    beads.push_back({on(yy, zz, -0.25 * s_.lid), s_.lid * (way > 0 ? 1.1 : 0.85)});
+                    const double yy = y + offset.y(), zz = z + offset.z();
+                    beads.push_back({on(yy, zz, -0.25 * s_.lid), s_.lid * (lid_side > 0 ? 1.1 : 0.85)});
                 }
                 add(make_tube(beads), HeadPart::eyes, 0.5);
             }
@@ -152,14 +152,15 @@ private:
 
     void mouth() {
         const double z = s_.mouth_height, skew = s_.mouth_skew;
-        for (const double way : {1.0, -1.0}) {
+        for (const double lip_side : {1.0, -1.0}) {
             std::vector<Bead> beads;
             for (int k = 0; k <= 8; ++k) {
-                const double u = -1 + 0.25 * k, width = way > 0 ? s_.mouth_width : 0.8 * s_.mouth_width;
+                const double u = -1 + 0.25 * k, width = lip_side > 0 ? s_.mouth_width : 0.8 * s_.mouth_width;
                 const double y = skew + u * width;
-                const double dip = way > 0 && k == 4 ? -0.25 : 0;
-                const double height = z + s_.smile * u * u * (way > 0 ? 1 : 0.7) + way * (1 - 0.8 * u * u) * s_.lip * 0.95 + dip;
-                beads.push_back({on(y, height, -0.2 * s_.lip), s_.lip * (1 - 0.45 * u * u) * (way > 0 ? 0.95 : 1.1)});
+                const double dip = lip_side > 0 && k == 4 ? -0.25 : 0;
+                const double height =
+                    z + s_.smile * u * u * (lip_side > 0 ? 1 : 0.7) + lip_side * (1 - 0.8 * u * u) * s_.lip * 0.95 + dip;
+                beads.push_back({on(y, height, -0.2 * s_.lip), s_.lip * (1 - 0.45 * u * u) * (lip_side > 0 ? 0.95 : 1.1)});
             }
             add(make_tube(beads), HeadPart::mouth, 0.35);
         }
@@ -198,9 +199,9 @@ private:
             const double y = (s_.skull_width - 0.2) * std::sin(angle) / std::sin(1.57);
             const double z = 22.5 + (s_.hair_line - 22.5 + 0.5 * back) * std::pow(std::max(std::cos(angle * 0.9), 0.0), 0.7);
             // Beyond the skull the line runs down its side.
-            const double reach = std::max(front(std::clamp(y, -s_.skull_width + 0.4, s_.skull_width - 0.4), z), -1.5);
+            const double surface_x = std::max(front(std::clamp(y, -s_.skull_width + 0.4, s_.skull_width - 0.4), z), -1.5);
             const double radius = size * (s_.hair_thickness * 0.75 + (k % 2 == 0 ? s_.curl : -s_.curl));
-            beads.push_back({{reach - back - 0.3, y, z + 0.25 * back}, radius});
+            beads.push_back({{surface_x - back - 0.3, y, z + 0.25 * back}, radius});
         }
         add(make_tube(beads), HeadPart::hair, 0.6);
     }
@@ -287,10 +288,12 @@ private:
 
     void cuts() {
         for (std::size_t part = 0; part < object_->parts.size(); ++part) {
-            const int from = static_cast<int>(part);
-            if (from == label(HeadPart::back) || from == label(HeadPart::stump) || from == label(HeadPart::body)) continue;
+            const int part_label = static_cast<int>(part);
+            if (part_label == label(HeadPart::back) || part_label == label(HeadPart::stump) ||
+                part_label == label(HeadPart::body))
+                continue;
             const HandWork w = w_;
-            object_->cuts.push_back({from, label(HeadPart::back), [w](const Vector3d& p) {
+            object_->cuts.push_back({part_label, label(HeadPart::back), [w](const Vector3d& p) {
                                          return p.x() - w.cut_back - w.cut_tilt * (p.z() - 20) - w.cut_turn * p.y();
                                      }});
         }

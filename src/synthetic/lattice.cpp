@@ -149,8 +149,9 @@ private:
     /// Corners in positive orientation.
     void tetrahedron(const std::array<Place, 4>& corners) {
         // Even permutations that move one corner, or a pair of corners, to the front.
-        static constexpr std::array<std::array<int, 4>, 4> one{{{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
-        static constexpr std::array<std::array<int, 4>, 6> two{
+        static constexpr std::array<std::array<int, 4>, 4> single_corner_permutations{
+            {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
+        static constexpr std::array<std::array<int, 4>, 6> corner_pair_permutations{
             {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {2, 3, 0, 1}, {3, 1, 0, 2}, {1, 2, 0, 3}}};
         int signs = 0, count = 0;
         for (int k = 0; k < 4; ++k) {
@@ -159,7 +160,7 @@ private:
         if (count == 0 || count == 4) return;
         const auto key = [&](int a, int b) { return edge_key(global(corners[a]), global(corners[b])); };
         if (count == 2) {
-            for (const auto& [i, j, k, l] : two) {
+            for (const auto& [i, j, k, l] : corner_pair_permutations) {
                 if (signs != (1 << i | 1 << j)) continue;
                 const EdgeKey ik = key(i, k), il = key(i, l), jl = key(j, l), jk = key(j, k);
                 keys_.push_back({ik, il, jl});
@@ -167,9 +168,9 @@ private:
             }
             return;
         }
-        const int lone = count == 1 ? signs : 15 - signs;
-        for (const auto& [i, j, k, l] : one) {
-            if (lone != 1 << i) continue;
+        const int single_corner = count == 1 ? signs : 15 - signs;
+        for (const auto& [i, j, k, l] : single_corner_permutations) {
+            if (single_corner != 1 << i) continue;
             if (count == 1) keys_.push_back({key(i, j), key(i, k), key(i, l)});
             else keys_.push_back({key(i, j), key(i, l), key(i, k)});
         }

@@ -8,6 +8,8 @@
 #include "ostraka/core/parallel.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 
@@ -35,7 +37,7 @@ bool is_connected(const shapes::Triangles& mesh) {
 }
 
 [[noreturn]] void refuse(const SyntheticObject& object, std::uint64_t vertices) {
-    fail_usage("the " + object.name + " cannot be held by " + std::to_string(vertices) + " vertices",
+    fail_usage(fmt::format("the {} cannot be represented by {} vertices", object.name, vertices),
                "ask for at least " + std::to_string(object.minimum_vertices));
 }
 
@@ -56,39 +58,39 @@ shapes::Triangles marched(const SyntheticObject& object, double vertices, std::u
 
 /// Where parts meet in a narrow strip, labelling by centroids can separate a few faces from their part: patches of fewer than
 /// four faces take the most common label around them (ties: the smallest), unless the patch is the whole part.
-void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_t parts) {
-    constexpr std::size_t crumb = 4;
-    const std::vector<std::int32_t> before = labels;
-    std::vector<bool> seen(labels.size(), false), has_patch(parts, false);
-    std::vector<std::vector<Face>> crumbs;
+void merge_small_patches(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_t parts) {
+    constexpr std::size_t min_faces = 4;
+    const std::vector<std::int32_t> old_labels = labels;
+    std::vector<bool> visited(labels.size(), false), has_patch(parts, false);
+    std::vector<std::vector<Face>> small_patches;
     for (const Face start : mesh.faces()) {
-        if (seen[start.idx()]) continue;
-        const std::int32_t label = before[start.idx()];
+        if (visited[start.idx()]) continue;
+        const std::int32_t label = old_labels[start.idx()];
         std::vector<Face> patch{start};
-        seen[start.idx()] = true;
+        visited[start.idx()] = true;
         for (std::size_t i = 0; i < patch.size(); ++i) {
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(patch[i]))) {
                 const Face next = mesh.face(mesh.opposite(h));
-                if (seen[next.idx()] || before[next.idx()] != label) continue;
-                seen[next.idx()] = true;
+                if (visited[next.idx()] || old_labels[next.idx()] != label) continue;
+                visited[next.idx()] = true;
                 patch.push_back(next);
             }
         }
-        if (patch.size() < crumb) crumbs.push_back(std::move(patch));
+        if (patch.size() < min_faces) small_patches.push_back(std::move(patch));
         else has_patch[static_cast<std::size_t>(label)] = true;
     }
-    for (const auto& patch : crumbs) {
-        const std::int32_t label = before[patch.front().idx()];
+    for (const auto& patch : small_patches) {
+        const std::int32_t label = old_labels[patch.front().idx()];
         if (!has_patch[static_cast<std::size_t>(label)]) continue;
-        std::map<std::int32_t, int> around;
+        std::map<std::int32_t, int> neighbour_counts;
         for (const Face face : patch) {
             for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(face))) {
-                const std::int32_t other = before[mesh.face(mesh.opposite(h)).idx()];
-                if (other != label) ++around[other];
+                const std::int32_t neighbour_label = old_labels[mesh.face(mesh.opposite(h)).idx()];
+                if (neighbour_label != label) ++neighbour_counts[neighbour_label];
             }
         }
-        const auto maximum =
-            std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        const auto maximum = std::max_element(neighbour_counts.begin(), neighbour_counts.end(),
+                                              [](const auto& a, const auto& b) { return a.second < b.second; });
         for (const Face face : patch) labels[face.idx()] = maximum->first;
     }
 }
@@ -98,37 +100,39 @@ void join_crumbs(const Mesh& mesh, std::vector<std::int32_t>& labels, std::size_
 SyntheticMesh make_mesh(const SyntheticObject& object, const MakeOptions& options) {
     check_options(options, "mesh make");
     if (options.vertices < object.minimum_vertices) refuse(object, options.vertices);
-    const auto wanted = static_cast<std::size_t>(options.vertices);
+    const auto target_vertices = static_cast<std::size_t>(options.vertices);
     constexpr double bytes_of_vertex = 600;  // lattice, remeshed points and mesh
-    require_memory(bytes_of_vertex * static_cast<double>(wanted), "a mesh of " + std::to_string(wanted) + " vertices",
+    require_memory(bytes_of_vertex * static_cast<double>(target_vertices), fmt::format("a mesh of {} vertices", target_vertices),
                    "ask for fewer (--vertices)");
-    shapes::Triangles even =
-        shapes::make_even(object, marched(object, surplus * static_cast<double>(wanted), options.seed), wanted);
-    if (static_cast<double>(even.points.size()) > 1.01 * static_cast<double>(wanted)) refuse(object, options.vertices);
+    shapes::Triangles uniform =
+        shapes::make_even(object, marched(object, surplus * static_cast<double>(target_vertices), options.seed), target_vertices);
+    if (static_cast<double>(uniform.points.size()) > 1.01 * static_cast<double>(target_vertices))
+        refuse(object, options.vertices);
 
-    SyntheticMesh made;
-    made.vertex_labels.resize(even.points.size());
-    made.face_labels.resize(even.faces.size());
-    parallel_for(even.points.size(), [&](std::size_t v) { made.vertex_labels[v] = object.part(even.points[v]); });
-    parallel_for(even.faces.size(), [&](std::size_t f) {
-        const auto& [a, b, c] = even.faces[f];
-        made.face_labels[f] = object.part(object.project(Vector3d((even.points[a] + even.points[b] + even.points[c]) / 3)));
+    SyntheticMesh result;
+    result.vertex_labels.resize(uniform.points.size());
+    result.face_labels.resize(uniform.faces.size());
+    parallel_for(uniform.points.size(), [&](std::size_t v) { result.vertex_labels[v] = object.part(uniform.points[v]); });
+    parallel_for(uniform.faces.size(), [&](std::size_t f) {
+        const auto& [a, b, c] = uniform.faces[f];
+        result.face_labels[f] =
+            object.part(object.project(Vector3d((uniform.points[a] + uniform.points[b] + uniform.points[c]) / 3)));
     });
     if (options.noise > 0) {
-        const double edge = std::sqrt(shapes::area(even) / static_cast<double>(even.points.size()) * 2 / std::sqrt(3.0));
-        parallel_for(even.points.size(), [&](std::size_t v) {
-            const Vector3d normal = object.sample(even.points[v]).gradient.normalized();
-            even.points[v] += options.noise * edge * (2 * random_share(options.seed, 1000 + v) - 1) * normal;
+        const double edge = std::sqrt(shapes::area(uniform) / static_cast<double>(uniform.points.size()) * 2 / std::sqrt(3.0));
+        parallel_for(uniform.points.size(), [&](std::size_t v) {
+            const Vector3d normal = object.sample(uniform.points[v]).gradient.normalized();
+            uniform.points[v] += options.noise * edge * (2 * random_share(options.seed, 1000 + v) - 1) * normal;
         });
     }
     TriangleSoup soup;
-    soup.points.reserve(even.points.size());
-    for (const Vector3d& p : even.points) soup.points.push_back({p.x(), p.y(), p.z()});
-    soup.triangles = std::move(even.faces);
-    even = {};
-    made.mesh = build_mesh(soup);
-    join_crumbs(made.mesh, made.face_labels, object.parts.size());
-    return made;
+    soup.points.reserve(uniform.points.size());
+    for (const Vector3d& p : uniform.points) soup.points.push_back({p.x(), p.y(), p.z()});
+    soup.triangles = std::move(uniform.faces);
+    uniform = {};
+    result.mesh = build_mesh(soup);
+    merge_small_patches(result.mesh, result.face_labels, object.parts.size());
+    return result;
 }
 
 void MakeOptions::describe(OptionList& visit) {

@@ -70,25 +70,25 @@ public:
             const double radius = radius_.at(t).value[0];
             samples_.push_back({t, centre, radius});
             // Margin for the bulge of the tube between two samples.
-            const Vector3d reach = Vector3d::Constant(radius * 1.02 + path_.length() * 1e-3);
-            box_.extend(centre - reach);
-            box_.extend(centre + reach);
+            const Vector3d margin = Vector3d::Constant(radius * 1.02 + path_.length() * 1e-3);
+            box_.extend(centre - margin);
+            box_.extend(centre + margin);
         }
         for (std::size_t piece = 0; piece + 1 < beads.size(); ++piece) {
             Ball& ball = balls_.emplace_back(samples_[piece * samples_per_piece + samples_per_piece / 2]);
-            double reach = 0;
+            double max_distance = 0;
             for (int k = 0; k <= samples_per_piece; ++k) {
                 const Ball& sample = samples_[piece * samples_per_piece + static_cast<std::size_t>(k)];
-                reach = std::max(reach, (sample.centre - ball.centre).norm() + sample.radius);
+                max_distance = std::max(max_distance, (sample.centre - ball.centre).norm() + sample.radius);
             }
-            ball.radius = reach;
+            ball.radius = max_distance;
         }
     }
     [[nodiscard]] Sample sample(const Vector3d& p) const override {
         const double t = parameter(p);
-        const Vector3d away = p - path_.at(t).value;
-        const double distance = away.norm();
-        return {distance - radius_.at(t).value[0], distance < 1e-300 ? Vector3d(Vector3d::UnitX()) : Vector3d(away / distance)};
+        const Vector3d offset = p - path_.at(t).value;
+        const double distance = offset.norm();
+        return {distance - radius_.at(t).value[0], distance < 1e-300 ? Vector3d(Vector3d::UnitX()) : Vector3d(offset / distance)};
     }
     [[nodiscard]] double parameter(const Vector3d& p) const override {
         const auto ball_distance = [&p](const Ball& ball) { return (p - ball.centre).norm() - ball.radius; };
@@ -99,10 +99,10 @@ public:
         return shapes::bracketed_root(low, high, samples_[best].t, [&](double t) {
             const auto c = path_.at(t);
             const auto r = radius_.at(t);
-            const Vector3d away = c.value - p;
-            const double distance = std::max(away.norm(), 1e-300), along = away.dot(c.first) / distance;
+            const Vector3d offset = c.value - p;
+            const double distance = std::max(offset.norm(), 1e-300), along = offset.dot(c.first) / distance;
             return std::pair(along - r.first[0],
-                             (c.first.squaredNorm() - along * along + away.dot(c.second)) / distance - r.second[0]);
+                             (c.first.squaredNorm() - along * along + offset.dot(c.second)) / distance - r.second[0]);
         });
     }
     [[nodiscard]] AlignedBox3d box() const override { return box_; }
@@ -120,11 +120,11 @@ private:
         return {chord_lengths(beads), points};
     }
     static shapes::Spline<1> radii(const std::vector<Bead>& beads) {
-        using One = shapes::Spline<1>::Vec;
-        std::vector<One> values;
-        for (const auto& bead : beads) values.push_back(One(bead.radius));
+        using Scalar = shapes::Spline<1>::Vec;
+        std::vector<Scalar> values;
+        for (const auto& bead : beads) values.push_back(Scalar(bead.radius));
         // Zero slope at the ends, so that the tube continues smoothly into the end balls.
-        return {chord_lengths(beads), values, One(0.0), One(0.0)};
+        return {chord_lengths(beads), values, Scalar(0.0), Scalar(0.0)};
     }
     shapes::Spline<3> path_;
     shapes::Spline<1> radius_;
@@ -142,12 +142,12 @@ public:
         }
         for (std::size_t piece = 0; piece + 1 < profile.size(); ++piece) {
             const Vector2d middle = samples_[piece * samples_per_piece + samples_per_piece / 2].second;
-            double reach = 0;
+            double max_distance = 0;
             for (int k = 0; k <= samples_per_piece; ++k) {
-                reach =
-                    std::max(reach, (samples_[piece * samples_per_piece + static_cast<std::size_t>(k)].second - middle).norm());
+                max_distance = std::max(
+                    max_distance, (samples_[piece * samples_per_piece + static_cast<std::size_t>(k)].second - middle).norm());
             }
-            discs_.emplace_back(middle, reach);
+            discs_.emplace_back(middle, max_distance);
         }
     }
     [[nodiscard]] double parameter(const Vector3d& p) const override {
@@ -161,9 +161,9 @@ protected:
         const Vector2d q(axis_distance, p.z());
         const auto c = curve_.at(closest(q));
         const Vector2d outward = Vector2d(c.first.y(), -c.first.x()).normalized();
-        const Vector2d away = q - c.value;
-        const double distance = away.norm(), side = away.dot(outward) < 0 ? -1 : 1;
-        return revolve(p, axis_distance, side * distance, distance < 1e-9 ? outward : Vector2d(side / distance * away));
+        const Vector2d offset = q - c.value;
+        const double distance = offset.norm(), side = offset.dot(outward) < 0 ? -1 : 1;
+        return revolve(p, axis_distance, side * distance, distance < 1e-9 ? outward : Vector2d(side / distance * offset));
     }
     [[nodiscard]] Vector3d half_extents() const override { return {extents_.x(), extents_.x(), extents_.y()}; }
 
@@ -177,8 +177,8 @@ private:
                      high = samples_[std::min(best + 1, samples_.size() - 1)].first;
         return shapes::bracketed_root(low, high, samples_[best].first, [&](double t) {
             const auto c = curve_.at(t);
-            const Vector2d away = c.value - q;
-            return std::pair(away.dot(c.first), c.first.squaredNorm() + away.dot(c.second));
+            const Vector2d offset = c.value - q;
+            return std::pair(offset.dot(c.first), c.first.squaredNorm() + offset.dot(c.second));
         });
     }
     shapes::Spline<2> curve_;
@@ -203,20 +203,20 @@ std::vector<double> cumulative(const Items& items, Position position) {
 }
 
 template <class Items>
-void check_path(const Items& items, const char* what) {
-    if (items.size() < 2) refuse(what, "needs at least two points");
+void check_path(const Items& items, const char* solid_name) {
+    if (items.size() < 2) refuse(solid_name, "needs at least two points");
     const auto lengths = chord_lengths(items);
     for (std::size_t i = 1; i < lengths.size(); ++i) {
-        if (!(lengths[i] > lengths[i - 1])) refuse(what, "has two equal points in a row");
+        if (!(lengths[i] > lengths[i - 1])) refuse(solid_name, "has two equal points in a row");
     }
 }
 
-void check_sizes(const char* what, std::initializer_list<double> sizes, double rounding = 0,
+void check_sizes(const char* solid_name, std::initializer_list<double> sizes, double rounding = 0,
                  double maximum = std::numeric_limits<double>::infinity()) {
     for (const double size : sizes) {
-        if (!(size > 0 && std::isfinite(size))) refuse(what, "has a size that is not positive");
+        if (!(size > 0 && std::isfinite(size))) refuse(solid_name, "has a size that is not positive");
     }
-    if (!(rounding >= 0 && rounding <= maximum)) refuse(what, "has a rounding that does not fit its size");
+    if (!(rounding >= 0 && rounding <= maximum)) refuse(solid_name, "has a rounding that does not fit its size");
 }
 
 }  // namespace
@@ -271,8 +271,8 @@ SolidPointer make_torus(const SolidPose& pose, double ring_radius, double tube_r
         const double distance = q.norm();
         return revolve(p, axis_distance, distance - tube_radius, distance < 1e-300 ? Vector2d(1, 0) : Vector2d(q / distance));
     };
-    const double reach = ring_radius + tube_radius;
-    return std::make_unique<FormulaSolid>(pose, Vector3d(reach, reach, tube_radius), formula);
+    const double outer_radius = ring_radius + tube_radius;
+    return std::make_unique<FormulaSolid>(pose, Vector3d(outer_radius, outer_radius, tube_radius), formula);
 }
 SolidPointer make_tube(const std::vector<Bead>& beads) {
     check_path(beads, "a tube");

@@ -63,12 +63,12 @@ public:
 
     /// Parameters from start to end, `per_piece` in each piece.
     [[nodiscard]] std::vector<double> samples(int per_piece) const {
-        std::vector<double> list;
+        std::vector<double> parameters;
         for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
-            for (int k = 0; k < per_piece; ++k) list.push_back(knots_[i] + step(i) * k / per_piece);
+            for (int k = 0; k < per_piece; ++k) parameters.push_back(knots_[i] + step(i) * k / per_piece);
         }
-        list.push_back(knots_.back());
-        return list;
+        parameters.push_back(knots_.back());
+        return parameters;
     }
 
 private:
@@ -82,16 +82,16 @@ private:
 template <class Function>
 double bracketed_root(double low, double high, double t, Function&& slope_and_bend) {
     // The error after a Newton step is of the order of the squared step: smaller steps gain nothing.
-    const double enough = 1e-7 * (high - low);
-    for (int i = 0; i < 40 && high - low > enough; ++i) {
+    const double tolerance = 1e-7 * (high - low);
+    for (int i = 0; i < 40 && high - low > tolerance; ++i) {
         const auto [slope, bend] = slope_and_bend(t);
         (slope > 0 ? high : low) = t;
         const double newton = bend > 0 ? t - slope / bend : high;
         const bool inside = newton >= low && newton <= high && bend > 0;
         const double next = inside ? newton : 0.5 * (low + high);
-        const bool settled = inside && std::abs(next - t) <= enough;
+        const bool converged = inside && std::abs(next - t) <= tolerance;
         t = next;
-        if (settled) break;
+        if (converged) break;
     }
     return t;
 }

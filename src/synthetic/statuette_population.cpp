@@ -43,45 +43,46 @@ StatuetteLevel statuette_level(int level) {
 }
 
 std::vector<StatuetteParameters> draw_population(const PopulationOptions& options) {
-    using Asked = PopulationOptions::Interior;
+    using RequestedInterior = PopulationOptions::Interior;
     using Interior = StatuetteParameters::Interior;
     check_options(options, "population of statuettes");
     const StatuetteLevel level = statuette_level(options.level);
-    std::vector<StatuetteParameters> list(static_cast<std::size_t>(options.objects));
-    for (std::size_t i = 0; i < list.size(); ++i) {
+    std::vector<StatuetteParameters> statuettes(static_cast<std::size_t>(options.objects));
+    for (std::size_t i = 0; i < statuettes.size(); ++i) {
         Draws draw(options.seed, i);
-        StatuetteParameters& one = list[i];
+        StatuetteParameters& statuette = statuettes[i];
         const bool wheel = i % 2 == 0;
-        one.technique = wheel ? StatuetteParameters::Technique::wheel : StatuetteParameters::Technique::hand;
+        statuette.technique = wheel ? StatuetteParameters::Technique::wheel : StatuetteParameters::Technique::hand;
         const TechniqueLevel& medians = wheel ? level.wheel : level.hand;
-        one.height = draw.around(200, options.size_spread);
-        one.base_diameter = draw.around(58, options.size_spread);
-        one.arm_length = draw.around(82, options.size_spread);
-        one.head_height = draw.around(44, options.size_spread);
-        one.ovality = std::min(draw.around(medians.ovality, level.spread), 0.15);
-        one.ovality_drift = std::min(draw.around(medians.ovality_drift, level.spread), 360.0);
-        one.finger_marks = std::min(draw.around(medians.finger_marks, level.spread), 0.05);
-        one.sway = std::min(draw.around(medians.sway, level.spread), 0.2);
-        one.wall_noise = std::min(draw.around(medians.wall_noise, level.spread), 0.25);
-        one.off_centre = std::min(draw.around(medians.off_centre, level.spread), 0.4);
+        statuette.height = draw.around(200, options.size_spread);
+        statuette.base_diameter = draw.around(58, options.size_spread);
+        statuette.arm_length = draw.around(82, options.size_spread);
+        statuette.head_height = draw.around(44, options.size_spread);
+        statuette.ovality = std::min(draw.around(medians.ovality, level.spread), 0.15);
+        statuette.ovality_drift = std::min(draw.around(medians.ovality_drift, level.spread), 360.0);
+        statuette.finger_marks = std::min(draw.around(medians.finger_marks, level.spread), 0.05);
+        statuette.sway = std::min(draw.around(medians.sway, level.spread), 0.2);
+        statuette.wall_noise = std::min(draw.around(medians.wall_noise, level.spread), 0.25);
+        statuette.off_centre = std::min(draw.around(medians.off_centre, level.spread), 0.4);
         // Features that do not identify the technique by themselves: all thrown bodies are hollow, and half of the others.
         const double hollow = draw.share(), wall = draw.around(5, 0.1), grooves = draw.share();
-        one.wall = wheel || hollow < 0.5 ? wall : 0;
-        one.grooves = wheel ? 0.25 * grooves : 0;
-        one.cavity_seen = options.cavity_seen + (1 - options.cavity_seen) * draw.share();
+        statuette.wall = wheel || hollow < 0.5 ? wall : 0;
+        statuette.grooves = wheel ? 0.25 * grooves : 0;
+        statuette.cavity_seen = options.cavity_seen + (1 - options.cavity_seen) * draw.share();
         const bool may_be_open = draw.share() < 0.5;
-        const bool open = options.interior == Asked::mixed ? may_be_open : options.interior == Asked::open;
-        one.interior = open ? Interior::open : Interior::closed;
-        one.scan_noise = options.scan_noise;
-        one.holes = draw.among(options.holes + 1);
-        one.hole_radius = 3 + 3 * draw.share();
-        one.pose = static_cast<StatuetteParameters::Pose>(draw.among(4));
-        one.hat = static_cast<StatuetteParameters::Hat>(draw.among(3));
-        one.beard = draw.share() < 0.5;
-        one.seed = options.seed * 1000003 + i;
-        one.vertices = options.vertices;
+        const bool open =
+            options.interior == RequestedInterior::mixed ? may_be_open : options.interior == RequestedInterior::open;
+        statuette.interior = open ? Interior::open : Interior::closed;
+        statuette.scan_noise = options.scan_noise;
+        statuette.holes = draw.among(options.holes + 1);
+        statuette.hole_radius = 3 + 3 * draw.share();
+        statuette.pose = static_cast<StatuetteParameters::Pose>(draw.among(4));
+        statuette.hat = static_cast<StatuetteParameters::Hat>(draw.among(3));
+        statuette.beard = draw.share() < 0.5;
+        statuette.seed = options.seed * 1000003 + i;
+        statuette.vertices = options.vertices;
     }
-    return list;
+    return statuettes;
 }
 
 bool ProportionedOptions::is_fixed(const std::string& size) const {
@@ -104,29 +105,29 @@ void ProportionedOptions::describe(OptionList& visit) {
 
 std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options) {
     check_options(options, "population of statuettes");
-    if (!options.none && options.fixed.size() < 2) fail_usage("--fixed names one measure", "a proportion is between two");
+    if (!options.none && options.fixed.size() < 2) fail_usage("--fixed lists a single measure", "give at least two measures");
     PopulationOptions population;
     population.objects = options.objects;
     population.seed = options.seed;
     population.vertices = options.vertices;
     population.scan_noise = options.scan_noise;
-    std::vector<StatuetteParameters> list = draw_population(population);
+    std::vector<StatuetteParameters> statuettes = draw_population(population);
     const double ratio = options.ratio_deviation / std::sqrt(2.0), planted = options.planted_deviation / std::sqrt(2.0);
     constexpr std::array<double, 4> medians{198, 58, 80, 42};
-    for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t i = 0; i < statuettes.size(); ++i) {
         Random random(options.seed, i);
         // Clamped at three standard deviations.
         const auto draw = [&](double deviation) { return deviation * std::clamp(random.normal(), -3.0, 3.0); };
         const double size = draw(options.size_deviation), shared = draw(ratio);
         for (std::size_t k = 0; k < 4; ++k) {
-            const double own = draw(ratio), small = draw(planted);
+            const double individual = draw(ratio), residual = draw(planted);
             const bool fixed = options.is_fixed(ProportionedOptions::size_names.at(k));
-            StatuetteParameters& one = list[i];
-            double* sizes[]{&one.height, &one.base_diameter, &one.arm_length, &one.head_height};
-            *sizes[k] = medians.at(k) * std::exp(size + (fixed ? shared + small : own));
+            StatuetteParameters& statuette = statuettes[i];
+            double* sizes[]{&statuette.height, &statuette.base_diameter, &statuette.arm_length, &statuette.head_height};
+            *sizes[k] = medians.at(k) * std::exp(size + (fixed ? shared + residual : individual));
         }
     }
-    return list;
+    return statuettes;
 }
 
 }  // namespace ostraka

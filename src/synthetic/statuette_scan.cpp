@@ -9,6 +9,8 @@
 #include "ostraka/geom/surface_search.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -38,8 +40,8 @@ void add_noise(Mesh& mesh, double deviation, std::uint64_t seed) {
 }
 
 /// Marks the faces of the cavity above a wavy line as missing.
-void miss_interior(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels, std::int32_t inside,
-                   const shapes::StatuetteBody& body) {
+void mark_missing_interior(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels,
+                           std::int32_t inside, const shapes::StatuetteBody& body) {
     const double edge = mean_edge_length(mesh);
     for (const Face f : mesh.faces()) {
         if (labels[f.idx()] != inside) continue;
@@ -50,8 +52,8 @@ void miss_interior(std::vector<bool>& missing, const Mesh& mesh, const std::vect
 }
 
 /// Marks faces on the outer side of the body around random points as missing.
-void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels,
-                  const StatuetteParameters& p, double highest) {
+void mark_missing_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vector<std::int32_t>& labels,
+                          const StatuetteParameters& p, double highest) {
     std::vector<Face> body;
     for (const Face f : mesh.faces())
         if (labels[f.idx()] <= 1 && centroid(mesh, f).z() < highest && centroid(mesh, f).z() > 0.02 * highest) body.push_back(f);
@@ -60,10 +62,10 @@ void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vecto
         const double share = random_share(p.seed, hole_numbers + static_cast<std::uint64_t>(hole));
         const Face middle = body[std::min(static_cast<std::size_t>(share * static_cast<double>(body.size())), body.size() - 1)];
         const Point centre = centroid(mesh, middle);
-        const Vector way = area_vector(mesh, middle);
+        const Vector outward = area_vector(mesh, middle);
         for (const Face f : body) {
             if (CGAL::squared_distance(centroid(mesh, f), centre) < p.hole_radius * p.hole_radius &&
-                area_vector(mesh, f) * way > 0)
+                area_vector(mesh, f) * outward > 0)
                 missing[f.idx()] = true;
         }
     }
@@ -71,23 +73,23 @@ void miss_patches(std::vector<bool>& missing, const Mesh& mesh, const std::vecto
 
 /// Marks more faces as missing until no vertex joins two fans, so that the rest is a manifold.
 void open_pinches(std::vector<bool>& missing, const Mesh& mesh) {
-    for (bool again = true; again;) {
-        again = false;
+    for (bool changed = true; changed;) {
+        changed = false;
         for (const Vertex v : mesh.vertices()) {
             int fans = 0;
             for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) {
-                const Face here = mesh.face(h), next = mesh.face(mesh.opposite(h));
-                if (!missing[here.idx()] && missing[next.idx()]) ++fans;
+                const Face face = mesh.face(h), next = mesh.face(mesh.opposite(h));
+                if (!missing[face.idx()] && missing[next.idx()]) ++fans;
             }
             if (fans < 2) continue;
             for (const Face f : mesh.faces_around_target(mesh.halfedge(v))) missing[f.idx()] = true;
-            again = true;
+            changed = true;
         }
     }
 }
 
 /// Keeps the largest connected piece of the remaining faces, with its labels.
-void take_away(Statuette& statuette, const std::vector<bool>& missing) {
+void remove_missing_faces(Statuette& statuette, const std::vector<bool>& missing) {
     const Mesh& mesh = statuette.mesh;
     const auto [piece, pieces] = face_pieces(
         mesh, [&](Face f) { return !missing[f]; }, [](Halfedge) { return true; });
@@ -96,20 +98,20 @@ void take_away(Statuette& statuette, const std::vector<bool>& missing) {
         if (number != no_index) ++sizes[number];
     const auto largest = static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     TriangleSoup soup;
-    std::vector<Index> renamed(mesh.number_of_vertices(), no_index);
+    std::vector<Index> new_index(mesh.number_of_vertices(), no_index);
     std::vector<std::int32_t> labels;
     for (const Face f : mesh.faces()) {
         if (piece[f.idx()] != largest) continue;
         std::array<Index, 3> triangle{};
         std::size_t corner = 0;
         for (const Vertex v : corners(mesh, f)) {
-            Index& name = renamed[v.idx()];
-            if (name == no_index) {
-                name = static_cast<Index>(soup.points.size());
+            Index& index = new_index[v.idx()];
+            if (index == no_index) {
+                index = static_cast<Index>(soup.points.size());
                 const Point& q = mesh.point(v);
                 soup.points.push_back({q.x(), q.y(), q.z()});
             }
-            triangle[corner++] = name;
+            triangle[corner++] = index;
         }
         soup.triangles.push_back(triangle);
         labels.push_back(statuette.face_labels[f.idx()]);
@@ -118,19 +120,21 @@ void take_away(Statuette& statuette, const std::vector<bool>& missing) {
     statuette.face_labels = std::move(labels);
 }
 
-std::vector<std::pair<std::string, Vector3d>> known_places(const SyntheticObject& object, const StatuetteParameters& p,
-                                                           const shapes::StatuetteBody& body) {
-    std::vector<std::pair<std::string, Vector3d>> places;
-    const auto add = [&](const std::string& name, const Vector3d& near) { places.emplace_back(name, object.project(near)); };
+std::vector<std::pair<std::string, Vector3d>> landmark_positions(const SyntheticObject& object, const StatuetteParameters& p,
+                                                                 const shapes::StatuetteBody& body) {
+    std::vector<std::pair<std::string, Vector3d>> positions;
+    const auto add = [&](const std::string& name, const Vector3d& approximate) {
+        positions.emplace_back(name, object.project(approximate));
+    };
     // Ends of the longest diameter of the rim; for a round base, the lateral ones.
     const double rim = body.frame.outline.front().y();
     const Vector2d foot = body.outside->centre(rim);
     const double turn = p.ovality > 0 ? body.direction + p.ovality_drift * pi / 180 * rim / body.frame.joint_height : 0.5 * pi;
     for (const double side : {-1.0, 1.0}) {
-        const Vector2d way = (std::sin(turn) < 0 ? -side : side) * Vector2d(std::cos(turn), std::sin(turn));
-        const double angle = std::atan2(way.y(), way.x());
+        const Vector2d direction = (std::sin(turn) < 0 ? -side : side) * Vector2d(std::cos(turn), std::sin(turn));
+        const double angle = std::atan2(direction.y(), direction.x());
         const double radius = body.frame.outline.front().x() + body.outside->displacement(angle, rim);
-        add(side < 0 ? "base right" : "base left", {foot.x() + radius * way.x(), foot.y() + radius * way.y(), rim});
+        add(side < 0 ? "base right" : "base left", {foot.x() + radius * direction.x(), foot.y() + radius * direction.y(), rim});
     }
     if (p.wall == 0) add("base centre", {foot.x(), foot.y(), 0});
     const Vector2d neck = body.outside->centre(body.frame.joint_height);
@@ -140,10 +144,10 @@ std::vector<std::pair<std::string, Vector3d>> known_places(const SyntheticObject
         const std::string side = arm.side() < 0 ? " right" : " left";
         const std::vector<Vector3d> outside = arm.outside(6);
         add("arm joint" + side, outside[0]);
-        for (std::size_t i = 1; i <= 5; ++i) add("arm outside " + std::to_string(i) + side, outside[i]);
+        for (std::size_t i = 1; i <= 5; ++i) add(fmt::format("arm outside {}{}", i, side), outside[i]);
         add("hand end" + side, outside.back());
     }
-    return places;
+    return positions;
 }
 
 }  // namespace
@@ -155,32 +159,37 @@ Statuette generate_statuette(const StatuetteParameters& parameters) {
     MakeOptions options;
     options.vertices = parameters.vertices;
     options.seed = parameters.seed;
-    SyntheticMesh made = make_mesh(*object, options);
-    Statuette statuette{parameters, object->parts, object->part_colours, std::move(made.mesh), std::move(made.face_labels), {}};
+    SyntheticMesh mesh_with_labels = make_mesh(*object, options);
+    Statuette statuette{parameters,
+                        object->parts,
+                        object->part_colours,
+                        std::move(mesh_with_labels.mesh),
+                        std::move(mesh_with_labels.face_labels),
+                        {}};
     add_noise(statuette.mesh, parameters.scan_noise, parameters.seed);
 
     std::vector<bool> missing(statuette.mesh.number_of_faces(), false);
     if (parameters.wall > 0 && parameters.interior == StatuetteParameters::Interior::open) {
         const auto inside = static_cast<std::int32_t>(object->parts.size()) - 1;
-        miss_interior(missing, statuette.mesh, statuette.face_labels, inside, body);
+        mark_missing_interior(missing, statuette.mesh, statuette.face_labels, inside, body);
     }
-    miss_patches(missing, statuette.mesh, statuette.face_labels, parameters, 0.75 * body.frame.joint_height);
+    mark_missing_patches(missing, statuette.mesh, statuette.face_labels, parameters, 0.75 * body.frame.joint_height);
     if (std::find(missing.begin(), missing.end(), true) != missing.end()) {
         open_pinches(missing, statuette.mesh);
-        take_away(statuette, missing);
+        remove_missing_faces(statuette, missing);
     }
 
     const SurfaceSearch search(statuette.mesh);
-    const double near = 2 * mean_edge_length(statuette.mesh);
-    for (const auto& [name, place] : known_places(*object, parameters, body)) {
-        const Point p(place.x(), place.y(), place.z());
+    const double max_distance = 2 * mean_edge_length(statuette.mesh);
+    for (const auto& [name, position] : landmark_positions(*object, parameters, body)) {
+        const Point p(position.x(), position.y(), position.z());
         const SurfaceHit hit = search.closest(p);
-        if (hit.distance > near) continue;
-        const auto three = corners(statuette.mesh, Face(hit.face));
+        if (hit.distance > max_distance) continue;
+        const auto face_corners = corners(statuette.mesh, Face(hit.face));
         const auto closer = [&](Vertex a, Vertex b) {
             return CGAL::squared_distance(statuette.mesh.point(a), p) < CGAL::squared_distance(statuette.mesh.point(b), p);
         };
-        const Vertex vertex = *std::min_element(three.begin(), three.end(), closer);
+        const Vertex vertex = *std::min_element(face_corners.begin(), face_corners.end(), closer);
         statuette.landmarks.push_back({name, static_cast<Index>(vertex.idx()), hit.face, hit.barycentric, hit.point});
     }
     return statuette;

@@ -8,6 +8,8 @@
 #include "ostraka/core/error.h"
 #include "ostraka/stats/random.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <map>
 
@@ -79,12 +81,12 @@ StatuetteFrame::StatuetteFrame(const StatuetteParameters& p)
 
 StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
     Draws draw(p.seed);
-    using One = Spline<1>::Vec;
+    using Scalar = Spline<1>::Vec;
     std::vector<double> heights;
-    std::vector<One> radii;
+    std::vector<Scalar> radii;
     for (const Vector2d& point : frame.outline) {
         heights.push_back(point.y());
-        radii.push_back(One(point.x()));
+        radii.push_back(Scalar(point.x()));
     }
     const double high = frame.joint_height, sway = p.sway * frame.tube_radius / std::sqrt(2.0);
     direction = draw.angle();
@@ -104,11 +106,11 @@ StatuetteBody::StatuetteBody(const StatuetteParameters& p) : frame(p) {
                     .absolute = grooves,
                     .core = 0.6 * frame.neck_radius};
     outside = std::make_shared<const Warp>(warp);
-    const double way = draw.angle();
-    Warp within = warp;
-    within.offset = p.off_centre * p.wall * Vector2d(std::cos(way), std::sin(way));
-    for (const Wave& wave : random_waves(draw, 8, p.wall_noise * p.wall, 1, 4, 40, 100)) within.absolute.push_back(wave);
-    inside = std::make_shared<const Warp>(std::move(within));
+    const double offset_angle = draw.angle();
+    Warp inner_warp = warp;
+    inner_warp.offset = p.off_centre * p.wall * Vector2d(std::cos(offset_angle), std::sin(offset_angle));
+    for (const Wave& wave : random_waves(draw, 8, p.wall_noise * p.wall, 1, 4, 40, 100)) inner_warp.absolute.push_back(wave);
+    inside = std::make_shared<const Warp>(std::move(inner_warp));
     ragged = draw.angle();
 }
 
@@ -154,13 +156,14 @@ Arm::Arm(const StatuetteParameters& p, const StatuetteBody& body, double side)
     const double height = 0.855 * frame.joint_height, thick = 0.40 * frame.tube_radius;
     const Vector2d centre = body.outside->centre(height);
     const Vector3d shoulder(centre.x(), centre.y() + side * 1.30 * frame.tube_radius, height);
-    const auto beads_of = [&](double reach) {
-        std::vector<Bead> list;
+    const auto beads_of = [&](double scale) {
+        std::vector<Bead> arm_beads;
         const double thickness[] = {1.05, 0.95, 0.85, 0.85};
         std::size_t i = 0;
-        for (const Vector3d& way : poses.at(p.pose))
-            list.push_back({shoulder + reach * Vector3d(way.x(), side * way.y(), way.z()), thick * thickness[i++]});
-        return list;
+        for (const Vector3d& direction : poses.at(p.pose))
+            arm_beads.push_back(
+                {shoulder + scale * Vector3d(direction.x(), side * direction.y(), direction.z()), thick * thickness[i++]});
+        return arm_beads;
     };
     // The length along the outside increases with the reach: bisection.
     double low = 0.2 * p.arm_length, high = 2 * p.arm_length;
@@ -178,19 +181,19 @@ std::vector<Vector3d> Arm::outside(int pieces) const {
     for (const Bead& bead : beads) points.push_back(bead.centre), radii.push_back(bead.radius);
     const std::vector<double> knots = chord_lengths(beads);
     const Spline<3> path(knots, points);
-    std::vector<Vector3d> places;
+    std::vector<Vector3d> outside_points;
     for (int i = 0; i <= pieces; ++i) {
         const double t = path.length() * i / pieces;
         const auto state = path.at(t);
-        const Vector3d along = state.first.normalized(), out(0, 0.8 * side_, 0.6);
-        const Vector3d away = (out - out.dot(along) * along).normalized();
+        const Vector3d along = state.first.normalized(), outward(0, 0.8 * side_, 0.6);
+        const Vector3d normal = (outward - outward.dot(along) * along).normalized();
         std::size_t piece = 0;
         while (piece + 2 < knots.size() && knots[piece + 1] < t) ++piece;
         const double share = (t - knots[piece]) / (knots[piece + 1] - knots[piece]);
-        places.push_back(state.value + ((1 - share) * radii[piece] + share * radii[piece + 1]) * away);
-        if (i == pieces && bare_) places.push_back(state.value + radii.back() * along);
+        outside_points.push_back(state.value + ((1 - share) * radii[piece] + share * radii[piece + 1]) * normal);
+        if (i == pieces && bare_) outside_points.push_back(state.value + radii.back() * along);
     }
-    return places;
+    return outside_points;
 }
 
 double Arm::outside_length() const {
@@ -286,11 +289,11 @@ std::array<Arm, 2> body_arms(const StatuetteParameters& p, const StatuetteBody& 
 void check_parameters(const StatuetteParameters& p) {
     check_options(p, "statuette");
     if (p.wall > 0 && p.wall * (1 + 3 * p.wall_noise + p.off_centre) > 0.7 * 0.65 * 0.5 * p.base_diameter)
-        fail_usage("a wall of " + std::to_string(p.wall) + " mm leaves no cavity in a base of " +
-                       std::to_string(p.base_diameter) + " mm",
+        fail_usage(fmt::format("a wall of {} mm leaves no cavity in a base of {} mm", std::to_string(p.wall),
+                               std::to_string(p.base_diameter)),
                    "use a thinner wall, a wider base, or 0 for a solid body");
     if (p.head_height > 0.4 * p.height || p.base_diameter > 0.6 * p.height || p.arm_length > p.height)
-        fail_usage("the head, the base or the arm is too large for a statuette of " + std::to_string(p.height) + " mm",
+        fail_usage(fmt::format("the head, the base or the arm is too large for a statuette of {} mm", std::to_string(p.height)),
                    "keep the head below 0.4, the base below 0.6 and the arm below 1 of the height");
 }
 

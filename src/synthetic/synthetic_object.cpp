@@ -46,8 +46,8 @@ double raised(const Relief& relief, double x, double y) {
 }
 
 bool near_relief(const Relief& relief, const Vector3d& offset) {
-    const double reach = relief.radius * (1 + relief.petal_depth);
-    return offset.squaredNorm() < 2 * reach * reach;
+    const double radius = relief.radius * (1 + relief.petal_depth);
+    return offset.squaredNorm() < 2 * radius * radius;
 }
 
 }  // namespace
@@ -88,11 +88,11 @@ double SyntheticObject::slack() const {
 }
 
 Sample SyntheticObject::sample(const Vector3d& p) const {
-    Sample all = member_sample(0, p);
+    Sample result = member_sample(0, p);
     for (std::size_t i = 1; i < members.size(); ++i) {
         const Sample next = member_sample(i, p);
-        all = members[i].carves ? negative(smooth_union(negative(all), next, members[i].blend))
-                                : smooth_union(all, next, members[i].blend);
+        result = members[i].carves ? negative(smooth_union(negative(result), next, members[i].blend))
+                                   : smooth_union(result, next, members[i].blend);
     }
     for (const Relief& relief : reliefs) {
         const Vector3d offset = p - relief.centre;
@@ -103,10 +103,10 @@ Sample SyntheticObject::sample(const Vector3d& p) const {
         const double step = 1e-5 * relief.radius;
         const double dx = (raised(relief, x + step, y) - raised(relief, x - step, y)) / (2 * step);
         const double dy = (raised(relief, x, y + step) - raised(relief, x, y - step)) / (2 * step);
-        all.value -= relief.height * raised(relief, x, y);
-        all.gradient -= relief.height * (dx * frame.u + dy * frame.v);
+        result.value -= relief.height * raised(relief, x, y);
+        result.gradient -= relief.height * (dx * frame.u + dy * frame.v);
     }
-    return all;
+    return result;
 }
 
 Vector SyntheticObject::gradient(const Point& p) const {

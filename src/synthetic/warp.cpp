@@ -11,9 +11,9 @@ using Eigen::Vector3d;
 WaveSum sum_of(const std::vector<Wave>& waves, double angle, double height) {
     WaveSum sum;
     for (const Wave& wave : waves) {
-        const double place = wave.around * angle + wave.upward * height + wave.phase;
-        const double slope = -wave.amplitude * std::sin(place);
-        sum.value += wave.amplitude * std::cos(place);
+        const double argument = wave.around * angle + wave.upward * height + wave.phase;
+        const double slope = -wave.amplitude * std::sin(argument);
+        sum.value += wave.amplitude * std::cos(argument);
         sum.by_angle += wave.around * slope;
         sum.by_height += wave.upward * slope;
     }
@@ -36,7 +36,7 @@ class Warped final : public Solid {
 public:
     Warped(SolidPointer solid, std::shared_ptr<const Warp> warp) : solid_(std::move(solid)), warp_(std::move(warp)) {
         const Eigen::AlignedBox3d inner = solid_->box();
-        double reach = 0, minimum = 1, sway = 0;
+        double max_displacement = 0, minimum = 1, sway = 0;
         steepest_ = 1;
         const double widest = inner.max().cwiseAbs().cwiseMax(inner.min().cwiseAbs()).head<2>().norm();
         for (int up = 0; up <= samples_up; ++up) {
@@ -45,7 +45,7 @@ public:
             sway = std::max(sway, centre.norm());
             for (int turn = 0; turn < samples_around; ++turn) {
                 const double angle = 2 * pi * turn / samples_around;
-                reach = std::max(reach, std::abs(warp_->displacement(angle, z)));
+                max_displacement = std::max(max_displacement, std::abs(warp_->displacement(angle, z)));
                 for (const double distance : {0.25 * warp_->core, 0.5 * warp_->core, 0.75 * warp_->core, warp_->core, widest}) {
                     const Vector3d p(centre.x() + distance * std::cos(angle), centre.y() + distance * std::sin(angle), z);
                     const Matrix3d change = moved_back(p).second;
@@ -57,7 +57,7 @@ public:
         }
         steepest_ *= margin;
         flatness_ = std::max(minimum / margin, 0.05) / steepest_ * solid_->flatness();
-        const Vector3d grown((margin * (reach + sway)), (margin * (reach + sway)), 0);
+        const Vector3d grown((margin * (max_displacement + sway)), (margin * (max_displacement + sway)), 0);
         box_ = {inner.min() - grown, inner.max() + grown};
     }
     [[nodiscard]] Sample sample(const Vector3d& p) const override {
@@ -79,13 +79,13 @@ private:
         const double z = std::clamp(p.z(), warp.low, warp.high);
         const double rises = z == p.z() ? 1 : 0;
         const WaveSum x = sum_of(warp.centre_x, 0, z), y = sum_of(warp.centre_y, 0, z);
-        const Vector2d away = p.head<2>() - warp.offset - Vector2d(x.value, y.value);
+        const Vector2d offset = p.head<2>() - warp.offset - Vector2d(x.value, y.value);
         const Vector2d centre_slope = rises * Vector2d(x.by_height, y.by_height);
-        const double distance = away.norm();
+        const double distance = offset.norm();
         Matrix3d change = Matrix3d::Identity();
         change.topRightCorner<2, 1>() = -centre_slope;
-        if (distance < 1e-12 * warp.core) return {{away.x(), away.y(), p.z()}, change};
-        const double angle = std::atan2(away.y(), away.x());
+        if (distance < 1e-12 * warp.core) return {{offset.x(), offset.y(), p.z()}, change};
+        const double angle = std::atan2(offset.y(), offset.x());
         const WaveSum relative = sum_of(warp.relative, angle, z), absolute = sum_of(warp.absolute, angle, z);
         const auto size = warp.size.at(z);
         const double moved = size.value[0] * relative.value + absolute.value;
@@ -96,7 +96,7 @@ private:
         const double t = std::min(distance / warp.core, 1.0);
         const double fade = t * t * (3 - 2 * t), fade_slope = t < 1 ? 6 * t * (1 - t) / warp.core : 0;
         // Polar frame: radial and tangential derivatives of the preimage's radius.
-        const Vector2d radial = away / distance, tangent(-radial.y(), radial.x());
+        const Vector2d radial = offset / distance, tangent(-radial.y(), radial.x());
         const double radius = distance - moved * fade;
         const Eigen::RowVector2d radius_change =
             (1 - moved * fade_slope) * radial.transpose() - by_angle * fade / distance * tangent.transpose();

@@ -5,6 +5,8 @@
 #include "ostraka/core/safe_path.h"
 #include "ostraka/template_package/template.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -14,11 +16,12 @@ namespace {
 using std::to_string;
 
 /// Path of a named part.
-Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where, const std::string& at) {
-    require_file_name(name, where, at);
+Path locate(const std::string& name, const Path& folder, bool allow_outside, const std::string& where,
+            const std::string& pointer) {
+    require_file_name(name, where, pointer);
     if (allow_outside) return folder / Path(name);
     return file_inside(
-        name, folder, where, at, "the template's folder",
+        name, folder, where, pointer, "the template's folder",
         "move the part into the template's folder ('template pack --copy' does so), or allow it with --allow-outside");
 }
 
@@ -31,10 +34,10 @@ const std::vector<std::string>& template_roles() {
 }
 
 std::vector<const PackagedFile*> TemplateFile::of(const std::string& role) const {
-    std::vector<const PackagedFile*> list;
+    std::vector<const PackagedFile*> parts;
     for (const PackagedFile& part : contents)
-        if (part.role == role) list.push_back(&part);
-    return list;
+        if (part.role == role) parts.push_back(&part);
+    return parts;
 }
 
 TemplateFile template_from_json(const JsonValue& document, const Path& folder, const std::string& where,
@@ -52,21 +55,22 @@ TemplateFile template_from_json(const JsonValue& document, const Path& folder, c
     for (const std::string& role : template_roles()) {
         const JsonValue* value = find_member(document, role);
         if (value == nullptr) continue;
-        const auto add = [&](const JsonValue& name, const std::string& at) {
-            result.contents.push_back({role, text_of(name), locate(text_of(name), folder, options.allow_outside, where, at), {}});
+        const auto add = [&](const JsonValue& name, const std::string& pointer) {
+            result.contents.push_back(
+                {role, text_of(name), locate(text_of(name), folder, options.allow_outside, where, pointer), {}});
         };
         if (value->IsString()) add(*value, "/" + role);
         else
-            for (rapidjson::SizeType i = 0; i < value->Size(); ++i) add((*value)[i], "/" + role + "/" + to_string(i));
+            for (rapidjson::SizeType i = 0; i < value->Size(); ++i) add((*value)[i], fmt::format("/{}/{}", role, i));
     }
     if (const JsonValue* checksums = find_member(document, "checksums"))
         for (const auto& member : checksums->GetObject()) {
-            bool known = false;
+            bool is_part = false;
             for (PackagedFile& part : result.contents)
-                if (part.name == text_of(member.name)) part.sha256 = text_of(member.value), known = true;
-            if (!known)
-                fail_input(where, "at /checksums: '" + text_of(member.name) + "' is no part of the template",
-                           "name a part or take it away");
+                if (part.name == text_of(member.name)) part.sha256 = text_of(member.value), is_part = true;
+            if (!is_part)
+                fail_input(where, fmt::format("at /checksums: '{}' is not a part of the template", text_of(member.name)),
+                           "name an existing part, or remove it");
         }
     return result;
 }
@@ -114,12 +118,12 @@ TemplateFile copy_template(const TemplateFile& file, const Path& folder, const s
         if (std::any_of(copy.contents.begin(), copy.contents.end(), [&](const PackagedFile& other) {
                 return &other < &part && other.name == part.name && other.file != part.file;
             }))
-            fail_input("template", "two of its parts are called '" + part.name + "', from different folders",
+            fail_input("template", fmt::format("two of its parts from different folders have the name '{}'", part.name),
                        "rename one of them");
-        const Path place = folder / part.name;
+        const Path target = folder / part.name;
         const std::string bytes = read_file(part.file);
-        if (!same_place(place, part.file)) {
-            write_file(place, bytes);
+        if (!same_place(target, part.file)) {
+            write_file(target, bytes);
             // Coordinates are read with their header, sparse ones also with their index files.
             if (extension(part.file) == ".npy")
                 for (const Path& companion :
@@ -128,7 +132,7 @@ TemplateFile copy_template(const TemplateFile& file, const Path& folder, const s
                         write_file(folder / companion.filename().string(), read_file(companion));
         }
         part.sha256 = sha256(bytes);
-        part.file = place;
+        part.file = target;
     }
     write_json(folder / name, template_to_json(copy, provenance));
     return copy;

@@ -6,6 +6,8 @@
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/vocabulary/vocabulary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
 #include <set>
@@ -16,12 +18,14 @@ namespace {
 
 using std::to_string;
 
-std::string quoted(const std::vector<std::string>& names) { return "'" + joined(names, "', '") + "'"; }
+std::string quoted(const std::vector<std::string>& names) { return fmt::format("'{}'", joined(names, "', '")); }
 
 std::string range_text(const AllowedAttribute& attribute) {
     const std::string unit = attribute.unit.empty() ? "" : " " + attribute.unit;
-    if (attribute.min && attribute.max) return digits(*attribute.min, 9) + " to " + digits(*attribute.max, 9) + unit;
-    return attribute.min ? digits(*attribute.min, 9) + unit + " or more" : digits(*attribute.max, 9) + unit + " or less";
+    if (attribute.min && attribute.max)
+        return fmt::format("{} to {}{}", digits(*attribute.min, 9), digits(*attribute.max, 9), unit);
+    return attribute.min ? fmt::format("{}{} or more", digits(*attribute.min, 9), unit)
+                         : fmt::format("{}{} or less", digits(*attribute.max, 9), unit);
 }
 
 class Inspector {
@@ -29,85 +33,87 @@ public:
     Inspector(const Vocabulary& vocabulary, const CheckVocabularyOptions& options) : search_(vocabulary), options_(options) {}
     std::vector<Finding> findings;
 
-    void look_at(const Annotation& annotation, const std::string& at) {
+    void check(const Annotation& annotation, const std::string& pointer) {
         const auto concepts = search_.concepts_of(annotation.tag);
         if (concepts.empty()) {
-            defect(at + "/tag", "the tag '" + annotation.tag + "' is not in the vocabulary" +
-                                    did_you_mean(search_.suggestions(annotation.tag)));
+            defect(pointer + "/tag", fmt::format("the tag '{}' is not in the vocabulary{}", annotation.tag,
+                                                 did_you_mean(search_.suggestions(annotation.tag))));
             return;
         }
         if (concepts.size() > 1) {
             std::vector<std::string> ids;
             for (const std::size_t i : concepts) ids.push_back(search_.vocabulary().concepts[i].id);
-            defect(at + "/tag", "the tag '" + annotation.tag + "' may mean " + quoted(ids) + ": use one of these ids");
+            defect(pointer + "/tag",
+                   fmt::format("the tag '{}' is ambiguous between {}: use one of these ids", annotation.tag, quoted(ids)));
             return;
         }
         for (std::size_t i = 0; i < annotation.attributes.size(); ++i)
-            attribute(concepts.front(), annotation.attributes[i], at + "/attributes/" + to_string(i));
+            attribute(concepts.front(), annotation.attributes[i], fmt::format("{}/attributes/{}", pointer, i));
     }
 
 private:
-    void defect(const std::string& at, const std::string& text) { findings.push_back({true, at, text}); }
-    void remark(const std::string& at, const std::string& text) { findings.push_back({false, at, text}); }
+    void defect(const std::string& pointer, const std::string& text) { findings.push_back({true, pointer, text}); }
+    void remark(const std::string& pointer, const std::string& text) { findings.push_back({false, pointer, text}); }
 
-    void attribute(std::size_t concept_index, const Attribute& attribute, const std::string& at) {
+    void attribute(std::size_t concept_index, const Attribute& attribute, const std::string& pointer) {
         const AllowedAttribute* allowed = search_.attribute_of(concept_index, attribute.name);
-        const bool word = attribute.type == AttributeType::semantic;
+        const bool is_text = attribute.type == AttributeType::semantic;
         if (allowed == nullptr) {
             std::vector<std::string> names;
-            for (const AllowedAttribute* other : search_.attributes_of(concept_index)) {
-                names.push_back(other->name);
-                for (const auto& [language, label] : other->labels) names.push_back(label);
+            for (const AllowedAttribute* candidate : search_.attributes_of(concept_index)) {
+                names.push_back(candidate->name);
+                for (const auto& [language, label] : candidate->labels) names.push_back(label);
             }
-            const std::string text = "the attribute '" + attribute.name + "' is not among those of '" +
-                                     search_.vocabulary().concepts[concept_index].id + "'" +
-                                     did_you_mean(near_misses(attribute.name, names));
-            if (word || options_.strict) defect(at + "/name", text);
-            else remark(at + "/name", text);
+            const std::string text =
+                fmt::format("the attribute '{}' is not among those of '{}'{}", attribute.name,
+                            search_.vocabulary().concepts[concept_index].id, did_you_mean(near_misses(attribute.name, names)));
+            if (is_text || options_.strict) defect(pointer + "/name", text);
+            else remark(pointer + "/name", text);
             return;
         }
-        if (word && allowed->quantitative())
-            defect(at, "'" + attribute.name + "' is a quantity in the vocabulary, and a word here: '" + attribute.note + "'");
-        else if (!word && !allowed->values.empty())
-            defect(at, "'" + attribute.name + "' is one of a list of words in the vocabulary, and a quantity here");
-        else if (word) value(*allowed, attribute, at);
-        else quantity(*allowed, attribute, at);
+        if (is_text && allowed->quantitative())
+            defect(pointer, fmt::format("'{}' is a quantity in the vocabulary, but has the text value '{}'", attribute.name,
+                                        attribute.note));
+        else if (!is_text && !allowed->values.empty())
+            defect(pointer, fmt::format("'{}' has a list of values in the vocabulary, but is a quantity here", attribute.name));
+        else if (is_text) value(*allowed, attribute, pointer);
+        else quantity(*allowed, attribute, pointer);
     }
 
-    void value(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& at) {
+    void value(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& pointer) {
         if (allowed.values.empty() || term_of(allowed, attribute.note) != nullptr) return;
-        std::vector<std::string> names, all;
+        std::vector<std::string> names, all_names;
         for (const Term& term : allowed.values) {
             names.push_back(term.name);
-            all.push_back(term.name);
-            for (const auto& [language, label] : term.labels) all.push_back(label);
+            all_names.push_back(term.name);
+            for (const auto& [language, label] : term.labels) all_names.push_back(label);
         }
-        std::string hint = did_you_mean(near_misses(attribute.note, all));
-        if (hint.empty() && names.size() <= 12) hint = ": it is one of " + quoted(names);
-        defect(at + "/note", "'" + attribute.note + "' is no value of '" + attribute.name + "'" + hint);
+        std::string hint = did_you_mean(near_misses(attribute.note, all_names));
+        if (hint.empty() && names.size() <= 12) hint = ": its values are " + quoted(names);
+        defect(pointer + "/note", fmt::format("'{}' is not a value of '{}'{}", attribute.note, attribute.name, hint));
     }
 
-    void quantity(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& at) {
+    void quantity(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& pointer) {
         if (!allowed.quantitative()) return;
         const auto [values, unit, stale] = figures_of(attribute);
         if (stale) {
-            remark(at, "the value of '" + attribute.name + "' is stale: its range was not looked at");
+            remark(pointer, fmt::format("the value of '{}' is stale: its range was not checked", attribute.name));
             return;
         }
         if (unit.empty() && !allowed.unit.empty()) {
-            remark(at, "'" + attribute.name + "' has no unit: its range was not looked at");
+            remark(pointer, fmt::format("'{}' has no unit: its range was not checked", attribute.name));
             return;
         }
         for (const double value : values) {
             const std::optional<double> number = allowed.unit.empty() ? value : converted(value, unit, allowed.unit);
             if (!number) {
-                defect(at, "'" + attribute.name + "' is in '" + unit + "', which cannot be brought to the vocabulary's '" +
-                               allowed.unit + "'");
+                defect(pointer, fmt::format("'{}' is in '{}', which cannot be converted to the vocabulary's '{}'", attribute.name,
+                                            unit, allowed.unit));
                 return;
             }
             if ((allowed.min && *number < *allowed.min) || (allowed.max && *number > *allowed.max)) {
-                defect(at, "'" + attribute.name + "' is " + digits(value, 9) + (unit.empty() ? "" : " " + unit) +
-                               ", outside its range of " + range_text(allowed));
+                defect(pointer, fmt::format("'{}' is {}{}, outside its range of {}", attribute.name, digits(value, 9),
+                                            unit.empty() ? "" : " " + unit, range_text(allowed)));
                 return;
             }
         }
@@ -126,7 +132,7 @@ struct Interval {
         if (c.min || c.above) low = c.min ? *c.min : *c.above, low_open = c.above.has_value();
         if (c.max || c.below) high = c.max ? *c.max : *c.below, high_open = c.below.has_value();
     }
-    [[nodiscard]] bool meets(const Interval& other) const {
+    [[nodiscard]] bool overlaps(const Interval& other) const {
         const auto before = [](const Interval& a, const Interval& b) {
             return a.high < b.low || (a.high == b.low && (a.high_open || b.low_open));
         };
@@ -144,7 +150,7 @@ struct Side {
 
 struct ResolvedRule {
     std::string value;
-    std::optional<std::size_t> about;
+    std::optional<std::size_t> concept_index;
     std::set<std::size_t> lineage;
     std::vector<Side> sides;
 };
@@ -152,9 +158,9 @@ struct ResolvedRule {
 ResolvedRule resolved(const VocabularySearch& search, const InferenceRule& rule) {
     ResolvedRule result{folded(rule.value), {}, {}, {}};
     if (!rule.concept_id.empty()) {
-        result.about = search.find(rule.concept_id);
-        const auto line = search.lineage(*result.about);
-        result.lineage.insert(line.begin(), line.end());
+        result.concept_index = search.find(rule.concept_id);
+        const auto ancestors = search.lineage(*result.concept_index);
+        result.lineage.insert(ancestors.begin(), ancestors.end());
     }
     for (const Condition& c : rule.conditions) {
         const auto name = [](const Operand& x) { return folded(x.attribute) + '\0' + x.concept_id; };
@@ -177,7 +183,7 @@ bool compatible(const Side& a, const Side& b) {
     const auto scale = [&](const std::optional<double>& x) { return x ? std::optional<double>(*x * *other_unit) : x; };
     scaled.min = scale(b.bounds.min), scaled.max = scale(b.bounds.max);
     scaled.above = scale(b.bounds.above), scaled.below = scale(b.bounds.below);
-    return Interval(a.bounds).meets(Interval(scaled));
+    return Interval(a.bounds).overlaps(Interval(scaled));
 }
 
 /// Reports pairs of rules about one attribute of one concept (or of a narrower one) that can both hold with different results.
@@ -193,32 +199,34 @@ void compare_rules(const VocabularySearch& search, std::vector<Finding>& finding
     }
     const auto both_hold = [](const ResolvedRule& a, const ResolvedRule& b) {
         if (a.value == b.value) return false;
-        if (a.about && b.about && !a.lineage.contains(*b.about) && !b.lineage.contains(*a.about)) return false;
+        if (a.concept_index && b.concept_index && !a.lineage.contains(*b.concept_index) && !b.lineage.contains(*a.concept_index))
+            return false;
         for (const Side& x : a.sides)
             for (const Side& y : b.sides)
                 if (!compatible(x, y)) return false;
         return true;
     };
-    std::vector<std::pair<std::size_t, std::size_t>> found;  // the first hundred, in the order of the rules
+    std::vector<std::pair<std::size_t, std::size_t>> conflicts;  // the first hundred, in the order of the rules
     std::size_t count = 0;
-    for (const auto& [attribute, list] : by_attribute) {
-        std::size_t here = 0;
-        for (std::size_t x = 0; x < list.size(); ++x)
-            for (std::size_t y = x + 1; y < list.size(); ++y)
-                if (both_hold(sides[list[x]], sides[list[y]])) {
+    for (const auto& [attribute, indices] : by_attribute) {
+        std::size_t conflict_count = 0;
+        for (std::size_t x = 0; x < indices.size(); ++x)
+            for (std::size_t y = x + 1; y < indices.size(); ++y)
+                if (both_hold(sides[indices[x]], sides[indices[y]])) {
                     ++count;
-                    if (here++ < maximum) found.emplace_back(list[x], list[y]);
+                    if (conflict_count++ < maximum) conflicts.emplace_back(indices[x], indices[y]);
                 }
     }
-    std::sort(found.begin(), found.end());
-    if (found.size() > maximum) found.resize(maximum);
-    for (const auto& [i, k] : found)
+    std::sort(conflicts.begin(), conflicts.end());
+    if (conflicts.size() > maximum) conflicts.resize(maximum);
+    for (const auto& [i, k] : conflicts)
         findings.push_back({false, "/rules/" + to_string(k),
-                            "the rules '" + rules[i].id + "' and '" + rules[k].id + "' can both hold, and infer '" +
-                                rules[i].value + "' and '" + rules[k].value + "' for '" + rules[i].attribute + "'"});
-    if (count > found.size())
+                            fmt::format("the rules '{}' and '{}' can both hold, and infer '{}' and '{}' for '{}'", rules[i].id,
+                                        rules[k].id, rules[i].value, rules[k].value, rules[i].attribute)});
+    if (count > conflicts.size())
         findings.push_back(
-            {false, "/rules", to_string(count - found.size()) + " more pairs of rules can both hold and infer different words"});
+            {false, "/rules",
+             to_string(count - conflicts.size()) + " more pairs of rules can both hold and infer different words"});
 }
 
 }  // namespace
@@ -226,8 +234,7 @@ void compare_rules(const VocabularySearch& search, std::vector<Finding>& finding
 std::vector<Finding> check_against_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary,
                                               const CheckVocabularyOptions& options) {
     Inspector inspector(vocabulary, options);
-    for (std::size_t i = 0; i < set.annotations.size(); ++i)
-        inspector.look_at(set.annotations[i], "/annotations/" + to_string(i));
+    for (std::size_t i = 0; i < set.annotations.size(); ++i) inspector.check(set.annotations[i], "/annotations/" + to_string(i));
     return std::move(inspector.findings);
 }
 
@@ -238,14 +245,14 @@ void require_vocabulary(const AnnotationSet& set, const Vocabulary& vocabulary, 
     std::string first;
     for (const Annotation& annotation : set.annotations) {
         inspector.findings.clear();
-        inspector.look_at(annotation, "");
+        inspector.check(annotation, "");
         for (const auto& finding : inspector.findings) {
-            if (finding.defect && ++defects == 1) first = "annotation " + to_string(annotation.id) + ": " + finding.text;
+            if (finding.defect && ++defects == 1) first = fmt::format("annotation {}: {}", annotation.id, finding.text);
         }
     }
     if (defects > 0)
-        fail_input(where, first + (defects > 1 ? " (and " + to_string(defects - 1) + " more)" : ""),
-                   "use words of the vocabulary, or add to it");
+        fail_input(where, first + (defects > 1 ? fmt::format(" (and {} more)", defects - 1) : ""),
+                   "use terms of the vocabulary, or extend it");
 }
 
 std::vector<Finding> examine(const Vocabulary& vocabulary) {
@@ -257,25 +264,26 @@ std::vector<Finding> examine(const Vocabulary& vocabulary) {
             if (!language.empty()) ++languages[language];
     for (std::size_t i = 0; i < vocabulary.concepts.size(); ++i) {
         const Concept& entry = vocabulary.concepts[i];
-        const std::string at = "/concepts/" + to_string(i);
-        if (entry.labels.empty()) findings.push_back({false, at, "the concept '" + entry.id + "' has no label"});
+        const std::string pointer = "/concepts/" + to_string(i);
+        if (entry.labels.empty()) findings.push_back({false, pointer, fmt::format("the concept '{}' has no label", entry.id)});
         std::vector<std::string> missing;
         for (const auto& [language, count] : languages)
             if (!entry.labels.empty() && !entry.labels.contains(language)) missing.push_back(language);
         if (!missing.empty())
-            findings.push_back({false, at, "the concept '" + entry.id + "' has no label in " + joined(missing)});
+            findings.push_back({false, pointer, fmt::format("the concept '{}' has no label in {}", entry.id, joined(missing))});
         // If concepts share a label, the finding is reported at the last of them.
         std::set<std::string> reported;
-        const auto look = [&](const std::string& label) {
+        const auto check_label = [&](const std::string& label) {
             const auto concepts = label == entry.id ? std::vector<std::size_t>{i} : search.concepts_of(label);
             if (concepts.size() < 2 || concepts.back() != i || !reported.insert(folded(label)).second) return;
             std::vector<std::string> ids;
             for (const std::size_t k : concepts) ids.push_back(vocabulary.concepts[k].id);
-            findings.push_back({false, at, "the label '" + label + "' means " + quoted(ids) + ": as a tag it is ambiguous"});
+            findings.push_back(
+                {false, pointer, fmt::format("the label '{}' belongs to {}: as a tag it is ambiguous", label, quoted(ids))});
         };
-        for (const auto& [language, label] : entry.labels) look(label);
+        for (const auto& [language, label] : entry.labels) check_label(label);
         for (const auto& [language, labels] : entry.alternatives)
-            for (const auto& label : labels) look(label);
+            for (const auto& label : labels) check_label(label);
     }
     compare_rules(search, findings);
     return findings;

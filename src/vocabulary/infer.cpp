@@ -6,6 +6,8 @@
 
 #include "words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -39,18 +41,18 @@ public:
             std::erase_if(annotation.attributes, [](const Attribute& attribute) { return inferred(attribute); });
             concepts_.push_back(search_.concept_of(annotation.tag));
         }
-        given_ = result_.annotations.annotations;
+        stated_ = result_.annotations.annotations;
         resolve();
     }
 
     InferenceResult run() {
         // If rules contradict each other, their attribute is blocked and the inference repeated without it.
         for (std::size_t blocked = 0;; blocked = blocked_.size()) {
-            begin();
+            restart();
             std::set<Task> tasks;
             for (std::size_t i = 0; i < annotations().size(); ++i)
                 for (std::size_t r = 0; r < rules_of(i).size(); ++r) judge_task({i, r}, nullptr);
-            for (tasks.swap(later_); !tasks.empty(); tasks.swap(later_))
+            for (tasks.swap(deferred_); !tasks.empty(); tasks.swap(deferred_))
                 while (!tasks.empty()) {
                     const Task task = *tasks.begin();
                     tasks.erase(tasks.begin());
@@ -58,7 +60,7 @@ public:
                 }
             if (blocked_.size() == blocked) break;
         }
-        say_missing();
+        report_missing();
         return std::move(result_);
     }
 
@@ -87,12 +89,12 @@ private:
         for (const auto& entry : concepts_) {
             if (!entry || rules_.contains(*entry)) continue;
             const auto lineage = search_.lineage(*entry);
-            const std::set<std::size_t> line(lineage.begin(), lineage.end());
-            auto& list = rules_[*entry];
+            const std::set<std::size_t> ancestors(lineage.begin(), lineage.end());
+            auto& applicable = rules_[*entry];
             for (const InferenceRule& rule : search_.vocabulary().rules) {
-                if (!rule.concept_id.empty() && !line.contains(*search_.find(rule.concept_id))) continue;
+                if (!rule.concept_id.empty() && !ancestors.contains(*search_.find(rule.concept_id))) continue;
                 if (const AllowedAttribute* allowed = search_.attribute_of(*entry, rule.attribute))
-                    list.push_back({&rule, allowed});
+                    applicable.push_back({&rule, allowed});
             }
         }
         for (std::size_t i = 0; i < concepts_.size(); ++i)
@@ -112,20 +114,20 @@ private:
     /// The annotations that an operand may refer to, for a rule on annotation `i`.
     [[nodiscard]] std::vector<std::size_t> owner_of(const Operand& operand, std::size_t i) const {
         if (operand.concept_id.empty()) return {i};
-        const auto found = owners_.find(*search_.find(operand.concept_id));
-        if (found == owners_.end()) return {};
+        const auto owners = owners_.find(*search_.find(operand.concept_id));
+        if (owners == owners_.end()) return {};
         // Two suffice: more than one means ambiguous.
-        return {found->second.begin(), found->second.begin() + std::min<std::ptrdiff_t>(2, std::ssize(found->second))};
+        return {owners->second.begin(), owners->second.begin() + std::min<std::ptrdiff_t>(2, std::ssize(owners->second))};
     }
 
     /// Resets the annotations to the input, without inferred attributes.
-    void begin() {
-        annotations() = given_;
+    void restart() {
+        annotations() = stated_;
         result_.inferred.clear();
-        named_.assign(given_.size(), {});
-        for (std::size_t i = 0; i < given_.size(); ++i)
-            for (std::size_t k = 0; k < given_[i].attributes.size(); ++k)
-                named_[i][meaning(i, given_[i].attributes[k].name)].push_back(k);
+        attribute_indices_.assign(stated_.size(), {});
+        for (std::size_t i = 0; i < stated_.size(); ++i)
+            for (std::size_t k = 0; k < stated_[i].attributes.size(); ++k)
+                attribute_indices_[i][meaning(i, stated_[i].attributes[k].name)].push_back(k);
     }
 
     /// A text that is equal for all names of an attribute.
@@ -136,10 +138,10 @@ private:
 
     /// The attributes of an annotation with this name or a label of it.
     [[nodiscard]] std::vector<const Attribute*> attributes_named(std::size_t i, const std::string& name) {
-        std::vector<const Attribute*> found;
-        if (const auto known = named_[i].find(meaning(i, name)); known != named_[i].end())
-            for (const std::size_t k : known->second) found.push_back(&annotations()[i].attributes[k]);
-        return found;
+        std::vector<const Attribute*> attributes;
+        if (const auto entry = attribute_indices_[i].find(meaning(i, name)); entry != attribute_indices_[i].end())
+            for (const std::size_t k : entry->second) attributes.push_back(&annotations()[i].attributes[k]);
+        return attributes;
     }
 
     Value value_of(const Operand& operand, std::size_t i) {
@@ -147,19 +149,19 @@ private:
         if (!operand.concept_id.empty()) {
             const auto owners = owner_of(operand, i);
             if (owners.size() != 1) {
-                value.missing = (owners.empty() ? "there is no " : "there are several of ") + in_quotes(operand.concept_id);
+                value.missing = (owners.empty() ? "there is no " : "there is more than one ") + in_quotes(operand.concept_id);
                 return value;
             }
             i = owners.front();
         }
         const std::string name =
             in_quotes(operand.attribute) + (operand.concept_id.empty() ? "" : " of " + in_quotes(operand.concept_id));
-        const auto found = attributes_named(i, operand.attribute);
-        if (found.size() != 1) {
-            value.missing = (found.empty() ? "it has no " : "it has more than one ") + name;
+        const auto matches = attributes_named(i, operand.attribute);
+        if (matches.size() != 1) {
+            value.missing = (matches.empty() ? "it has no " : "it has more than one ") + name;
             return value;
         }
-        const Attribute& attribute = *found.front();
+        const Attribute& attribute = *matches.front();
         if (attribute.type == AttributeType::semantic) {
             value.word = attribute.note;
             return value;
@@ -184,132 +186,137 @@ private:
             const AllowedAttribute* allowed =
                 concepts_[i] && c.operand.concept_id.empty() ? search_.attribute_of(*concepts_[i], c.operand.attribute) : nullptr;
             const bool holds = is_one_of(value.word, c.is, allowed);
-            return {holds ? Verdict::holds : Verdict::fails, name_of(c.operand) + " is " + value.word, {}};
+            return {holds ? Verdict::holds : Verdict::fails, fmt::format("{} is {}", name_of(c.operand), value.word), {}};
         }
         if (!value.number) return {Verdict::unknown, {}, in_quotes(c.operand.attribute) + " is a word"};
         double number = *value.number;
         std::string text = name_of(c.operand);
-        std::string inputs = text + " " + digits(number, 6) + (value.unit.empty() ? "" : " " + value.unit);
+        std::string inputs = fmt::format("{} {}{}", text, digits(number, 6), value.unit.empty() ? "" : " " + value.unit);
         std::string unit;
         if (c.divisor) {
             const Value divisor = value_of(*c.divisor, i);
             if (!divisor.missing.empty()) return {Verdict::unknown, {}, divisor.missing};
             if (!divisor.number) return {Verdict::unknown, {}, in_quotes(c.divisor->attribute) + " is a word"};
-            const auto same = converted(*divisor.number, divisor.unit, value.unit);
-            if (!same) return {Verdict::unknown, {}, "'" + value.unit + "' and '" + divisor.unit + "' cannot be compared"};
-            if (*same == 0) return {Verdict::unknown, {}, in_quotes(c.divisor->attribute) + " is zero"};
-            number /= *same;
-            inputs +=
-                ", " + name_of(*c.divisor) + " " + digits(*divisor.number, 6) + (divisor.unit.empty() ? "" : " " + divisor.unit);
-            text += " / " + name_of(*c.divisor) + " = " + digits(number, 6);
+            const auto converted_divisor = converted(*divisor.number, divisor.unit, value.unit);
+            if (!converted_divisor)
+                return {Verdict::unknown, {}, fmt::format("'{}' and '{}' cannot be compared", value.unit, divisor.unit)};
+            if (*converted_divisor == 0) return {Verdict::unknown, {}, in_quotes(c.divisor->attribute) + " is zero"};
+            number /= *converted_divisor;
+            inputs += fmt::format(", {} {}{}", name_of(*c.divisor), digits(*divisor.number, 6),
+                                  divisor.unit.empty() ? "" : " " + divisor.unit);
+            text += fmt::format(" / {} = {}", name_of(*c.divisor), digits(number, 6));
         } else {
             unit = condition_unit(search_, rule, c);
             if (!unit.empty()) {
-                const auto same = converted(number, value.unit, unit);
-                if (!same)
-                    return {Verdict::unknown,
-                            {},
-                            in_quotes(c.operand.attribute) +
-                                (value.unit.empty() ? " has no unit" : " is in '" + value.unit + "', not in '" + unit + "'")};
-                number = *same;
+                const auto converted_number = converted(number, value.unit, unit);
+                if (!converted_number)
+                    return {
+                        Verdict::unknown,
+                        {},
+                        in_quotes(c.operand.attribute) +
+                            (value.unit.empty() ? " has no unit" : fmt::format(" is in '{}', not in '{}'", value.unit, unit))};
+                number = *converted_number;
             }
         }
         const bool holds = (!c.min || number >= *c.min) && (!c.max || number <= *c.max) && (!c.above || number > *c.above) &&
                            (!c.below || number < *c.below);
         std::string bounds;
         const auto bound = [&](const std::optional<double>& limit, const char* sign) {
-            if (limit) bounds += (bounds.empty() ? " " : " and ") + std::string(sign) + " " + digits(*limit, 6);
+            if (limit) bounds += fmt::format("{}{} {}", bounds.empty() ? " " : " and ", sign, digits(*limit, 6));
         };
         bound(c.min, ">="), bound(c.above, ">"), bound(c.max, "<="), bound(c.below, "<");
         if (!unit.empty()) bounds += " " + unit;
-        return {holds ? Verdict::holds : Verdict::fails, c.divisor ? text + bounds + " (" + inputs + ")" : inputs + bounds, {}};
+        return {holds ? Verdict::holds : Verdict::fails,
+                c.divisor ? fmt::format("{}{} ({})", text, bounds, inputs) : inputs + bounds,
+                {}};
     }
 
     Judgement judge(const InferenceRule& rule, std::size_t i) {
-        Judgement all;
+        Judgement combined;
         for (const Condition& condition : rule.conditions) {
-            const Judgement one = judge(rule, condition, i);
-            if (one.verdict == Verdict::fails) return one;
-            if (one.verdict == Verdict::unknown) {
-                all.verdict = Verdict::unknown;
-                all.missing += (all.missing.empty() ? "" : "; ") + one.missing;
+            const Judgement judgement = judge(rule, condition, i);
+            if (judgement.verdict == Verdict::fails) return judgement;
+            if (judgement.verdict == Verdict::unknown) {
+                combined.verdict = Verdict::unknown;
+                combined.missing += (combined.missing.empty() ? "" : "; ") + judgement.missing;
             }
-            all.why += (all.why.empty() ? "" : "; ") + one.why;
+            combined.why += (combined.why.empty() ? "" : "; ") + judgement.why;
         }
-        return all;
+        return combined;
     }
 
     /// Evaluates a rule on an annotation. Tasks that depend on the attribute added are scheduled: in `now` if they come later
     /// in the order of annotations and rules, otherwise in the next pass. Without `now` the later tasks are not scheduled,
     /// since the caller evaluates all tasks in order.
-    void judge_task(const Task& task, std::set<Task>* now) {
+    void judge_task(const Task& task, std::set<Task>* current_tasks) {
         const auto& [rule, allowed] = rules_of(task.first)[task.second];
         const Key key{task.first, allowed->name};
         if (blocked_.contains(key)) return;
         const Judgement judgement = judge(*rule, task.first);
         if (judgement.verdict != Verdict::holds || !conclude(*rule, *allowed, key, judgement.why)) return;
         const std::string name = meaning(task.first, allowed->name);
-        named_[task.first][name].push_back(annotations()[task.first].attributes.size() - 1);
+        attribute_indices_[task.first][name].push_back(annotations()[task.first].attributes.size() - 1);
         const auto readers = readers_[task.first].find(name);
         if (readers == readers_[task.first].end()) return;
         for (const Task& reader : readers->second)
-            if (reader <= task) later_.insert(reader);
-            else if (now != nullptr) now->insert(reader);
+            if (reader <= task) deferred_.insert(reader);
+            else if (current_tasks != nullptr) current_tasks->insert(reader);
     }
 
     bool conclude(const InferenceRule& rule, const AllowedAttribute& allowed, const Key& key, const std::string& why) {
         Annotation& annotation = annotations()[key.first];
         const Term* term = term_of(allowed, rule.value);
         const std::string value = term == nullptr ? rule.value : term->name;
-        const auto stands = attributes_named(key.first, allowed.name);
-        const std::string whose = detail::whose(annotation) + ": ";
-        const std::string says = "the rule " + in_quotes(rule.id) + " says " + in_quotes(value) + ", since " + why;
-        for (const Attribute* other : stands) {
+        const auto existing = attributes_named(key.first, allowed.name);
+        const std::string prefix = detail::annotation_name(annotation) + ": ";
+        const std::string claim = fmt::format("the rule {} infers {}, because {}", in_quotes(rule.id), in_quotes(value), why);
+        for (const Attribute* other : existing) {
             if (other->type == AttributeType::semantic) {
                 const Term* stated = term_of(allowed, other->note);
                 if (folded(stated == nullptr ? other->note : stated->name) == folded(value)) return false;  // already stated
             }
             blocked_.insert(key);
-            result_.contradictions.push_back(
-                whose + in_quotes(allowed.name) +
-                (inferred(*other)
-                     ? " is left out: the " + other->origin + " says " + in_quotes(other->note)
-                     : " is stated to be " + in_quotes(other->type == AttributeType::semantic ? other->note : "a number")) +
-                ", but " + says);
+            result_.contradictions.push_back(fmt::format(
+                "{}{}{}, but {}", prefix, in_quotes(allowed.name),
+                inferred(*other)
+                    ? fmt::format(" is not inferred: the {} infers {}", other->origin, in_quotes(other->note))
+                    : " is stated to be " + in_quotes(other->type == AttributeType::semantic ? other->note : "a number"),
+                claim));
             return false;
         }
         Attribute attribute;
         attribute.id = next_free_id(annotation.attributes);
         attribute.name = allowed.name;
         attribute.note = value;
-        attribute.origin = "rule " + in_quotes(rule.id) + ": " + why;
+        attribute.origin = fmt::format("rule {}: {}", in_quotes(rule.id), why);
         annotation.attributes.push_back(attribute);
         result_.inferred.push_back({annotation.id, allowed.name, value, rule.id, attribute.origin});
         return true;
     }
 
-    void say_missing() {
+    void report_missing() {
         for (std::size_t i = 0; i < annotations().size(); ++i)
             for (const auto& [rule, allowed] : rules_of(i)) {
                 const Judgement judgement = judge(*rule, i);
                 if (judgement.verdict == Verdict::unknown)
-                    result_.missing.push_back(detail::whose(annotations()[i]) + ": the rule " + in_quotes(rule->id) +
-                                              " cannot be judged: " + judgement.missing);
+                    result_.missing.push_back(fmt::format("{}: the rule {} cannot be evaluated: {}",
+                                                          detail::annotation_name(annotations()[i]), in_quotes(rule->id),
+                                                          judgement.missing));
             }
     }
 
     VocabularySearch search_;
     InferenceResult result_;
     std::vector<std::optional<std::size_t>> concepts_;
-    std::vector<Annotation> given_;
+    std::vector<Annotation> stated_;
     std::set<Key> blocked_;
-    std::map<std::size_t, std::vector<Applicable>> rules_;                ///< by concept
-    std::map<std::size_t, std::vector<std::size_t>> owners_;              ///< concept -> annotations of that concept
-    std::vector<std::map<std::string, std::vector<Task>>> readers_;       ///< for each annotation and attribute, the tasks that
-                                                                          ///< depend on it
-    std::vector<std::map<std::string, std::vector<std::size_t>>> named_;  ///< for each annotation and folded name, indices of
-                                                                          ///< attributes
-    std::set<Task> later_;
+    std::map<std::size_t, std::vector<Applicable>> rules_;           ///< by concept
+    std::map<std::size_t, std::vector<std::size_t>> owners_;         ///< concept -> annotations of that concept
+    std::vector<std::map<std::string, std::vector<Task>>> readers_;  ///< for each annotation and attribute, the tasks that
+                                                                     ///< depend on it
+    std::vector<std::map<std::string, std::vector<std::size_t>>> attribute_indices_;  ///< for each annotation and folded name,
+                                                                                      ///< indices of attributes
+    std::set<Task> deferred_;
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include "ostraka/core/words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -41,42 +43,43 @@ std::optional<Partitive> partitive_by_name(const std::string& name) {
 class OwlReader {
 public:
     explicit OwlReader(const std::vector<RdfStatement>& statements) : statements_(statements) {
-        for (const RdfStatement& one : statements) by_subject_[one.subject].push_back(&one);
+        for (const RdfStatement& statement : statements) by_subject_[statement.subject].push_back(&statement);
         find_properties();
-        for (const RdfStatement& one : statements) {
-            if (one.predicate != skos::rdf + "type" || one.subject.kind != RdfTerm::Kind::uri) continue;
-            if (one.object == owl_uri(owl + "Class") && one.subject.value != owl + "Thing" &&
-                one.subject.value != owl + "Nothing")
-                (is_deprecated(one.subject) ? deprecated_ : classes_).insert(one.subject);
-            if (one.object == owl_uri(owl + "Ontology")) ontologies_.insert(one.subject);
+        for (const RdfStatement& statement : statements) {
+            if (statement.predicate != skos::rdf + "type" || statement.subject.kind != RdfTerm::Kind::uri) continue;
+            if (statement.object == owl_uri(owl + "Class") && statement.subject.value != owl + "Thing" &&
+                statement.subject.value != owl + "Nothing")
+                (is_deprecated(statement.subject) ? deprecated_ : classes_).insert(statement.subject);
+            if (statement.object == owl_uri(owl + "Ontology")) ontologies_.insert(statement.subject);
         }
     }
     [[nodiscard]] bool has_classes() const { return !classes_.empty(); }
 
     std::vector<RdfStatement> translated(std::vector<std::string>& notes) {
-        for (const RdfTerm& one : ontologies_) add(one, skos::rdf + "type", owl_uri(skos::core + "ConceptScheme"));
-        for (const RdfTerm& one : classes_) add(one, skos::rdf + "type", owl_uri(skos::core + "Concept"));
-        for (const RdfStatement& one : statements_) {
-            if (classes_.contains(one.subject)) translate(one);
-            else if (ontologies_.contains(one.subject) && one.predicate == skos::rdfs + "label")
-                add(one.subject, skos::dcterms + "title", one.object);
-            else if (ontologies_.contains(one.subject) && one.predicate != skos::rdf + "type") made_.push_back(one);
+        for (const RdfTerm& ontology : ontologies_) add(ontology, skos::rdf + "type", owl_uri(skos::core + "ConceptScheme"));
+        for (const RdfTerm& owl_class : classes_) add(owl_class, skos::rdf + "type", owl_uri(skos::core + "Concept"));
+        for (const RdfStatement& statement : statements_) {
+            if (classes_.contains(statement.subject)) translate(statement);
+            else if (ontologies_.contains(statement.subject) && statement.predicate == skos::rdfs + "label")
+                add(statement.subject, skos::dcterms + "title", statement.object);
+            else if (ontologies_.contains(statement.subject) && statement.predicate != skos::rdf + "type")
+                translated_.push_back(statement);
         }
         if (!deprecated_.empty())
-            notes.push_back("what is said of " + counted(deprecated_.size(), "deprecated concept") + " is not kept");
-        if (others_ > 0)
-            notes.push_back(counted(others_, "statement") +
-                            " of classes not kept: restrictions on other properties than part-of, unions and the like");
-        return std::move(made_);
+            notes.push_back(fmt::format("statements about {} are not kept", counted(deprecated_.size(), "deprecated concept")));
+        if (untranslated_ > 0)
+            notes.push_back(counted(untranslated_, "statement") +
+                            " about classes not kept: restrictions on properties other than part-of, unions and similar");
+        return std::move(translated_);
     }
 
 private:
     [[nodiscard]] std::vector<RdfTerm> values(const RdfTerm& subject, const std::string& property) const {
-        std::vector<RdfTerm> list;
-        if (const auto found = by_subject_.find(subject); found != by_subject_.end())
-            for (const RdfStatement* one : found->second)
-                if (one->predicate == property) list.push_back(one->object);
-        return list;
+        std::vector<RdfTerm> objects;
+        if (const auto entry = by_subject_.find(subject); entry != by_subject_.end())
+            for (const RdfStatement* statement : entry->second)
+                if (statement->predicate == property) objects.push_back(statement->object);
+        return objects;
     }
     [[nodiscard]] bool is_deprecated(const RdfTerm& subject) const {
         const auto marks = values(subject, owl + "deprecated");
@@ -86,60 +89,60 @@ private:
 
     /// Finds part-of properties by their names and labels, then their subproperties and inverses.
     void find_properties() {
-        std::vector<RdfTerm> found;
-        const auto take = [&](const RdfTerm& property, Partitive kind) {
-            if (partitive_.emplace(property, kind).second) found.push_back(property);
+        std::vector<RdfTerm> properties;
+        const auto add_property = [&](const RdfTerm& property, Partitive kind) {
+            if (partitive_.emplace(property, kind).second) properties.push_back(property);
         };
-        std::map<RdfTerm, std::vector<RdfTerm>> below, inverse;
+        std::map<RdfTerm, std::vector<RdfTerm>> subproperties, inverse;
         for (const auto& [subject, predicate, object] : statements_) {
             if (predicate == owl + "onProperty") {
                 const std::string& uri = object.value;
-                if (uri == obo + "BFO_0000050") take(object, Partitive::part_of);
-                else if (uri == obo + "BFO_0000051") take(object, Partitive::has_part);
-                else if (const auto kind = partitive_by_name(uri.substr(uri.find_last_of("/#") + 1))) take(object, *kind);
+                if (uri == obo + "BFO_0000050") add_property(object, Partitive::part_of);
+                else if (uri == obo + "BFO_0000051") add_property(object, Partitive::has_part);
+                else if (const auto kind = partitive_by_name(uri.substr(uri.find_last_of("/#") + 1))) add_property(object, *kind);
                 else
                     for (const RdfTerm& label : values(object, skos::rdfs + "label"))
-                        if (const auto by_label = partitive_by_name(label.value)) take(object, *by_label);
+                        if (const auto by_label = partitive_by_name(label.value)) add_property(object, *by_label);
             }
             if (predicate == skos::rdfs + "subPropertyOf") {
-                below[object].push_back(subject);
+                subproperties[object].push_back(subject);
                 if (const auto kind = partitive_by_name(object.value.substr(object.value.find_last_of("/#") + 1)))
-                    take(object, *kind);
+                    add_property(object, *kind);
             }
             if (predicate == owl + "inverseOf") inverse[subject].push_back(object), inverse[object].push_back(subject);
         }
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            const RdfTerm property = found[i];
+        for (std::size_t i = 0; i < properties.size(); ++i) {
+            const RdfTerm property = properties[i];
             const Partitive kind = partitive_.at(property);
-            for (const RdfTerm& one : below[property]) take(one, kind);
-            for (const RdfTerm& one : inverse[property])
-                take(one, kind == Partitive::part_of ? Partitive::has_part : Partitive::part_of);
+            for (const RdfTerm& related : subproperties[property]) add_property(related, kind);
+            for (const RdfTerm& related : inverse[property])
+                add_property(related, kind == Partitive::part_of ? Partitive::has_part : Partitive::part_of);
         }
     }
 
     void add(const RdfTerm& subject, const std::string& predicate, const RdfTerm& object) {
-        made_.push_back({subject, predicate, object});
+        translated_.push_back({subject, predicate, object});
     }
 
-    void translate(const RdfStatement& one) {
-        const std::string& property = one.predicate;
+    void translate(const RdfStatement& statement) {
+        const std::string& property = statement.predicate;
         if (property == skos::rdf + "type") return;
-        if (property == skos::rdfs + "label") return add(one.subject, skos::core + "prefLabel", one.object);
+        if (property == skos::rdfs + "label") return add(statement.subject, skos::core + "prefLabel", statement.object);
         if (property == obo_in_owl + "hasExactSynonym" || property == obo_in_owl + "hasRelatedSynonym")
-            return add(one.subject, skos::core + "altLabel", one.object);
+            return add(statement.subject, skos::core + "altLabel", statement.object);
         if (property == obo + "IAO_0000115" ||
-            (property == skos::rdfs + "comment" && values(one.subject, obo + "IAO_0000115").empty()))
-            return add(one.subject, skos::core + "definition", one.object);
+            (property == skos::rdfs + "comment" && values(statement.subject, obo + "IAO_0000115").empty()))
+            return add(statement.subject, skos::core + "definition", statement.object);
         if (property == skos::rdfs + "subClassOf" || property == owl + "equivalentClass") {
-            if (!above(one.subject, one.object, property == owl + "equivalentClass")) ++others_;
+            if (!translate_superclass(statement.subject, statement.object, property == owl + "equivalentClass")) ++untranslated_;
             return;
         }
-        if (one.object.kind == RdfTerm::Kind::blank) ++others_;
-        else made_.push_back(one);
+        if (statement.object.kind == RdfTerm::Kind::blank) ++untranslated_;
+        else translated_.push_back(statement);
     }
 
     /// Handles a superclass or a whole of a class; returns false if the object is neither.
-    bool above(const RdfTerm& subject, const RdfTerm& object, bool equivalent) {
+    bool translate_superclass(const RdfTerm& subject, const RdfTerm& object, bool equivalent) {
         if (object.kind == RdfTerm::Kind::uri) {
             if (object.value == owl + "Thing" || deprecated_.contains(object)) return true;
             // Equivalent classes are not broader than each other.
@@ -147,16 +150,18 @@ private:
             return true;
         }
         if (const auto lists = values(object, owl + "intersectionOf"); lists.size() == 1) {
-            bool all = true;
+            bool complete = true;
             RdfTerm cell = lists.front();
-            for (std::set<RdfTerm> seen; seen.insert(cell).second;) {  // stops at cyclic lists
+            for (std::set<RdfTerm> visited; visited.insert(cell).second;) {  // stops at cyclic lists
                 for (const RdfTerm& member : values(cell, skos::rdf + "first"))
-                    all = (member.kind == RdfTerm::Kind::uri ? above(subject, member, false) : partitive(subject, member)) && all;
-                const auto rest = values(cell, skos::rdf + "rest");
-                if (rest.empty()) break;
-                cell = rest.front();
+                    complete = (member.kind == RdfTerm::Kind::uri ? translate_superclass(subject, member, false)
+                                                                  : partitive(subject, member)) &&
+                               complete;
+                const auto tail = values(cell, skos::rdf + "rest");
+                if (tail.empty()) break;
+                cell = tail.front();
             }
-            return all;
+            return complete;
         }
         return partitive(subject, object);
     }
@@ -176,18 +181,19 @@ private:
     std::map<RdfTerm, std::vector<const RdfStatement*>> by_subject_;
     std::map<RdfTerm, Partitive> partitive_;
     std::set<RdfTerm> classes_, deprecated_, ontologies_;
-    std::vector<RdfStatement> made_;
-    std::size_t others_ = 0;
+    std::vector<RdfStatement> translated_;
+    std::size_t untranslated_ = 0;
 };
 
 }  // namespace
 
 std::vector<RdfStatement> skos_of_owl(std::vector<RdfStatement> statements, std::vector<std::string>& notes) {
-    for (const RdfStatement& one : statements)
-        if (one.predicate.starts_with(skos::core) &&
-            (one.predicate == skos::core + "inScheme" || one.predicate == skos::core + "broader"))
+    for (const RdfStatement& statement : statements)
+        if (statement.predicate.starts_with(skos::core) &&
+            (statement.predicate == skos::core + "inScheme" || statement.predicate == skos::core + "broader"))
             return statements;
-        else if (one.predicate == skos::rdf + "type" && one.object == owl_uri(skos::core + "Concept")) return statements;
+        else if (statement.predicate == skos::rdf + "type" && statement.object == owl_uri(skos::core + "Concept"))
+            return statements;
     OwlReader reader(statements);
     return reader.has_classes() ? reader.translated(notes) : std::move(statements);
 }

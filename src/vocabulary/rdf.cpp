@@ -6,6 +6,8 @@
 
 #include <raptor.h>
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -86,8 +88,8 @@ RdfTerm value_of(const raptor_term* term) {
 /// Collects statements and limits their memory: prefixes, bases and entities stand for texts of any length, so that a short
 /// file may expand without bound.
 struct Collector {
-    explicit Collector(std::size_t bytes_of_file) : allowed(12.0 * static_cast<double>(bytes_of_file) + 256e6) {}
-    double allowed, taken = 0;
+    explicit Collector(std::size_t bytes_of_file) : max_bytes(12.0 * static_cast<double>(bytes_of_file) + 256e6) {}
+    double max_bytes, used_bytes = 0;
     raptor_parser* parser = nullptr;
     std::vector<RdfStatement> statements;
     bool out_of_memory = false, too_large = false;
@@ -102,9 +104,9 @@ struct Collector {
         try {
             const RdfStatement& added = collector.statements.emplace_back(RdfStatement{
                 value_of(statement->subject), text_of_uri(statement->predicate->value.uri), value_of(statement->object)});
-            collector.taken += static_cast<double>(2 * sizeof(RdfStatement) + added.predicate.size()) + size_of(added.subject) +
-                               size_of(added.object);
-            if (collector.taken <= collector.allowed) return;
+            collector.used_bytes += static_cast<double>(2 * sizeof(RdfStatement) + added.predicate.size()) +
+                                    size_of(added.subject) + size_of(added.object);
+            if (collector.used_bytes <= collector.max_bytes) return;
             collector.too_large = true;
             std::vector<RdfStatement>().swap(collector.statements);
             raptor_parser_parse_abort(collector.parser);
@@ -118,8 +120,8 @@ int line_of(std::string_view text, std::size_t offset) {
     return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
 }
 
-[[noreturn]] void fail_at(const std::string& where, int line, const std::string& what, const std::string& remedy) {
-    fail_input(line > 0 ? where + ", line " + std::to_string(line) : where, what, remedy);
+[[noreturn]] void fail_at(const std::string& where, int line, const std::string& problem, const std::string& remedy) {
+    fail_input(line > 0 ? fmt::format("{}, line {}", where, line) : where, problem, remedy);
 }
 
 /// Both syntaxes are restricted to UTF-8, so that no other encoding can bypass the checks below.
@@ -133,68 +135,69 @@ void require_utf8(const std::string& text, const std::string& where) {
 
 /// Rejects text in which many references to short entities expand to far more than the size of the file.
 void refuse_many_entities(const std::string& text, const std::map<std::string, std::size_t>& lengths, const std::string& where) {
-    const std::size_t most = 4 * text.size() + 16'000'000;
+    const std::size_t max_size = 4 * text.size() + 16'000'000;
     std::size_t sum = 0;
-    for (std::size_t at = text.find('&'); at != std::string::npos; at = text.find('&', at + 1)) {
-        const std::size_t end = text.find_first_of("; \n<&", at + 1);
+    for (std::size_t position = text.find('&'); position != std::string::npos; position = text.find('&', position + 1)) {
+        const std::size_t end = text.find_first_of("; \n<&", position + 1);
         if (end == std::string::npos || text[end] != ';') continue;
-        const auto known = lengths.find(text.substr(at + 1, std::min<std::size_t>(end - at - 1, 1000)));
-        if (known != lengths.end() && (sum += known->second) > most)
-            fail_at(where, line_of(text, at), "its entities stand for many times the size of the file",
-                    "put their texts in place of them");
+        const auto entity = lengths.find(text.substr(position + 1, std::min<std::size_t>(end - position - 1, 1000)));
+        if (entity != lengths.end() && (sum += entity->second) > max_size)
+            fail_at(where, line_of(text, position), "its entities expand to many times the size of the file",
+                    "replace them by their texts");
     }
 }
 
 /// Entities for plain text are common in RDF/XML and allowed; entities that read other files or that contain entities are
 /// rejected.
 void refuse_dangerous_entities(const std::string& text, const std::string& where) {
-    const auto upper = [](std::string part) {
-        for (char& c : part) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-        return part;
+    const auto upper = [](std::string fragment) {
+        for (char& c : fragment) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        return fragment;
     };
     if (text.starts_with("<?xml")) {
         const std::string head = upper(text.substr(0, std::min(text.find("?>"), std::size_t{1000})));
-        if (const std::size_t at = head.find("ENCODING"); at != std::string::npos)
-            if (head.find("UTF-8", at) == std::string::npos && head.find("US-ASCII", at) == std::string::npos)
-                fail_at(where, 1, "the file says that it is in another encoding than UTF-8", "save the file as UTF-8");
+        if (const std::size_t position = head.find("ENCODING"); position != std::string::npos)
+            if (head.find("UTF-8", position) == std::string::npos && head.find("US-ASCII", position) == std::string::npos)
+                fail_at(where, 1, "the file declares an encoding other than UTF-8", "save the file as UTF-8");
     }
-    std::size_t at = text.find("<!DOCTYPE");
-    if (at == std::string::npos) return;
-    const std::size_t open = text.find_first_of("[>", at);
-    const std::string name = upper(text.substr(at, std::min(open, text.size()) - at));
+    std::size_t position = text.find("<!DOCTYPE");
+    if (position == std::string::npos) return;
+    const std::size_t bracket = text.find_first_of("[>", position);
+    const std::string name = upper(text.substr(position, std::min(bracket, text.size()) - position));
     if (name.find("SYSTEM") != std::string::npos || name.find("PUBLIC") != std::string::npos)
-        fail_at(where, line_of(text, at), "the document type stands in another file", "take the document type declaration away");
+        fail_at(where, line_of(text, position), "the document type is defined in another file",
+                "remove the document type declaration");
     std::map<std::string, std::size_t> lengths;
-    while ((at = text.find("<!ENTITY", at)) != std::string::npos) {
-        const int line = line_of(text, at);
-        const std::size_t quote = text.find_first_of("\"'", at);
+    while ((position = text.find("<!ENTITY", position)) != std::string::npos) {
+        const int line = line_of(text, position);
+        const std::size_t quote = text.find_first_of("\"'", position);
         const std::size_t end = quote == std::string::npos ? quote : text.find(text[quote], quote + 1);
         if (end == std::string::npos) fail_at(where, line, "an entity does not end", "correct or regenerate the file");
-        const std::string head = upper(text.substr(at, quote - at)), value = text.substr(quote + 1, end - quote - 1);
+        const std::string head = upper(text.substr(position, quote - position)), value = text.substr(quote + 1, end - quote - 1);
         if (head.find("SYSTEM") != std::string::npos || head.find("PUBLIC") != std::string::npos)
-            fail_at(where, line, "an entity stands in another file", "put its text in place of it");
+            fail_at(where, line, "an entity is defined in another file", "replace it by its text");
         if (head.find('%') != std::string::npos || value.find('%') != std::string::npos || value.find('&') != std::string::npos)
-            fail_at(where, line, "an entity is made of entities", "put its text in place of it");
-        if (value.size() > 1000) fail_at(where, line, "an entity stands for more than 1000 bytes", "put its text in place of it");
-        const std::size_t name_at = text.find_first_not_of(" \t\r\n", at + 8);
+            fail_at(where, line, "an entity contains other entities", "replace it by its text");
+        if (value.size() > 1000) fail_at(where, line, "an entity expands to more than 1000 bytes", "replace it by its text");
+        const std::size_t name_at = text.find_first_not_of(" \t\r\n", position + 8);
         const std::size_t name_end = text.find_first_of(" \t\r\n\"'", name_at);
         lengths[text.substr(name_at, name_end - name_at)] = value.size();
-        at = end;
+        position = end;
     }
     if (!lengths.empty()) refuse_many_entities(text, lengths, where);
 }
 
 /// The parser's time is quadratic in the nesting depth, which is therefore limited. Malformed XML is left to the parser.
 void refuse_deep_nesting(const std::string& text, const std::string& where) {
-    const auto behind = [&](const char* end, std::size_t from) {
-        const std::size_t at = text.find(end, from);
-        return at == std::string::npos ? text.size() : at + std::strlen(end);
+    const auto end_of = [&](const char* delimiter, std::size_t offset) {
+        const std::size_t position = text.find(delimiter, offset);
+        return position == std::string::npos ? text.size() : position + std::strlen(delimiter);
     };
     std::size_t depth = 0;
     for (std::size_t i = text.find('<'); i < text.size(); i = text.find('<', i)) {
-        if (text.compare(i, 4, "<!--") == 0) i = behind("-->", i);
-        else if (text.compare(i, 9, "<![CDATA[") == 0) i = behind("]]>", i);
-        else if (text.compare(i, 2, "<?") == 0) i = behind("?>", i);
+        if (text.compare(i, 4, "<!--") == 0) i = end_of("-->", i);
+        else if (text.compare(i, 9, "<![CDATA[") == 0) i = end_of("]]>", i);
+        else if (text.compare(i, 2, "<?") == 0) i = end_of("?>", i);
         else if (text.compare(i, 2, "<!") == 0) ++i;
         else if (text.compare(i, 2, "</") == 0) depth -= depth > 0 ? 1 : 0, ++i;
         else {
@@ -212,13 +215,13 @@ void refuse_deep_nesting(const std::string& text, const std::string& where) {
 
 void require_uri(const std::string& uri, const std::string& where) {
     const std::size_t colon = uri.find(':');
-    bool good = colon != std::string::npos && colon > 0 && std::isalpha(static_cast<unsigned char>(uri.front())) != 0;
-    for (std::size_t i = 0; good && i < colon; ++i)
-        good = std::isalnum(static_cast<unsigned char>(uri[i])) != 0 || uri[i] == '+' || uri[i] == '-' || uri[i] == '.';
+    bool valid = colon != std::string::npos && colon > 0 && std::isalpha(static_cast<unsigned char>(uri.front())) != 0;
+    for (std::size_t i = 0; valid && i < colon; ++i)
+        valid = std::isalnum(static_cast<unsigned char>(uri[i])) != 0 || uri[i] == '+' || uri[i] == '-' || uri[i] == '.';
     for (const char c : uri)
-        good =
-            good && static_cast<unsigned char>(c) > 32 && std::string_view("<>\"{}|^`\\\x7F").find(c) == std::string_view::npos;
-    if (!good) fail_input(where, "'" + uri + "' is no URI", "give a URI such as https://example.org/vocabulary");
+        valid =
+            valid && static_cast<unsigned char>(c) > 32 && std::string_view("<>\"{}|^`\\\x7F").find(c) == std::string_view::npos;
+    if (!valid) fail_input(where, fmt::format("'{}' is not a URI", uri), "give a URI such as https://example.org/vocabulary");
 }
 
 void require_text(const std::string& text, RdfSyntax syntax, const std::string& where) {
@@ -226,9 +229,9 @@ void require_text(const std::string& text, RdfSyntax syntax, const std::string& 
         const auto byte = static_cast<unsigned char>(c);
         if (byte == 0 || (syntax == RdfSyntax::rdf_xml && byte < 32 && c != '\n' && c != '\t' && c != '\r'))
             fail_input(where,
-                       "a text holds a control character, which " +
-                           std::string(syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML") + " cannot",
-                       "take the character away");
+                       fmt::format("a text contains a control character, which {} cannot represent",
+                                   syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML"),
+                       "remove the character");
     }
 }
 
@@ -272,17 +275,18 @@ std::vector<RdfStatement> parse_rdf(const std::string& text, RdfSyntax syntax, c
     raptor_parser_set_statement_handler(parser.get(), &collector, &Collector::add);
     int result = raptor_parser_parse_start(parser.get(), base_uri.get());
     // The XML library accepts at most ten million bytes at once.
-    const std::size_t piece = xml ? std::min<std::size_t>(65536, text.size()) : text.size();
-    for (std::size_t at = 0; result == 0 && !collector.too_large && at + piece < text.size(); at += piece)
-        result = raptor_parser_parse_chunk(parser.get(), bytes(text) + at, piece, 0);
-    const std::size_t last = text.empty() ? 0 : (text.size() - 1) / piece * piece;
+    const std::size_t chunk_size = xml ? std::min<std::size_t>(65536, text.size()) : text.size();
+    for (std::size_t offset = 0; result == 0 && !collector.too_large && offset + chunk_size < text.size(); offset += chunk_size)
+        result = raptor_parser_parse_chunk(parser.get(), bytes(text) + offset, chunk_size, 0);
+    const std::size_t last = text.empty() ? 0 : (text.size() - 1) / chunk_size * chunk_size;
     if (result == 0 && !collector.too_large)
         result = raptor_parser_parse_chunk(parser.get(), bytes(text) + last, text.size() - last, 1);
     if (collector.out_of_memory) throw std::bad_alloc();
     if (collector.too_large)
         fail_input(where,
-                   "its statements take more than " + digits(collector.allowed / 1e6, 3) +
-                       " MB, many times the size of the file: prefixes, bases or entities stand for long texts",
+                   fmt::format("its statements take more than {} MB, many times the size of the file: prefixes, bases or "
+                               "entities expand to long texts",
+                               digits(collector.max_bytes / 1e6, 3)),
                    "shorten them, or split the file");
     if (result == 0 && log.text.empty()) return std::move(collector.statements);
     if (log.line < 0)

@@ -6,6 +6,6 @@
 namespace ostraka {
 
 /// Reads rules. The list is checked against the schema, but references to concepts and attributes are not checked.
-std::vector<InferenceRule> rules_from_json(const JsonValue& list, const std::string& where);
+std::vector<InferenceRule> rules_from_json(const JsonValue& rule_list, const std::string& where);
 
 }  // namespace ostraka

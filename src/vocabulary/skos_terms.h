@@ -17,7 +17,7 @@ inline const std::string xl = "http://www.w3.org/2008/05/skos-xl#";
 inline const std::string thesaurus = "http://purl.org/iso25964/skos-thes#";
 inline const std::string dcterms = "http://purl.org/dc/terms/";
 /// Our namespace: attributes that a concept may have, and rules.
-inline const std::string own = "urn:ostraka:ns#";
+inline const std::string ostraka_ns = "urn:ostraka:ns#";
 /// The URI of a vocabulary without one.
 inline const std::string default_scheme = "urn:ostraka:vocabulary";
 

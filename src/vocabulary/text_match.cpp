@@ -3,6 +3,7 @@
 #include "ostraka/core/nearest_name.h"
 #include "ostraka/core/text.h"
 
+#include <fmt/core.h>
 #include <rapidjson/encodings.h>
 #include <rapidjson/stringbuffer.h>
 
@@ -61,10 +62,10 @@ std::optional<Unit> unit_of(std::string text) {
     if (text.ends_with("^2")) power = 2;
     if (text.ends_with("^3")) power = 3;
     if (power > 1) text.erase(text.size() - 2);
-    const auto found = lengths.find(text);
-    if (found == lengths.end()) return std::nullopt;
+    const auto unit = lengths.find(text);
+    if (unit == lengths.end()) return std::nullopt;
     if (reciprocal) power = -power;
-    return Unit{std::pow(found->second, power), power};
+    return Unit{std::pow(unit->second, power), power};
 }
 
 }  // namespace
@@ -81,31 +82,32 @@ std::string folded(std::string_view text) {
 
 std::vector<std::string> near_misses(const std::string& text, const std::vector<std::string>& candidates, std::size_t maximum) {
     if (text.size() > 200) return {};
-    const std::string wanted = folded(text);
-    std::vector<std::pair<std::size_t, std::size_t>> found;  // distance, candidate index
+    const std::string folded_text = folded(text);
+    std::vector<std::pair<std::size_t, std::size_t>> matches;  // distance, candidate index
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (candidates[i].size() > 400) continue;
         const std::string candidate = folded(candidates[i]);
-        const std::size_t limit = std::max<std::size_t>(1, (std::max(wanted.size(), candidate.size()) + 1) / 3);
-        const std::size_t distance = edit_distance(wanted, candidate, limit);
-        if (distance <= limit && distance < std::max(wanted.size(), candidate.size())) found.emplace_back(distance, i);
+        const std::size_t limit = std::max<std::size_t>(1, (std::max(folded_text.size(), candidate.size()) + 1) / 3);
+        const std::size_t distance = edit_distance(folded_text, candidate, limit);
+        if (distance <= limit && distance < std::max(folded_text.size(), candidate.size())) matches.emplace_back(distance, i);
     }
-    std::sort(found.begin(), found.end());
-    std::vector<std::string> list;
-    for (const auto& [distance, i] : found) {
-        if (list.size() == maximum) break;
-        if (std::find(list.begin(), list.end(), candidates[i]) == list.end()) list.push_back(candidates[i]);
+    std::sort(matches.begin(), matches.end());
+    std::vector<std::string> result;
+    for (const auto& [distance, i] : matches) {
+        if (result.size() == maximum) break;
+        if (std::find(result.begin(), result.end(), candidates[i]) == result.end()) result.push_back(candidates[i]);
     }
-    return list;
+    return result;
 }
 
 std::string did_you_mean(const std::vector<std::string>& suggestions) {
-    return suggestions.empty() ? "" : ": did you mean " + alternatives(suggestions) + "?";
+    return suggestions.empty() ? "" : fmt::format(": did you mean {}?", alternatives(suggestions));
 }
 
-std::string alternatives(const std::vector<std::string>& list) {
+std::string alternatives(const std::vector<std::string>& names) {
     std::string text;
-    for (std::size_t i = 0; i < list.size(); ++i) text += (i == 0 ? "'" : i + 1 == list.size() ? " or '" : ", '") + list[i] + "'";
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += fmt::format("{}{}'", i == 0 ? "'" : i + 1 == names.size() ? " or '" : ", '", names[i]);
     return text;
 }
 

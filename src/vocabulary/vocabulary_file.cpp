@@ -8,6 +8,8 @@
 
 #include "words.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -42,41 +44,42 @@ AllowedAttribute attribute_of(const JsonValue& object) {
 }
 
 std::vector<AllowedAttribute> attributes_of(const JsonValue& object) {
-    std::vector<AllowedAttribute> list;
-    for (const auto& attribute : list_in(object, "attributes")) list.push_back(attribute_of(attribute));
-    return list;
+    std::vector<AllowedAttribute> result;
+    for (const auto& attribute : list_in(object, "attributes")) result.push_back(attribute_of(attribute));
+    return result;
 }
 
 /// Sorted without duplicates, so that equal vocabularies are written identically.
 template <class T>
-std::vector<T> canonical(std::vector<T> list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
+std::vector<T> canonical(std::vector<T> values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
 }
 
-std::vector<ForeignStatement> statements_of(const JsonValue& object, const std::string& where, const std::string& at) {
-    std::vector<ForeignStatement> list;
+std::vector<ForeignStatement> statements_of(const JsonValue& object, const std::string& where, const std::string& pointer) {
+    std::vector<ForeignStatement> result;
     for (const auto& entry : list_in(object, "other")) {
         ForeignStatement statement;
-        const std::string here = "at " + at + "/other/" + to_string(list.size());
+        const std::string location = fmt::format("at {}/other/{}", pointer, result.size());
         statement.property = text_in(entry, "property");
         statement.is_uri = find_member(entry, "uri") != nullptr;
         if (statement.is_uri == (find_member(entry, "value") != nullptr))
-            fail_input(where, here + ": a statement has a value or a uri", "give one of the two");
+            fail_input(where, location + ": a statement must have either a value or a uri", "give one of the two");
         statement.value = text_in(entry, statement.is_uri ? "uri" : "value");
         statement.language = text_in(entry, "language");
         statement.datatype = text_in(entry, "datatype");
         if (statement.datatype == skos::xsd + "string") statement.datatype.clear();  // equivalent to a text without a datatype
         if ((!statement.language.empty() && !statement.datatype.empty()) ||
             (statement.is_uri && (!statement.language.empty() || !statement.datatype.empty())))
-            fail_input(where, here + ": a URI has neither language nor datatype, a text one", "take one away");
-        list.push_back(std::move(statement));
+            fail_input(where, location + ": a URI may have neither language nor datatype, a text only one of the two",
+                       "remove one");
+        result.push_back(std::move(statement));
     }
-    return canonical(std::move(list));
+    return canonical(std::move(result));
 }
 
-Concept concept_of(const JsonValue& object, const std::string& where, const std::string& at) {
+Concept concept_of(const JsonValue& object, const std::string& where, const std::string& pointer) {
     Concept result;
     result.id = text_in(object, "id");
     result.uri = text_in(object, "uri");
@@ -91,7 +94,7 @@ Concept concept_of(const JsonValue& object, const std::string& where, const std:
     std::sort(result.part_of.begin(), result.part_of.end());
     result.definition = labels_of(object, "definition");
     result.attributes = attributes_of(object);
-    result.others = statements_of(object, where, at);
+    result.others = statements_of(object, where, pointer);
     return result;
 }
 
@@ -100,15 +103,16 @@ Operand operand_of(const JsonValue& value) {
     return {text_in(value, "attribute"), text_in(value, "concept")};
 }
 
-Condition condition_of(const JsonValue& object, const std::string& where, const std::string& at) {
+Condition condition_of(const JsonValue& object, const std::string& where, const std::string& pointer) {
     Condition condition;
     const JsonValue *ratio = find_member(object, "ratio"), *attribute = find_member(object, "attribute");
     if ((ratio == nullptr) == (attribute == nullptr))
-        fail_input(where, "at " + at + ": a condition is about an attribute or a ratio", "give one of the two");
+        fail_input(where, fmt::format("at {}: a condition must have either an attribute or a ratio", pointer),
+                   "give one of the two");
     if (ratio != nullptr) {
         if (find_member(object, "concept") != nullptr)
-            fail_input(where, "at " + at + "/concept: stands beside a ratio",
-                       "say it of each side: {\"attribute\": ..., \"concept\": ...}");
+            fail_input(where, fmt::format("at {}/concept: cannot be combined with a ratio", pointer),
+                       "give it for each side: {\"attribute\": ..., \"concept\": ...}");
         condition.operand = operand_of((*ratio)[0]);
         condition.divisor = operand_of((*ratio)[1]);
     } else {
@@ -123,14 +127,14 @@ Condition condition_of(const JsonValue& object, const std::string& where, const 
     return condition;
 }
 
-InferenceRule inference_rule_of(const JsonValue& object, const std::string& where, const std::string& at) {
+InferenceRule inference_rule_of(const JsonValue& object, const std::string& where, const std::string& pointer) {
     InferenceRule rule;
     rule.id = text_in(object, "id");
     rule.note = text_in(object, "note");
     rule.concept_id = text_in(object, "concept");
     const JsonValue& conditions = object["if"];
     for (rapidjson::SizeType i = 0; i < conditions.Size(); ++i)
-        rule.conditions.push_back(condition_of(conditions[i], where, at + "/if/" + to_string(i)));
+        rule.conditions.push_back(condition_of(conditions[i], where, fmt::format("{}/if/{}", pointer, i)));
     rule.attribute = text_in(object["then"], "attribute");
     rule.value = text_in(object["then"], "value");
     return rule;
@@ -166,9 +170,9 @@ private:
             add_member(object, name, value.begin()->second, allocator_);
             return;
         }
-        JsonValue list(rapidjson::kObjectType);
-        for (const auto& [language, label] : value) add_member(list, language, label, allocator_);
-        add_member(object, name, std::move(list), allocator_);
+        JsonValue by_language(rapidjson::kObjectType);
+        for (const auto& [language, label] : value) add_member(by_language, language, label, allocator_);
+        add_member(object, name, std::move(by_language), allocator_);
     }
     void names(JsonValue& object, const char* name, const std::vector<std::string>& value) {
         if (value.size() == 1) add_member(object, name, value.front(), allocator_);
@@ -207,7 +211,8 @@ private:
         add_given(object, allocator_, "uri", entry.uri);
         labels(object, "label", entry.labels);
         JsonValue alternatives(rapidjson::kObjectType);
-        for (const auto& [language, others] : entry.alternatives) add_members(alternatives, allocator_, language, others);
+        for (const auto& [language, alternative_labels] : entry.alternatives)
+            add_members(alternatives, allocator_, language, alternative_labels);
         add_given(object, allocator_, "alternatives", std::move(alternatives));
         names(object, "broader", entry.broader);
         names(object, "partOf", entry.part_of);
@@ -247,12 +252,13 @@ private:
 
 }  // namespace
 
-std::vector<InferenceRule> rules_from_json(const JsonValue& list, const std::string& where) {
+std::vector<InferenceRule> rules_from_json(const JsonValue& rule_list, const std::string& where) {
     Json document = json_document("vocabulary");
-    add_members(document, document.GetAllocator(), "concepts", JsonValue(rapidjson::kArrayType), "rules", list);
+    add_members(document, document.GetAllocator(), "concepts", JsonValue(rapidjson::kArrayType), "rules", rule_list);
     validate(document, "vocabulary", where);
     std::vector<InferenceRule> rules;
-    for (const auto& rule : list.GetArray()) rules.push_back(inference_rule_of(rule, where, "/rules/" + to_string(rules.size())));
+    for (const auto& rule : rule_list.GetArray())
+        rules.push_back(inference_rule_of(rule, where, "/rules/" + to_string(rules.size())));
     return rules;
 }
 

@@ -5,6 +5,8 @@
 #include "ostraka/vocabulary/text_match.h"
 #include "ostraka/vocabulary/vocabulary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka::detail {
@@ -20,18 +22,18 @@ inline std::vector<std::string> names_in(const JsonValue& object, const char* me
 
 inline std::string text_of(double value) { return digits(value, 9); }
 
-inline std::string in_quotes(const std::string& text) { return "'" + text + "'"; }
+inline std::string in_quotes(const std::string& text) { return fmt::format("'{}'", text); }
 
-inline std::string whose(const Annotation& annotation) {
-    return in_quotes(annotation.tag) + " (id " + std::to_string(annotation.id) + ")";
+inline std::string annotation_name(const Annotation& annotation) {
+    return fmt::format("{} (id {})", in_quotes(annotation.tag), annotation.id);
 }
 
 /// True if a text is one of several words, or another name of the same term in `allowed` (which may be null).
-inline bool is_one_of(const std::string& stated, const std::vector<std::string>& words, const AllowedAttribute* allowed) {
+inline bool is_one_of(const std::string& value, const std::vector<std::string>& words, const AllowedAttribute* allowed) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-        if (folded(word) == folded(stated)) return true;
+        if (folded(word) == folded(value)) return true;
         const Term* term = allowed == nullptr ? nullptr : term_of(*allowed, word);
-        return term != nullptr && term == term_of(*allowed, stated);
+        return term != nullptr && term == term_of(*allowed, value);
     });
 }
 

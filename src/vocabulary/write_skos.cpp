@@ -29,7 +29,7 @@ public:
         attributes(scheme_, vocabulary.attributes);
         foreign(scheme_, vocabulary.others);
         if (!vocabulary.rules.empty())
-            add(scheme_, skos::own + "rules",
+            add(scheme_, skos::ostraka_ns + "rules",
                 {Kind::text, to_text(vocabulary_to_json(vocabulary)["rules"]), {}, skos::rdf + "JSON"});
         std::map<std::string, RdfTerm> terms;
         for (const Concept& entry : vocabulary.concepts)
@@ -39,7 +39,7 @@ public:
             const RdfTerm& term = terms.at(entry.id);
             add(term, skos::rdf + "type", uri(skos::core + "Concept"));
             add(term, skos::core + "inScheme", scheme_);
-            add(term, skos::own + "id", {Kind::text, entry.id, {}, {}});
+            add(term, skos::ostraka_ns + "id", {Kind::text, entry.id, {}, {}});
             labels(term, skos::core + "prefLabel", entry.labels);
             for (const auto& [language, alternatives] : entry.alternatives)
                 for (const auto& label : alternatives) add(term, skos::core + "altLabel", {Kind::text, label, language, {}});
@@ -60,37 +60,37 @@ private:
     void add(const RdfTerm& subject, const std::string& property, RdfTerm value) {
         statements.push_back({subject, property, std::move(value)});
     }
-    void labels(const RdfTerm& subject, const std::string& property, const Labels& list) {
-        for (const auto& [language, text] : list) add(subject, property, {Kind::text, text, language, {}});
+    void labels(const RdfTerm& subject, const std::string& property, const Labels& label_map) {
+        for (const auto& [language, text] : label_map) add(subject, property, {Kind::text, text, language, {}});
     }
     void position(const RdfTerm& subject, std::size_t i) {
-        add(subject, skos::own + "position", {Kind::text, std::to_string(i), {}, skos::xsd + "integer"});
+        add(subject, skos::ostraka_ns + "position", {Kind::text, std::to_string(i), {}, skos::xsd + "integer"});
     }
-    void foreign(const RdfTerm& subject, const std::vector<ForeignStatement>& list) {
-        for (const ForeignStatement& other : list)
-            add(subject, other.property,
-                {other.is_uri ? Kind::uri : Kind::text, other.value, other.is_uri ? "" : other.language,
-                 other.is_uri ? "" : other.datatype});
+    void foreign(const RdfTerm& subject, const std::vector<ForeignStatement>& foreign_statements) {
+        for (const ForeignStatement& statement : foreign_statements)
+            add(subject, statement.property,
+                {statement.is_uri ? Kind::uri : Kind::text, statement.value, statement.is_uri ? "" : statement.language,
+                 statement.is_uri ? "" : statement.datatype});
     }
     void number(const RdfTerm& subject, const char* name, const std::optional<double>& value) {
-        if (value) add(subject, skos::own + name, {Kind::text, shortest(*value), {}, skos::xsd + "double"});
+        if (value) add(subject, skos::ostraka_ns + name, {Kind::text, shortest(*value), {}, skos::xsd + "double"});
     }
-    void attributes(const RdfTerm& owner, const std::vector<AllowedAttribute>& list) {
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            const AllowedAttribute& attribute = list[i];
+    void attributes(const RdfTerm& owner, const std::vector<AllowedAttribute>& entries) {
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const AllowedAttribute& attribute = entries[i];
             const RdfTerm node = blank();
-            add(owner, skos::own + "attribute", node);
-            add(node, skos::own + "name", {Kind::text, attribute.name, {}, {}});
+            add(owner, skos::ostraka_ns + "attribute", node);
+            add(node, skos::ostraka_ns + "name", {Kind::text, attribute.name, {}, {}});
             labels(node, skos::core + "prefLabel", attribute.labels);
             labels(node, skos::core + "definition", attribute.definition);
             number(node, "minimum", attribute.min);
             number(node, "maximum", attribute.max);
-            if (!attribute.unit.empty()) add(node, skos::own + "unit", {Kind::text, attribute.unit, {}, {}});
+            if (!attribute.unit.empty()) add(node, skos::ostraka_ns + "unit", {Kind::text, attribute.unit, {}, {}});
             position(node, i);
             for (std::size_t k = 0; k < attribute.values.size(); ++k) {
                 const RdfTerm term = blank();
-                add(node, skos::own + "value", term);
-                add(term, skos::own + "name", {Kind::text, attribute.values[k].name, {}, {}});
+                add(node, skos::ostraka_ns + "value", term);
+                add(term, skos::ostraka_ns + "name", {Kind::text, attribute.values[k].name, {}, {}});
                 labels(term, skos::core + "prefLabel", attribute.values[k].labels);
                 position(term, k);
             }
@@ -106,7 +106,8 @@ private:
 std::string vocabulary_to_skos(const Vocabulary& vocabulary, bool rdf_xml, const std::string& where) {
     check_vocabulary(vocabulary, where);
     return serialise_rdf(SkosWriter(vocabulary).statements, rdf_xml ? RdfSyntax::rdf_xml : RdfSyntax::turtle,
-                         {{"skos", skos::core}, {"dcterms", skos::dcterms}, {"xsd", skos::xsd}, {"ostraka", skos::own}}, where);
+                         {{"skos", skos::core}, {"dcterms", skos::dcterms}, {"xsd", skos::xsd}, {"ostraka", skos::ostraka_ns}},
+                         where);
 }
 
 void write_skos(const Path& file, const Vocabulary& vocabulary) {

@@ -18,7 +18,7 @@ const auto never = [] { return false; };
 
 }  // namespace
 
-TEST(ChildProcess, PrintsToFilesAndSaysHowItEnded) {
+TEST(ChildProcess, PrintsToFilesAndReportsHowItEnded) {
     const Scratch scratch;
     ChildProcess one(shell("pwd; echo $OMP_NUM_THREADS; echo wrong >&2; exit 3"),
                      {.folder = scratch.path(), .output = scratch / "out", .errors = scratch / "err", .threads = 7});
@@ -63,7 +63,7 @@ TEST(ChildProcess, ReadsAndPrintsThroughPipes) {
     EXPECT_EQ(one.code(), 0);
 }
 
-TEST(ChildProcess, WhatCannotBeStartedIsRefused) {
+TEST(ChildProcess, ProgramsThatCannotBeStartedAreRefused) {
     const Scratch scratch;
     const auto refuse = [](const std::vector<std::string>& words, const ChildOptions& options) {
         try {

@@ -7,7 +7,7 @@
 namespace ostraka {
 namespace {
 
-TEST(DisjointSets, EachElementIsAloneAtFirst) {
+TEST(DisjointSets, EachElementIsItsOwnSetInitially) {
     EXPECT_EQ(DisjointSets(0).size(), 0U);
     DisjointSets sets(3);
     for (Index i = 0; i < 3; ++i) EXPECT_EQ(sets.find(i), i);
@@ -28,7 +28,7 @@ TEST(DisjointSets, TheRootIsTheSmallestMemberWhateverTheOrder) {
     }
 }
 
-TEST(DisjointSets, TheKeptRootStays) {
+TEST(DisjointSets, TheTargetRootStays) {
     DisjointSets sets(6);
     sets.unite_into(5, 2);
     sets.unite_into(2, 0);
@@ -48,9 +48,9 @@ TEST(DisjointSets, AgreesWithRelabelling) {
         std::vector<std::size_t> label(n);
         std::iota(label.begin(), label.end(), std::size_t{0});
         for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t a = random() % n, b = random() % n, kept = label[a], gone = label[b];
+            const std::size_t a = random() % n, b = random() % n, target = label[a], source = label[b];
             sets.unite_into(a, b);
-            std::replace(label.begin(), label.end(), gone, kept);
+            std::replace(label.begin(), label.end(), source, target);
         }
         for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(sets.find(i), label[i]);
     }

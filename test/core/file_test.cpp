@@ -14,7 +14,7 @@
 using namespace ostraka;
 using ostraka::test::Scratch;
 
-TEST(AtomicFile, AppearsWhenCompleteAndLeavesNothingOtherwise) {
+TEST(AtomicFile, AppearsWhenCompleteAndIsRemovedOtherwise) {
     const Scratch scratch;
     const Path earlier = scratch.file("a.txt", "earlier");
     {
@@ -43,7 +43,7 @@ TEST(AtomicFile, FollowsLinksAndWritesToDevices) {
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-TEST(AtomicFile, TakesTheLongestNameAndFollowsLinksToNothing) {
+TEST(AtomicFile, AcceptsTheLongestNameAndFollowsDanglingLinks) {
     const Scratch scratch;
     const Path longest = scratch / std::string(255, 'n');
     write_file(longest, "1");
@@ -77,7 +77,7 @@ TEST(OutputTransaction, ShowsAllFilesOrNone) {
     EXPECT_EQ(test::count_files(scratch.path()), 2U);
 }
 
-TEST(OutputTransaction, OldFilesComeBackWhereOneCannotBeReplaced) {
+TEST(OutputTransaction, OldFilesAreRestoredIfOneCannotBeReplaced) {
     const test::Scratch folder;
     const Path first = folder / "first", fresh = folder / "fresh", last = folder / "last";
     const Path held = "memory:held";
@@ -99,7 +99,7 @@ TEST(OutputTransaction, OldFilesComeBackWhereOneCannotBeReplaced) {
     EXPECT_EQ(test::count_files(folder.path()), 2U) << "nothing waits beside them";
 }
 
-TEST(OutputTransaction, FoldersGoWithWhatWasToBeInThem) {
+TEST(OutputTransaction, CreatedFoldersAreRemovedWithTheirFiles) {
     const test::Scratch folder;
     const Path outer = folder / "outer", inner = outer / "inner";
     {
@@ -114,7 +114,7 @@ TEST(OutputTransaction, FoldersGoWithWhatWasToBeInThem) {
     EXPECT_TRUE(std::filesystem::exists(inner)) << "made, and meant to be empty";
 }
 
-TEST(OutputTransaction, HoldsWhatParallelLoopsWrite) {
+TEST(OutputTransaction, IncludesFilesWrittenByParallelLoops) {
     const Scratch scratch;
     const auto write_all = [&] {
         parallel_for(
@@ -144,7 +144,7 @@ void write_outputs(const Path& folder, const std::vector<std::pair<std::string, 
 
 }  // namespace
 
-TEST(ReplaceOutputs, LeavesWhatTheLastRunWroteAndWhatOthersWrote) {
+TEST(ReplaceOutputs, KeepsFilesOfTheLastRunAndOfOthers) {
     const Scratch scratch;
     (void)scratch.file("own.txt", "of the user");
     write_outputs(scratch.path(), {{"a.svg", "1"}, {"b.svg", "2"}, {"edited.csv", "3"}, {"c.csv", "4"}, {"link.svg", "5"}});
@@ -179,7 +179,7 @@ TEST(ReplaceOutputs, LeavesInputs) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "c.ply"));
 }
 
-TEST(ReplaceOutputs, RemovesNothingBeforeAllIsThere) {
+TEST(ReplaceOutputs, RemovesNothingBeforeAllFilesAreWritten) {
     const Scratch scratch;
     write_outputs(scratch.path(), {{"a.svg", "1"}});
     {
@@ -197,7 +197,7 @@ TEST(ReplaceOutputs, RemovesNothingBeforeAllIsThere) {
     EXPECT_THROW(replace_outputs(scratch.path(), "test"), std::logic_error);
 }
 
-TEST(ReplaceOutputs, AListFromOutsideReachesNoOtherFolder) {
+TEST(ReplaceOutputs, AForgedListAffectsNoOtherFolder) {
     const Scratch scratch;
     std::filesystem::create_directories(scratch / "out" / "sub");
     const Path outside = scratch.file("outside.txt", "x"), within = scratch.file("out/sub/within.txt", "x");
@@ -209,7 +209,7 @@ TEST(ReplaceOutputs, AListFromOutsideReachesNoOtherFolder) {
     EXPECT_TRUE(std::filesystem::exists(within));
 }
 
-TEST(RemoveStaleTemporaries, TakesOldOnesOnly) {
+TEST(RemoveStaleTemporaries, RemovesOldFilesOnly) {
     const Scratch scratch;
     const auto now = std::filesystem::file_time_type::clock::now();
     const auto file = [&](const std::string& name, int hours) {
@@ -228,7 +228,7 @@ TEST(RemoveStaleTemporaries, TakesOldOnesOnly) {
     EXPECT_EQ(remove_stale_temporaries(scratch / "nowhere"), 0U);
 }
 
-TEST(RemoveStaleTemporaries, TakesThoseOfKilledProcessesAtOnce) {
+TEST(RemoveStaleTemporaries, RemovesFilesOfKilledProcessesImmediately) {
     const Scratch scratch;
     const auto names = [&] {
         std::vector<std::string> list;
@@ -270,7 +270,7 @@ TEST(RemoveStaleTemporaries, TakesThoseOfKilledProcessesAtOnce) {
     EXPECT_EQ(remove_stale_temporaries(scratch.path()), 0U);
 }
 
-TEST(AtomicFile, ManyMayWaitAtOnce) {
+TEST(AtomicFile, ManyFilesCanBePendingAtOnce) {
     const Scratch scratch;
     {
         OutputTransaction waiting;
@@ -289,7 +289,7 @@ TEST(AtomicFile, RefusesFoldersAndMissingFolders) {
     EXPECT_THROW(write_file(scratch / "none" / "a.txt", "x"), Error);
 }
 
-TEST(CheckOutputs, SeesThroughLinksAndSpellings) {
+TEST(CheckOutputs, ResolvesLinksAndSpellings) {
     const Scratch scratch;
     const Path input = scratch.file("in.ply", "x");
     std::filesystem::create_hard_link(input, scratch / "hard.ply");
@@ -302,7 +302,7 @@ TEST(CheckOutputs, SeesThroughLinksAndSpellings) {
     EXPECT_NO_THROW(check_outputs({input, {}}, {scratch / "a.ply", {}, {}}));
 }
 
-TEST(ReadFile, GivesAllBytesOrSaysWhyNot) {
+TEST(ReadFile, ReturnsAllBytesOrReportsTheReason) {
     const Scratch scratch;
     const std::string bytes("a\0b\n", 4);
     EXPECT_EQ(read_file(scratch.file("a", bytes)), bytes);
@@ -325,7 +325,7 @@ TEST(ReadFile, InputsAreRegularFiles) {
     EXPECT_EQ(sha256_of_file(link), sha256("text"));
 }
 
-TEST(Text, ControlCharactersAreC0C1AndTurnsOfDirection) {
+TEST(Text, ControlCharactersAreC0C1AndBidirectional) {
     EXPECT_EQ(without_controls("a\x1B\x7F\xC2\x80\xC2\x9F\xE2\x80\xAA\xE2\x80\xAE\xE2\x81\xA6\xE2\x81\xA9z", "?"), "a????????z");
     const std::string plain = "na\xC3\xAFve \xC2\xA0\xE2\x80\xA9\xE2\x80\xAF\xE2\x81\xA5\xE2\x81\xAA \xF0\x9F\x8F\xBA";
     EXPECT_EQ(without_controls(plain, "?"), plain);

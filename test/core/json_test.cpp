@@ -16,7 +16,7 @@ TEST(Json, ErrorNamesLineAndColumn) {
 
 TEST(Json, DeepNestingIsRefused) { EXPECT_THROW(parse_json(std::string(100000, '['), "deep"), Error); }
 
-TEST(Json, AMemberThatStandsTwiceIsRefused) {
+TEST(Json, ADuplicateMemberIsRefused) {
     EXPECT_THROW(parse_json(R"([{"a": {"b": 1, "c": 2, "b": 1}}])", "twins"), Error);
     EXPECT_NO_THROW(parse_json(R"([{"b": 1}, {"b": 1}, {"a": {"b": 1}}])", "no twins"));
 }

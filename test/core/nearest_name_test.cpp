@@ -26,15 +26,15 @@ TEST(EditDistance, IsTheFewestEdits) {
     };
     for (int i = 0; i < 2000; ++i) {
         const std::string a = random_word(), b = random_word();
-        const std::size_t whole = edit_distance(a, b, 20);
-        EXPECT_EQ(edit_distance(b, a, 20), whole);
-        EXPECT_EQ(whole == 0, a == b);
+        const std::size_t full_distance = edit_distance(a, b, 20);
+        EXPECT_EQ(edit_distance(b, a, 20), full_distance);
+        EXPECT_EQ(full_distance == 0, a == b);
         for (std::size_t limit = 0; limit < 8; ++limit)
-            EXPECT_EQ(edit_distance(a, b, limit), std::min(whole, limit + 1)) << a << ' ' << b << ' ' << limit;
+            EXPECT_EQ(edit_distance(a, b, limit), std::min(full_distance, limit + 1)) << a << ' ' << b << ' ' << limit;
     }
 }
 
-TEST(EditDistance, OfBytesThatAreNoText) {
+TEST(EditDistance, OfInvalidUtf8) {
     EXPECT_EQ(edit_distance("a\xFF", "a\xFE", 9), 1U);
     EXPECT_EQ(edit_distance("a\xFF", "a\xFF", 9), 0U);
 }

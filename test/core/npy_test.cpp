@@ -41,7 +41,7 @@ std::string what(const std::string& bytes) {
     return "accepted";
 }
 
-TEST(Npy, WhatIsWrittenIsReadToTheBit) {
+TEST(Npy, RoundTripIsExact) {
     const test::Scratch folder;
     const Path file = folder / "a.npy";
     const std::vector<double> values{1.5, -0.0, 1e-310, std::numeric_limits<double>::infinity(), 1e308, 3};
@@ -80,15 +80,15 @@ TEST(Npy, ColumnsFirstAndOtherNumbers) {
     EXPECT_THROW((void)read_npy_integers(file), Error);
 }
 
-TEST(Npy, LyingHeadsAreRefused) {
+TEST(Npy, FalseHeadersAreRefused) {
     const std::string three = raw<double>({1, 2, 3});
-    EXPECT_NE(what(npy("<f8", "(4,)", three)).find("does not fit"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(1000000000000, 1000000000000)", three)).find("does not fit"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(4294967296, 4294967296)", "")).find("does not fit"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(2305843009213693952, 8)", "")).find("does not fit"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(0, 3)", three)).find("does not fit"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(9223372036854775807, 0)", "")).find("does not fit"), std::string::npos);
-    EXPECT_NE(what(npy("<f8", "(99999999999999999999,)", "")).find("does not fit"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(4,)", three)).find("does not match"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(1000000000000, 1000000000000)", three)).find("does not match"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(4294967296, 4294967296)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(2305843009213693952, 8)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(0, 3)", three)).find("does not match"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(9223372036854775807, 0)", "")).find("does not match"), std::string::npos);
+    EXPECT_NE(what(npy("<f8", "(99999999999999999999,)", "")).find("does not match"), std::string::npos);
     EXPECT_NE(what(npy("<f8", "()", raw<double>({1}))).find("0 dimensions"), std::string::npos);
     EXPECT_NE(what(npy("<f8", "(1, 1, 3)", three)).find("3 dimensions"), std::string::npos);
     EXPECT_NE(what(npy(">f8", "(3,)", three)).find("'>f8'"), std::string::npos);
@@ -97,7 +97,7 @@ TEST(Npy, LyingHeadsAreRefused) {
     EXPECT_NE(what(npy("<f8", "(3,", three)).find("cannot be read"), std::string::npos);
     EXPECT_NE(what(npy("<f8", "(3,)", three, "False", 9)).find("version"), std::string::npos);
     EXPECT_NE(what(npy("<f8", "(3,)", three).substr(0, 60)).find("ends within"), std::string::npos);
-    EXPECT_NE(what("").find("no NumPy"), std::string::npos);
+    EXPECT_NE(what("").find("not a NumPy"), std::string::npos);
     EXPECT_EQ(what(npy("<f8", "(3,)", three)), "accepted");
 }
 

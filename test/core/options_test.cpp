@@ -88,7 +88,7 @@ TEST(Options, AreSetAndChecked) {
     EXPECT_NE(refused(sample, "where", {"aside"}), "");
 }
 
-TEST(Options, AmountsWithAUnitOrADecimalCommaSayHowToWriteThem) {
+TEST(Options, AmountsWithAUnitOrADecimalCommaExplainTheFormat) {
     Sample sample;
     const auto says = [&](const std::string& name, const std::string& word, const std::string& remedy) {
         const std::string message = refused(sample, name, {word});
@@ -110,12 +110,12 @@ TEST(Options, AmountsWithAUnitOrADecimalCommaSayHowToWriteThem) {
 TEST(Options, StructsAreCheckedAndListed) {
     Sample sample;
     EXPECT_NO_THROW(check_options(sample, "here"));
-    const auto list = list_options(sample);
-    ASSERT_EQ(list.size(), 11U);
-    EXPECT_EQ(list[0], (std::pair<std::string, std::string>{"on", "true"}));
-    EXPECT_EQ(list[3].second, "0.5");
-    EXPECT_EQ(list[4].second, "");
-    EXPECT_EQ(list[9].second, "red");
+    const auto listed_options = list_options(sample);
+    ASSERT_EQ(listed_options.size(), 11U);
+    EXPECT_EQ(listed_options[0], (std::pair<std::string, std::string>{"on", "true"}));
+    EXPECT_EQ(listed_options[3].second, "0.5");
+    EXPECT_EQ(listed_options[4].second, "");
+    EXPECT_EQ(listed_options[9].second, "red");
     sample.share = 2;
     EXPECT_THROW(check_options(sample, "here"), Error);
     sample.share = 0.5;
@@ -125,7 +125,7 @@ TEST(Options, StructsAreCheckedAndListed) {
 
 TEST(Options, AreDeclaredOnce) {
     OptionList list;
-    int one = 0;
-    list("one", one, "a number");
-    EXPECT_THROW(list("one", one, "a number"), std::logic_error);
+    int variable = 0;
+    list("one", variable, "a number");
+    EXPECT_THROW(list("one", variable, "a number"), std::logic_error);
 }

@@ -15,10 +15,10 @@
 
 using namespace ostraka;
 
-TEST(RunApart, HandsBackWhatWasMade) {
+TEST(RunApart, ReturnsTheResult) {
     const auto sum = [](std::vector<int> numbers) {
         return run_apart_on(std::move(numbers),
-                            [](std::vector<int>& own) { own.push_back(std::accumulate(own.begin(), own.end(), 0)); });
+                            [](std::vector<int>& values) { values.push_back(std::accumulate(values.begin(), values.end(), 0)); });
     };
     EXPECT_EQ(sum({1, 2, 3}).back(), 6);
     Watch watch;
@@ -26,14 +26,14 @@ TEST(RunApart, HandsBackWhatWasMade) {
     EXPECT_EQ(sum({1, 2, 3}).back(), 6);
 }
 
-TEST(RunApart, HandsOnErrors) {
+TEST(RunApart, RethrowsErrors) {
     Watch watch;
     const WatchScope scope(&watch);
     EXPECT_THROW(run_apart([] { fail_input("mesh", "is odd"); }), Error);
     EXPECT_THROW(run_apart([] { throw std::logic_error("odd"); }), std::logic_error);
 }
 
-TEST(RunApart, LeavesWorkAloneThatIsCancelled) {
+TEST(RunApart, AbandonsCancelledWork) {
     Watch watch;
     const WatchScope scope(&watch);
     std::promise<void> may_end;
@@ -67,13 +67,13 @@ TEST(RunApart, LeavesWorkAloneThatIsCancelled) {
     EXPECT_TRUE(is_told);
 }
 
-TEST(RunApart, GivesTheWorkAsManyThreads) {
+TEST(RunApart, UsesTheSameNumberOfThreads) {
     Watch watch;
     const WatchScope scope(&watch);
-    const int own = threads();
+    const int thread_count = threads();
     int apart = 0;
     set_threads(3);
     run_apart([&] { apart = threads(); });
-    set_threads(own);
+    set_threads(thread_count);
     EXPECT_EQ(apart, 3);
 }

@@ -59,7 +59,7 @@ TEST(SafePath, PlainNamesAreOneComponent) {
         EXPECT_THROW(require_plain_name(name, "f", "/a"), Error) << name;
 }
 
-TEST(SafePath, NothingIsWrittenOverALinkThatLeadsOut) {
+TEST(SafePath, NothingIsWrittenThroughALinkOutOfTheFolder) {
     const Scratch scratch, outside;
     std::filesystem::create_symlink(outside / "new.txt", scratch / "link");
     std::filesystem::create_symlink("/dev/null", scratch / "device");
@@ -69,14 +69,14 @@ TEST(SafePath, NothingIsWrittenOverALinkThatLeadsOut) {
         EXPECT_THROW(require_writable_inside(scratch / name, scratch.path()), Error) << name;
 }
 
-TEST(Json, EndsWhereItsTextEnds) {
+TEST(Json, ParsesOnlyTheGivenText) {
     EXPECT_THROW(parse_json(std::string_view("{}\0{\"a\": 1}", 11), "f"), Error);
     EXPECT_THROW(parse_json(std::string_view("{\"a\": \"b\0c\"}", 12), "f"), Error);
     EXPECT_THROW(parse_json(std::string_view("[1, 2]\0", 7), "f"), Error);
     EXPECT_NO_THROW(parse_json(R"({"a": "\u0000"})", "f")) << "an escaped one is a character of a text";
 }
 
-TEST(WriteFile, SecretsAreForTheirOwner) {
+TEST(WriteFile, SecretsAreReadableByTheOwnerOnly) {
     const Scratch scratch;
     const auto rights = [](const Path& file) {
         struct stat status {};
@@ -122,7 +122,7 @@ TEST(WriteFile, NeverChangesTheUmask) {
     EXPECT_EQ(wrong, 0U);
 }
 
-TEST(ScratchFolder, IsRemovedWithWhatItHolds) {
+TEST(ScratchFolder, IsRemovedWithItsContents) {
     Path path;
     {
         const ScratchFolder folder("test"), other("test");
@@ -134,7 +134,7 @@ TEST(ScratchFolder, IsRemovedWithWhatItHolds) {
     EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(AbandonOutputs, LeavesNothingBehind) {
+TEST(AbandonOutputs, RemovesAllTemporaryFiles) {
     const Scratch scratch;
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
@@ -166,7 +166,7 @@ TEST(AbandonOutputs, LeavesNothingBehind) {
     EXPECT_EQ(names, std::vector<std::string>{"where"});
 }
 
-TEST(RequireMemory, RefusesInWords) {
+TEST(RequireMemory, RefusesWithAMessage) {
     Watch watch;
     watch.memory_limit = 1e12;
     const WatchScope scope(&watch);

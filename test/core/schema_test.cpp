@@ -22,13 +22,15 @@ std::vector<std::string> schema_names() {
 }
 
 /// All that "$ref" says, with its place.
-void list_references(const JsonValue& value, const std::string& place, std::vector<std::pair<std::string, std::string>>& found) {
+void list_references(const JsonValue& value, const std::string& pointer,
+                     std::vector<std::pair<std::string, std::string>>& references) {
     if (value.IsArray())
-        for (rapidjson::SizeType i = 0; i < value.Size(); ++i) list_references(value[i], place + "/" + std::to_string(i), found);
+        for (rapidjson::SizeType i = 0; i < value.Size(); ++i)
+            list_references(value[i], pointer + "/" + std::to_string(i), references);
     if (!value.IsObject()) return;
     for (const auto& member : value.GetObject()) {
-        if (text_of(member.name) == "$ref" && member.value.IsString()) found.emplace_back(place, text_of(member.value));
-        else list_references(member.value, place + "/" + text_of(member.name), found);
+        if (text_of(member.name) == "$ref" && member.value.IsString()) references.emplace_back(pointer, text_of(member.value));
+        else list_references(member.value, pointer + "/" + text_of(member.name), references);
     }
 }
 
@@ -120,7 +122,7 @@ std::size_t with_wrong_types(Json& document, JsonValue& value, const std::string
 
 }  // namespace
 
-TEST(Schemas, EveryReferenceLeadsSomewhere) {
+TEST(Schemas, EveryReferenceResolves) {
     std::size_t count = 0;
     for (const std::string& name : schema_names()) {
         const Json schema = read_json(schema_folder() / (name + ending));
@@ -135,7 +137,7 @@ TEST(Schemas, EveryReferenceLeadsSomewhere) {
     EXPECT_GT(count, 40U);
 }
 
-TEST(Schemas, WrongTypesInEveryMemberAreRefusedInWords) {
+TEST(Schemas, WrongTypesInEveryMemberAreRefusedWithAMessage) {
     const std::vector<std::string> names = schema_names();
     ASSERT_GT(names.size(), 20U);
     for (const std::string& name : names) {
@@ -145,7 +147,7 @@ TEST(Schemas, WrongTypesInEveryMemberAreRefusedInWords) {
     }
 }
 
-TEST(Schemas, ARecordsListsArePairsOfTexts) {
+TEST(Schemas, RecordListsArePairsOfTexts) {
     const auto record = [](const std::string& depends) {
         return parse_json(
             R"({"format": "ostraka-study-record", "version": 1, "step": "a", "parameters": {}, "read": [], "outputs": {},

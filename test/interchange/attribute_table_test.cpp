@@ -23,7 +23,7 @@ std::string message(const std::string& table, const AnnotationSet& original) {
 
 }  // namespace
 
-TEST(AttributeTable, ComesBackWhole) {
+TEST(AttributeTable, RoundTripKeepsEverything) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     const std::string table = attribute_table(set);
@@ -45,7 +45,7 @@ TEST(AttributeTable, NoCellIsAFormula) {
         EXPECT_EQ(occurrences(table, start), 0U) << start;
 }
 
-TEST(AttributeTable, EditsAreTakenOver) {
+TEST(AttributeTable, EditsAreApplied) {
     const Mesh mesh = spheres(3);
     AnnotationSet set = wild_set(mesh);
     const std::string edited =
@@ -60,7 +60,7 @@ TEST(AttributeTable, EditsAreTakenOver) {
     EXPECT_EQ(annotation->attributes[1].note, "old; very");
 }
 
-TEST(AttributeTable, RefusalsNameThePlace) {
+TEST(AttributeTable, RefusalsNameLineAndColumn) {
     const AnnotationSet set = wild_set(spheres(3));
     const std::string header = "annotation,tag,type,colour,attribute,name,kind,value,points,direction,stale\n";
     EXPECT_NE(message("", set), "");
@@ -78,7 +78,7 @@ TEST(AttributeTable, RefusalsNameThePlace) {
     EXPECT_NE(message(header + "3,t,,,0,n,semantic\n3,t,,,0,m,semantic\n", set).find("twice"), std::string::npos);
 }
 
-TEST(AttributeTable, DamagedTablesEndInAClearError) {
+TEST(AttributeTable, DamagedTablesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     const std::string table = attribute_table(set);

@@ -17,8 +17,8 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
     std::mt19937_64 random(seed);
     AnnotationSet copy = copy_of(set);
     for (int step = 0; step < 6; ++step) {
-        const std::size_t at = random() % copy.annotations.size();
-        Annotation& annotation = copy.annotations[at];
+        const std::size_t index = random() % copy.annotations.size();
+        Annotation& annotation = copy.annotations[index];
         switch (random() % 10) {
             case 0:
                 annotation.tag += "!";
@@ -39,15 +39,15 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
                 if (!annotation.faces.empty() && !annotation.all) annotation.faces.erase(annotation.faces.begin());
                 break;
             case 5:
-                copy.annotations.erase(copy.annotations.begin() + static_cast<std::ptrdiff_t>(at));
+                copy.annotations.erase(copy.annotations.begin() + static_cast<std::ptrdiff_t>(index));
                 break;
             case 6: {
-                Annotation fresh;
-                fresh.id = free_id(copy);
-                fresh.tag = "fresh " + std::to_string(random() % 2);
-                fresh.type = AnnotationType::point;
-                fresh.points = {static_cast<Index>(random() % mesh.number_of_vertices())};
-                copy.annotations.insert(copy.annotations.begin() + static_cast<std::ptrdiff_t>(at), fresh);
+                Annotation added;
+                added.id = free_id(copy);
+                added.tag = "fresh " + std::to_string(random() % 2);
+                added.type = AnnotationType::point;
+                added.points = {static_cast<Index>(random() % mesh.number_of_vertices())};
+                copy.annotations.insert(copy.annotations.begin() + static_cast<std::ptrdiff_t>(index), added);
                 break;
             }
             case 8:
@@ -56,15 +56,15 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
                     if (attribute.type == AttributeType::semantic) {
                         attribute.origin += "rule";
                     } else if (attribute.type == AttributeType::measure) {
-                        const auto what = random() % 3;
-                        if (what == 0) measure.uncertainty = measure.uncertainty.value_or(0) + 0.5;
-                        if (what == 1 && measure.tool == "tape") measure.exact = !measure.exact;
-                        if (what == 2) measure.repeats.push_back(measure.points);
+                        const auto field = random() % 3;
+                        if (field == 0) measure.uncertainty = measure.uncertainty.value_or(0) + 0.5;
+                        if (field == 1 && measure.tool == "tape") measure.exact = !measure.exact;
+                        if (field == 2) measure.repeats.push_back(measure.points);
                     }
                 }
                 break;
             case 7:
-                std::swap(copy.annotations[at], copy.annotations[random() % copy.annotations.size()]);
+                std::swap(copy.annotations[index], copy.annotations[random() % copy.annotations.size()]);
                 break;
             default:
                 copy.unit = random() % 2 == 0 ? "cm" : "m";
@@ -90,7 +90,7 @@ TEST(Difference, OfASetToItselfIsEmpty) {
     EXPECT_TRUE(differences({}, {}).empty());
 }
 
-TEST(Difference, IsEmptyExactlyWhereFilesAgreeAndChangesSides) {
+TEST(Difference, IsEmptyExactlyIfFilesAgreeAndIsAntisymmetric) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -118,11 +118,11 @@ TEST(Merge, TakesUncertaintiesAndRepeatsOfOneSide) {
         for (Attribute& attribute : annotation.attributes)
             if (attribute.type == AttributeType::measure)
                 attribute.measure.uncertainty = 3, attribute.measure.repeats.push_back(attribute.measure.points);
-    AnnotationSet other = copy_of(base);
-    other.annotations.back().tag = "another";
+    AnnotationSet their_set = copy_of(base);
+    their_set.annotations.back().tag = "another";
     for (const bool swapped : {false, true}) {
         const MergedAnnotations merged =
-            swapped ? merge_annotations(base, other, changed) : merge_annotations(base, changed, other);
+            swapped ? merge_annotations(base, their_set, changed) : merge_annotations(base, changed, their_set);
         EXPECT_TRUE(merged.conflicts.empty());
         EXPECT_EQ(merged.set.annotations.back().tag, "another");
         changed.annotations.back().tag = "another";
@@ -131,7 +131,7 @@ TEST(Merge, TakesUncertaintiesAndRepeatsOfOneSide) {
     }
 }
 
-TEST(Difference, CountsWhatGeometryHas) {
+TEST(Difference, CountsChangedElements) {
     AnnotationSet a, b;
     Annotation region;
     region.id = 4;
@@ -140,15 +140,15 @@ TEST(Difference, CountsWhatGeometryHas) {
     region.faces = {3, 4, 5};
     region.tag = "new";
     b.annotations = {region};
-    const auto list = differences(a, b);
-    ASSERT_EQ(list.size(), 2U);
-    EXPECT_EQ(list[0].field, "tag");
-    EXPECT_EQ(list[1].field, "geometry");
-    EXPECT_EQ(list[1].only_before, 2U);
-    EXPECT_EQ(list[1].only_after, 1U);
+    const auto found_differences = differences(a, b);
+    ASSERT_EQ(found_differences.size(), 2U);
+    EXPECT_EQ(found_differences[0].field, "tag");
+    EXPECT_EQ(found_differences[1].field, "geometry");
+    EXPECT_EQ(found_differences[1].only_before, 2U);
+    EXPECT_EQ(found_differences[1].only_after, 1U);
 }
 
-TEST(Merge, OneSidedChangesAreTakenWhole) {
+TEST(Merge, OneSidedChangesAreApplied) {
     const Mesh mesh = spheres(3);
     const AnnotationSet base = wild_set(mesh);
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -173,15 +173,15 @@ TEST(Merge, ConflictsAreTheSameFromBothSides) {
     std::size_t with_conflicts = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         const AnnotationSet a = edited(base, mesh, seed), b = edited(base, mesh, seed + 500);
-        auto one = conflict_fields(merge_annotations(base, a, b)), other = conflict_fields(merge_annotations(base, b, a));
-        std::sort(one.begin(), one.end());
-        std::sort(other.begin(), other.end());
-        EXPECT_EQ(one, other);
-        with_conflicts += one.empty() ? 0 : 1;
+        auto forward = conflict_fields(merge_annotations(base, a, b)), backward = conflict_fields(merge_annotations(base, b, a));
+        std::sort(forward.begin(), forward.end());
+        std::sort(backward.begin(), backward.end());
+        EXPECT_EQ(forward, backward);
+        with_conflicts += forward.empty() ? 0 : 1;
         // A preferred side of a merge without conflicts changes nothing.
         MergeOptions ours;
         ours.prefer = MergeOptions::Side::ours;
-        if (one.empty()) {
+        if (forward.empty()) {
             EXPECT_EQ(as_file(merge_annotations(base, a, b, ours).set, mesh), as_file(merge_annotations(base, a, b).set, mesh));
         }
         EXPECT_NO_THROW(check_annotations(merge_annotations(base, a, b, ours).set, mesh, "merged"));
@@ -209,19 +209,19 @@ TEST(Merge, NamesEachKindOfConflict) {
     find(ours, "two patches").tag = "changed";
     theirs.annotations.erase(std::find_if(theirs.annotations.begin(), theirs.annotations.end(),
                                           [](const Annotation& x) { return x.tag == "two patches"; }));
-    Annotation fresh;
-    fresh.id = 900;
-    fresh.type = AnnotationType::point;
-    fresh.points = {1};
-    fresh.tag = "mine";
-    ours.annotations.push_back(fresh);
-    fresh.tag = "yours";
-    theirs.annotations.push_back(fresh);
+    Annotation added;
+    added.id = 900;
+    added.type = AnnotationType::point;
+    added.points = {1};
+    added.tag = "mine";
+    ours.annotations.push_back(added);
+    added.tag = "yours";
+    theirs.annotations.push_back(added);
     const MergedAnnotations merged = merge_annotations(base, ours, theirs);
-    const std::string id = std::to_string(find(ours, "crown").id), gone = std::to_string(find(ours, "changed").id);
+    const std::string id = std::to_string(find(ours, "crown").id), removed_id = std::to_string(find(ours, "changed").id);
     EXPECT_EQ(conflict_fields(merged),
               (std::vector<std::string>{id + " tag", id + " geometry", id + " attribute 4",
-                                        gone + " removed by one, changed by the other", "900 both added"}));
+                                        removed_id + " removed by one, changed by the other", "900 both added"}));
     EXPECT_FALSE(merged.settled({}));
     MergeOptions options;
     options.prefer = MergeOptions::Side::theirs;
@@ -230,7 +230,7 @@ TEST(Merge, NamesEachKindOfConflict) {
     const Annotation* lid = settled.set.find(find(ours, "crown").id);
     EXPECT_EQ(lid->tag, "lid");
     EXPECT_EQ(lid->colour, (std::array<int, 3>{1, 1, 1})) << "what one side alone changed is kept";
-    EXPECT_EQ(settled.set.find(std::stoi(gone)), nullptr);
+    EXPECT_EQ(settled.set.find(std::stoi(removed_id)), nullptr);
     EXPECT_EQ(settled.set.find(900)->tag, "yours");
     // Faces one by one, and both new annotations.
     options = {};

@@ -82,7 +82,7 @@ TEST(Edit, FieldsAndAttributes) {
     EXPECT_EQ(notes.size(), 1U) << "a new id is said";
 }
 
-TEST(Edit, MergeAndSplitAreEachOthersInverse) {
+TEST(Edit, MergeAndSplitAreInverse) {
     const Mesh mesh = grid(4);
     const AnnotationSet before = tile_set(mesh);
     AnnotationSet set = copy_of(before);
@@ -90,7 +90,7 @@ TEST(Edit, MergeAndSplitAreEachOthersInverse) {
     ASSERT_EQ(set.annotations.size(), 2U);
     const Annotation& sides = set.annotations[0];
     EXPECT_EQ(sides.faces.size(), 16U);
-    EXPECT_EQ(sides.attributes[0].descriptor.values, std::vector<double>{8}) << "the area was taken anew";
+    EXPECT_EQ(sides.attributes[0].descriptor.values, std::vector<double>{8}) << "the area was measured again";
     EXPECT_EQ(sides.attributes.size(), 3U) << "the height came along";
     edit_annotations(mesh, set, edits(R"({"annotation": "sides", "split": true})"), "edits");
     ASSERT_EQ(set.annotations.size(), 3U);
@@ -139,8 +139,8 @@ TEST(Edit, DuplicateAndRemove) {
 TEST(Edit, Refusals) {
     EXPECT_NE(message(R"({"annotation": 9})").find("no annotation 9"), std::string::npos);
     EXPECT_NE(message(R"({"annotation": 1, "tag": "right"}, {"annotation": "right"})").find("2 annotations"), std::string::npos);
-    EXPECT_NE(message(R"({"annotation": 1, "id": 2})").find("taken"), std::string::npos);
-    EXPECT_NE(message(R"({"annotation": 1, "merge": [3]})").find("a point cannot become part of a region"), std::string::npos);
+    EXPECT_NE(message(R"({"annotation": 1, "id": 2})").find("in use"), std::string::npos);
+    EXPECT_NE(message(R"({"annotation": 1, "merge": [3]})").find("a point cannot be merged into a region"), std::string::npos);
     EXPECT_NE(message(R"({"annotation": 1, "merge": [1]})").find("itself"), std::string::npos);
     EXPECT_NE(message(R"({"annotation": 1}, {"annotation": 1, "removeAttributes": ["none"]})").find("edit 2"), std::string::npos);
     EXPECT_NE(message(R"({"annotation": 1, "unknown": 1})").find("annotation-edits.schema.json"), std::string::npos);
@@ -151,7 +151,7 @@ TEST(Edit, Refusals) {
     EXPECT_EQ(message(R"({"annotation": 3, "split": true})"), "") << "one piece stays as it is";
 }
 
-TEST(Edit, DamagedListsEndInAClearError) {
+TEST(Edit, DamagedListsAreRefusedWithAMessage) {
     const Mesh mesh = grid(4);
     const std::string list = R"({"format": "ostraka-annotation-edits", "version": 1, "edits": [
       {"annotation": "left", "merge": ["right"], "tag": "sides", "colour": [1, 2, 3], "id": 10, "removeAttributes": [1],
@@ -184,11 +184,11 @@ TEST(RenameUnit, UnitsOfLengthsFollowAndNoNumberChanges) {
         set.annotations[1].attributes.push_back(attribute);
     }
     const auto units = [&] {
-        std::vector<std::string> list;
+        std::vector<std::string> result;
         for (const Attribute& attribute : set.annotations[1].attributes)
-            if (attribute.type == AttributeType::measure) list.push_back(attribute.measure.unit);
-            else if (attribute.type == AttributeType::descriptor) list.push_back(attribute.descriptor.unit);
-        return list;
+            if (attribute.type == AttributeType::measure) result.push_back(attribute.measure.unit);
+            else if (attribute.type == AttributeType::descriptor) result.push_back(attribute.descriptor.unit);
+        return result;
     };
     rename_unit(mesh, set, "cm");
     EXPECT_EQ(set.unit, "cm");

@@ -24,9 +24,9 @@ std::string written(const Mesh& mesh, const AnnotationSet& set) {
     return feature_glb(mesh, set, "m <1>.ply", {}, notes);
 }
 
-std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
     std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + at, 4);
+    std::memcpy(&value, bytes.data() + offset, 4);
     return value;
 }
 
@@ -54,15 +54,15 @@ std::string with_json(const std::string& glb, std::string json) {
 
 std::string with(const std::string& glb, const std::string& from, const std::string& to) {
     std::string json = glb.substr(20, word_at(glb, 12));
-    const std::size_t at = json.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) json.replace(at, from.size(), to);
+    const std::size_t position = json.find(from);
+    EXPECT_NE(position, std::string::npos) << from;
+    if (position != std::string::npos) json.replace(position, from.size(), to);
     return with_json(glb, json);
 }
 
 }  // namespace
 
-TEST(FeatureGlb, ComesBackWhole) {
+TEST(FeatureGlb, RoundTripKeepsEverything) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     const std::string glb = written(mesh, set);
@@ -73,7 +73,7 @@ TEST(FeatureGlb, ComesBackWhole) {
     EXPECT_EQ(as_file(read_feature_glb(written(mesh, {}), mesh, "f").set, mesh), as_file({}, mesh));
 }
 
-TEST(FeatureGlb, KeepsTheRulesOfTheFormat) {
+TEST(FeatureGlb, ConformsToTheFormat) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     const std::string glb = written(mesh, set);
@@ -210,29 +210,29 @@ TEST(FeatureGlb, AnotherMeshTakesTheNearestFeatures) {
         ASSERT_EQ(after.type, before.type);
         EXPECT_EQ(read.placements[i].how, "places");
         if (before.type != AnnotationType::region) continue;
-        double there = 0, here = 0;
-        for (const Index f : before.faces) there += face_area(mesh, Face(f));
-        for (const Index f : after.faces) here += face_area(other, Face(f));
-        EXPECT_NEAR(here, there, 0.03 * there) << before.tag;
+        double expected_area = 0, area = 0;
+        for (const Index f : before.faces) expected_area += face_area(mesh, Face(f));
+        for (const Index f : after.faces) area += face_area(other, Face(f));
+        EXPECT_NEAR(area, expected_area, 0.03 * expected_area) << before.tag;
     }
     EXPECT_NE(message(glb, spheres(2, {{40, 0, 0}})).find("farther than"), std::string::npos);
 }
 
-TEST(FeatureGlb, BadFilesAreRefusedWithTheirPlace) {
+TEST(FeatureGlb, InvalidFilesAreRefusedWithTheirPosition) {
     const Mesh mesh = spheres(3);
     const std::string glb = written(mesh, wild_set(mesh));
-    EXPECT_NE(message("solid", mesh).find("no GLB"), std::string::npos);
-    EXPECT_NE(message(glb.substr(0, glb.size() / 2), mesh).find("cut off"), std::string::npos);
+    EXPECT_NE(message("solid", mesh).find("not a GLB"), std::string::npos);
+    EXPECT_NE(message(glb.substr(0, glb.size() / 2), mesh).find("truncated"), std::string::npos);
     EXPECT_EQ(message(with(glb, "\"scene\":0", "\"scene\":0"), mesh), "");
-    const auto expect = [&](const char* from, const char* to, const char* said) {
+    const auto expect = [&](const char* from, const char* to, const char* expected) {
         const std::string text = message(with(glb, from, to), mesh);
-        EXPECT_NE(text.find(said), std::string::npos) << to << ": " << text;
+        EXPECT_NE(text.find(expected), std::string::npos) << to << ": " << text;
     };
     expect(R"("nodes":[{"mesh":0})", R"("nodes":[{"mesh":0,"scale":[2,2,2]})", "/nodes/0/scale");
     expect(R"("type":"VEC3","min")", R"("type":"VEC2","min")", "/accessors/0/type");
     expect(R"("componentType":5126)", R"("componentType":5199)", "/accessors/0/componentType");
     expect(R"("bufferView":0)", R"("bufferView":4000)", "bufferViews");
-    expect(R"("byteLength":)", R"("byteLength":9)", "beyond the buffer");
+    expect(R"("byteLength":)", R"("byteLength":9)", "exceeds the buffer");
     expect(R"("propertyTable":0)", R"("propertyTable":7)", "several tables");
     expect(R"("asset")", R"("extensionsRequired":["KHR_draco_mesh_compression"],"asset")", "extensionsRequired");
     expect(R"("stringOffsets":)", R"("stringOffsets":1)", "");
@@ -257,7 +257,7 @@ TEST(FeatureGlb, ThePublicValidatorFindsNoError) {
     EXPECT_EQ(status, 0) << read_file(out);
 }
 
-TEST(FeatureGlb, DamagedFilesEndInAClearError) {
+TEST(FeatureGlb, DamagedFilesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3), other = spheres(2);
     const std::string glb = written(mesh, wild_set(mesh));
     std::size_t successes = 0;
@@ -278,7 +278,7 @@ TEST(FeatureGlb, DamagedFilesEndInAClearError) {
     EXPECT_LT(successes, 400U);
 }
 
-TEST(FeatureGlb, PrimitivesThatNameTheSameDataAreReadOnceAndNotWithoutEnd) {
+TEST(FeatureGlb, SharedDataAreReadOnceAndLimited) {
     glb::Builder builder;
     const std::size_t count = 30000;
     std::string positions;
@@ -294,13 +294,13 @@ TEST(FeatureGlb, PrimitivesThatNameTheSameDataAreReadOnceAndNotWithoutEnd) {
     };
     // Some copies are read; whether they can be placed on the mesh is another question.
     const Mesh mesh = spheres(3);
-    EXPECT_EQ(message(with_primitives(20), mesh).find("again and again"), std::string::npos);
+    EXPECT_EQ(message(with_primitives(20), mesh).find("repeatedly"), std::string::npos);
     const std::string refused = message(with_primitives(100000), mesh);
     EXPECT_NE(refused.find("at /meshes/0/primitives/"), std::string::npos) << refused;
-    EXPECT_NE(refused.find("name the same data again and again"), std::string::npos) << refused;
+    EXPECT_NE(refused.find("refer to the same data repeatedly"), std::string::npos) << refused;
 }
 
-TEST(FeatureGlb, FreeOutlinesComeBackToTheBit) {
+TEST(FeatureGlb, FreeOutlinesRoundTripExactly) {
     const Mesh mesh = spheres(3);
     AnnotationSet set;
     set.annotations.resize(2);

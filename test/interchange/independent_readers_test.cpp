@@ -16,7 +16,7 @@ bool runs(const std::string& command) { return std::system((command + " > /dev/n
 
 }  // namespace
 
-TEST(IndependentReaders, XmllintTakesPickedPoints) {
+TEST(IndependentReaders, XmllintAcceptsPickedPoints) {
     if (!runs("xmllint --version")) GTEST_SKIP() << "xmllint (package libxml2-utils) is not installed";
     const Mesh mesh = spheres(3);
     std::vector<std::string> notes;

@@ -35,7 +35,7 @@ struct Folder : Scratch {
 
 }  // namespace
 
-TEST(InterchangeCommand, EveryFormatGoesOutAndComesIn) {
+TEST(InterchangeCommand, EveryFormatIsExportedAndImported) {
     const Folder folder;
     const std::vector<std::pair<std::string, std::string>> formats{{"t.csv", ""},      {"l.csv", "--format landmarks-csv"},
                                                                    {"l.tps", ""},      {"l.pp", ""},
@@ -54,9 +54,9 @@ TEST(InterchangeCommand, EveryFormatGoesOutAndComesIn) {
         const auto in = folder.run("import", {file, "back.ant.json"}, onto + " --json");
         ASSERT_EQ(in.code, 0) << file << in.err;
         validate(parse_json(in.out, "report"), "report", "report");
-        const bool whole = file == "t.csv" || file == "w.jsonld" || file == "f.glb";
+        const bool lossless = file == "t.csv" || file == "w.jsonld" || file == "f.glb";
         const auto diff = folder.run("diff", {"a.ant.json", "back.ant.json"});
-        EXPECT_EQ(diff.code, whole ? 0 : 3) << file << diff.out;
+        EXPECT_EQ(diff.code, lossless ? 0 : 3) << file << diff.out;
         EXPECT_EQ(diff.out.find('\x01'), std::string::npos) << "no control character reaches a terminal";
     }
 }
@@ -85,11 +85,11 @@ TEST(InterchangeCommand, BadInputLeavesOutputsAlone) {
         refused(folder.run("import", {name, "out.ant.json"}), 1, std::string(name) + ": is empty");
     }
     (void)folder.file("no.pp", "<PickedPoints></PickedPoints>");
-    refused(folder.run("import", {"no.pp", "out.ant.json"}), 1, "no.pp: holds no landmarks");
+    refused(folder.run("import", {"no.pp", "out.ant.json"}), 1, "no.pp: contains no landmarks");
     (void)folder.file("no.csv", "name,x,y,z\n");
-    refused(folder.run("import", {"no.csv", "out.ant.json"}), 1, "no.csv: holds no landmarks");
+    refused(folder.run("import", {"no.csv", "out.ant.json"}), 1, "no.csv: contains no landmarks");
     (void)folder.file("no.fcsv", "# CoordinateSystem = LPS\n");
-    refused(folder.run("import", {"no.fcsv", "out.ant.json"}), 1, "no.fcsv: holds no landmarks");
+    refused(folder.run("import", {"no.fcsv", "out.ant.json"}), 1, "no.fcsv: contains no landmarks");
     (void)folder.file("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
     (void)folder.file("one.csv", "name,x,y,z\na,0,0,0\n");
     const auto flat =
@@ -169,7 +169,7 @@ TEST(InterchangeCommand, EditOfClassUnitAndUp) {
     EXPECT_FALSE(std::filesystem::exists(folder / "p.ant.json"));
 }
 
-TEST(InterchangeCommand, WhatIsWrittenIsCounted) {
+TEST(InterchangeCommand, WrittenAnnotationsAreCounted) {
     const Folder folder;
     AnnotationSet set;
     set.unit = "mm";
@@ -207,7 +207,7 @@ TEST(InterchangeCommand, WhatIsWrittenIsCounted) {
     EXPECT_EQ(parse_json(report.out, "report")["result"]["annotations"].GetInt(), 1);
 }
 
-TEST(InterchangeCommand, TablesCutNoText) {
+TEST(InterchangeCommand, TablesKeepLongTexts) {
     const Folder folder;
     const std::string text = std::string(150, 'x') + "end";
     const auto edited = folder.run("edit", {"a.ant.json", "b.ant.json"}, "--annotation 3 --attribute note=" + text);

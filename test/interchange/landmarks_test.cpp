@@ -28,16 +28,16 @@ LandmarkSet wild_landmarks() {
 
 /// What the format's own limits make of a name.
 std::string kept_name(const std::string& name, LandmarkFormat format) {
-    std::string kept;
+    std::string result;
     for (std::size_t i = 0; i < name.size();) {
         const auto [code, length] = character_at(name, i);
         const bool control = is_control(code), blank = code == '\t' || code == '\n' || code == '\r';
-        if (format == LandmarkFormat::fcsv && control) kept += ' ';
-        else if (format == LandmarkFormat::pp && control && !blank) kept += "\xEF\xBF\xBD";
-        else kept += name.substr(i, length);
+        if (format == LandmarkFormat::fcsv && control) result += ' ';
+        else if (format == LandmarkFormat::pp && control && !blank) result += "\xEF\xBF\xBD";
+        else result += name.substr(i, length);
         i += length;
     }
-    return kept;
+    return result;
 }
 
 std::string written(const LandmarkSet& set, LandmarkFormat format, const LandmarkFileOptions& options = {}) {
@@ -56,7 +56,7 @@ std::string message(const std::function<void()>& work) {
 
 }  // namespace
 
-TEST(Landmarks, EveryFormatComesBackToTheBit) {
+TEST(Landmarks, EveryFormatRoundTripsExactly) {
     const LandmarkSet set = wild_landmarks();
     for (const LandmarkFormat format : all_formats) {
         const std::string text = written(set, format);
@@ -72,7 +72,7 @@ TEST(Landmarks, EveryFormatComesBackToTheBit) {
     }
 }
 
-TEST(Landmarks, TextStaysData) {
+TEST(Landmarks, TextIsNeverExecutable) {
     const LandmarkSet set = wild_landmarks();
     EXPECT_EQ(occurrences(written(set, LandmarkFormat::mrk), "<"), 0U);
     EXPECT_EQ(occurrences(written(set, LandmarkFormat::tps), "<script"), 0U);
@@ -88,7 +88,7 @@ TEST(Landmarks, TextStaysData) {
     }
 }
 
-TEST(Landmarks, SpacesAreTurned) {
+TEST(Landmarks, AnatomicalSpacesAreConverted) {
     LandmarkSet set;
     set.landmarks = {{"a", {1, 2, 3}, {}}};
     for (const LandmarkFormat format : {LandmarkFormat::mrk, LandmarkFormat::fcsv}) {
@@ -108,7 +108,7 @@ TEST(Landmarks, SpacesAreTurned) {
     EXPECT_EQ(first("# CoordinateSystem = 1" + row), 1);
     EXPECT_EQ(first("# CoordinateSystem = LPS" + row), 1);
     EXPECT_EQ(first(row), -1);
-    EXPECT_NE(message([&] { first("# CoordinateSystem = IJK" + row); }).find("not known"), std::string::npos);
+    EXPECT_NE(message([&] { first("# CoordinateSystem = IJK" + row); }).find("unknown coordinate system"), std::string::npos);
     // Tables that 3D Slicer exports.
     const std::string table = "label,r,a,s,defined\nF-1,1,2,3,1\nF-2,4,5,6,0\n";
     const LandmarkSet read = landmarks_from_text(table, LandmarkFormat::csv, "f");
@@ -117,7 +117,7 @@ TEST(Landmarks, SpacesAreTurned) {
     EXPECT_EQ(read.notes.size(), 1U);
 }
 
-TEST(Landmarks, WhatOtherToolsWrite) {
+TEST(Landmarks, FilesOfOtherToolsAreRead) {
     const auto csv = [](const std::string& text) { return landmarks_from_text(text, LandmarkFormat::csv, "f"); };
     EXPECT_EQ(csv("1.5,2,3\n4,5,6\n").landmarks.at(1).position, (std::array<double, 3>{4, 5, 6}));
     EXPECT_EQ(csv("nasion;1.5;2;3\n").landmarks.at(0).name, "nasion");
@@ -132,7 +132,7 @@ TEST(Landmarks, WhatOtherToolsWrite) {
     EXPECT_EQ(tps(two, "first").landmarks.size(), 1U);
     EXPECT_EQ(tps(two, "2").landmarks.at(0).position, (std::array<double, 3>{-4, 0.5, 6}));
     EXPECT_NE(message([&] { tps(two); }).find("2 specimens"), std::string::npos);
-    EXPECT_NE(message([&] { tps("LM=2\n1 2\n"); }).find("two dimensions"), std::string::npos);
+    EXPECT_NE(message([&] { tps("LM=2\n1 2\n"); }).find("two-dimensional"), std::string::npos);
     EXPECT_NE(message([&] { tps("LM3=3\n1 2 3\n"); }).find("fewer"), std::string::npos);
     const auto pp = landmarks_from_text(
         "<!DOCTYPE PickedPoints>\n<PickedPoints><DocumentData><User name=\"u\"/></DocumentData>"
@@ -150,7 +150,7 @@ TEST(Landmarks, WhatOtherToolsWrite) {
     EXPECT_EQ(hostile.landmarks.at(0).name, "&e;");
 }
 
-TEST(Landmarks, PointsAndLinesOfASetComeBack) {
+TEST(Landmarks, PointsAndLinesRoundTrip) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     for (const LandmarkFormat format : all_formats) {
@@ -179,12 +179,12 @@ TEST(Landmarks, PointsAndLinesOfASetComeBack) {
     }
 }
 
-TEST(Landmarks, FarPlacesAreRefusedOrLeftOut) {
+TEST(Landmarks, FarPointsAreRefusedOrSkipped) {
     const Mesh mesh = spheres(3, {{100, 200, 0}});
     LandmarkSet set;
     set.landmarks = {{"near", {101.001, 200, 0}, {}}, {"far", {101, 203, 0}, {}}};
     const std::string refusal = message([&] { place_landmarks(mesh, set, "file"); });
-    EXPECT_NE(refusal.find("1 place of 2"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("1 point of 2"), std::string::npos) << refusal;
     EXPECT_NE(refusal.find("'far'"), std::string::npos) << refusal;
     PlaceOptions skip;
     skip.skip_far = true;
@@ -238,7 +238,7 @@ TEST(Landmarks, DegenerateInput) {
     }
 }
 
-TEST(Landmarks, DamagedFilesEndInAClearError) {
+TEST(Landmarks, DamagedFilesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(2);
     LandmarkSet set = landmarks_of(spheres(3), wild_set(spheres(3)));
     for (const LandmarkFormat format : all_formats) {
@@ -259,7 +259,7 @@ TEST(Landmarks, DamagedFilesEndInAClearError) {
     }
 }
 
-TEST(Landmarks, FormulasAreMarkedWhereverACellMayBegin) {
+TEST(Landmarks, FormulasAreEscapedWhereverACellMayBegin) {
     const auto marked = [](const std::string& name) {
         LandmarkSet set;
         set.landmarks.push_back({name, {}, {}});
@@ -276,11 +276,11 @@ TEST(Landmarks, FormulasAreMarkedWhereverACellMayBegin) {
         EXPECT_FALSE(marked(plain)) << plain;
 }
 
-TEST(Landmarks, PlacesBeyondWhatMeshesMayHaveAreRefusedWithTheirLine) {
-    const auto refused = [](const std::string& text, LandmarkFormat format, const std::string& at) {
-        const std::string said = message([&] { (void)landmarks_from_text(text, format, "file"); });
-        EXPECT_NE(said.find("file, " + at), std::string::npos) << said;
-        EXPECT_NE(said.find("1e+60"), std::string::npos) << said;
+TEST(Landmarks, PositionsOutOfRangeAreRefusedWithTheirLine) {
+    const auto refused = [](const std::string& text, LandmarkFormat format, const std::string& location) {
+        const std::string text_of_error = message([&] { (void)landmarks_from_text(text, format, "file"); });
+        EXPECT_NE(text_of_error.find("file, " + location), std::string::npos) << text_of_error;
+        EXPECT_NE(text_of_error.find("1e+60"), std::string::npos) << text_of_error;
     };
     for (const std::string huge : {"2e307", "-1.7e308", "1.1e60"}) {
         refused("name,x,y,z\na,0,0,0\nb,0," + huge + ",0\n", LandmarkFormat::csv, "line 3");

@@ -9,7 +9,7 @@
 using namespace ostraka;
 using namespace ostraka::example;
 
-TEST(PrototypeFiles, AnnotationsComeBack) {
+TEST(PrototypeFiles, AnnotationsRoundTrip) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     std::vector<std::string> notes;
@@ -37,23 +37,23 @@ TEST(PrototypeFiles, AnnotationsComeBack) {
         EXPECT_EQ(after.faces, before.faces) << before.tag;
         ASSERT_EQ(after.attributes.size(), before.attributes.size());
         for (std::size_t k = 0; k < before.attributes.size(); ++k) {
-            const Attribute &there = before.attributes[k], &here = after.attributes[k];
-            EXPECT_EQ(here.name, there.name);
-            if (there.type == AttributeType::semantic) {
-                EXPECT_EQ(here.note, there.note);
+            const Attribute &expected = before.attributes[k], &actual = after.attributes[k];
+            EXPECT_EQ(actual.name, expected.name);
+            if (expected.type == AttributeType::semantic) {
+                EXPECT_EQ(actual.note, expected.note);
             }
-            if (there.type != AttributeType::measure) continue;
-            EXPECT_EQ(here.measure.points, there.measure.points);
-            EXPECT_EQ(here.measure.tool, there.measure.tool);
-            EXPECT_EQ(here.measure.direction, there.measure.direction);
-            if (there.measure.value) {
-                EXPECT_EQ(here.measure.value, there.measure.value);
+            if (expected.type != AttributeType::measure) continue;
+            EXPECT_EQ(actual.measure.points, expected.measure.points);
+            EXPECT_EQ(actual.measure.tool, expected.measure.tool);
+            EXPECT_EQ(actual.measure.direction, expected.measure.direction);
+            if (expected.measure.value) {
+                EXPECT_EQ(actual.measure.value, expected.measure.value);
             }
         }
     }
 }
 
-TEST(PrototypeFiles, FacetsComeBack) {
+TEST(PrototypeFiles, FacetsRoundTrip) {
     const Mesh mesh = spheres(3, {{0, 0, 0}, {3, 0, 0}});
     AnnotationSet set = wild_set(mesh);
     set.annotations.back().attributes.push_back(semantic(0, "facet", "fracture"));
@@ -93,11 +93,11 @@ TEST(PrototypeFiles, FacetsComeBack) {
         if (line == "Border:") border = true;
         turned += line + "\n";
     }
-    const AnnotationSet again = read_prototype_facets(turned, mesh, "f");
-    for (std::size_t i = 0; i < regions.size(); ++i) EXPECT_EQ(again.annotations[i].faces, regions[i]->faces);
+    const AnnotationSet reread = read_prototype_facets(turned, mesh, "f");
+    for (std::size_t i = 0; i < regions.size(); ++i) EXPECT_EQ(reread.annotations[i].faces, regions[i]->faces);
 }
 
-TEST(PrototypeFiles, DamagedFacetsEndInAClearError) {
+TEST(PrototypeFiles, DamagedFacetsAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3);
     std::vector<std::string> notes;
     const std::string facets = prototype_facets(mesh, wild_set(mesh), "m.ply", notes),

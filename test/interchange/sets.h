@@ -154,9 +154,10 @@ inline std::string as_file(const AnnotationSet& set, const Mesh& mesh) {
 }
 
 /// Checks that `whole` does not contain `part` outside of quoted data.
-inline std::size_t occurrences(const std::string& whole, const std::string& part) {
+inline std::size_t occurrences(const std::string& text, const std::string& searched) {
     std::size_t count = 0;
-    for (std::size_t at = whole.find(part); at != std::string::npos; at = whole.find(part, at + 1)) ++count;
+    for (std::size_t position = text.find(searched); position != std::string::npos; position = text.find(searched, position + 1))
+        ++count;
     return count;
 }
 

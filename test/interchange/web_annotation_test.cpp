@@ -30,15 +30,15 @@ Mesh shuffled(const Mesh& mesh) {
 
 /// The places of the corners of a region's faces, in an order that does not depend on indices.
 std::vector<std::array<Point, 3>> triangles_of(const Mesh& mesh, const Annotation& annotation) {
-    std::vector<std::array<Point, 3>> list;
+    std::vector<std::array<Point, 3>> triangles;
     for (const Index f : annotation.faces) {
         const auto [a, b, c] = corners(mesh, Face(f));
         std::array<Point, 3> triangle{mesh.point(a), mesh.point(b), mesh.point(c)};
         std::sort(triangle.begin(), triangle.end());
-        list.push_back(triangle);
+        triangles.push_back(triangle);
     }
-    std::sort(list.begin(), list.end());
-    return list;
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
 }
 
 double area_of(const Mesh& mesh, const Annotation& annotation) { return measure_region(mesh, annotation.faces).area; }
@@ -54,7 +54,7 @@ std::string message(const std::string& text, const Mesh& mesh, const PlaceOption
 
 }  // namespace
 
-TEST(WebAnnotation, ComesBackWholeByIndices) {
+TEST(WebAnnotation, RoundTripsByIndices) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     const std::string text = web_annotations(mesh, set, "m <1>.ply", {});
@@ -64,7 +64,7 @@ TEST(WebAnnotation, ComesBackWholeByIndices) {
     EXPECT_EQ(web_annotations(mesh, set, "m <1>.ply", {}), text);
 }
 
-TEST(WebAnnotation, IsOfTheModelAndSafeInAPage) {
+TEST(WebAnnotation, ConformsToTheModelAndIsSafeInAPage) {
     const Mesh mesh = spheres(3);
     const AnnotationSet set = wild_set(mesh);
     const std::string text = web_annotations(mesh, set, "m <1>.ply", {});
@@ -151,7 +151,7 @@ TEST(WebAnnotation, AnotherResolutionKeepsPlacesAndAreas) {
     }
 }
 
-TEST(WebAnnotation, WhatOthersWrite) {
+TEST(WebAnnotation, AnnotationsOfOtherToolsAreRead) {
     const Mesh mesh = spheres(2);
     const std::string foreign =
         R"({"@context": "http://www.w3.org/ns/anno.jsonld", "id": "http://example.org/anno1", "type": "Annotation",
@@ -166,14 +166,14 @@ TEST(WebAnnotation, WhatOthersWrite) {
     const std::string fragment =
         R"([{"type": "Annotation", "bodyValue": "text", "target": {"source": "x", "selector": {"type": "FragmentSelector", "value": "a"}}}])";
     EXPECT_NE(message(fragment, mesh).find("none of its annotations"), std::string::npos);
-    EXPECT_NE(message(R"({"type": "AnnotationCollection", "first": "http://example.org/page1"})", mesh).find("elsewhere"),
+    EXPECT_NE(message(R"({"type": "AnnotationCollection", "first": "http://example.org/page1"})", mesh).find("not embedded"),
               std::string::npos);
-    EXPECT_NE(message(R"({"a": 1})", mesh).find("holds no Annotation"), std::string::npos);
+    EXPECT_NE(message(R"({"a": 1})", mesh).find("contains no Annotation"), std::string::npos);
     EXPECT_NE(message(R"({"type": "Annotation"})", mesh).find("required"), std::string::npos);
     EXPECT_TRUE(read_web_annotations("[]", mesh, "f").set.annotations.empty());
 }
 
-TEST(WebAnnotation, FarPlacesAreRefusedOrLeftOut) {
+TEST(WebAnnotation, FarPointsAreRefusedOrSkipped) {
     const Mesh mesh = spheres(3);
     const std::string text = web_annotations(mesh, wild_set(mesh), "m.ply", {});
     const Mesh moved = spheres(3, {{50, 0, 0}});
@@ -184,7 +184,7 @@ TEST(WebAnnotation, FarPlacesAreRefusedOrLeftOut) {
     EXPECT_EQ(read.set.annotations.size(), 1U) << "only the whole is left";
 }
 
-TEST(WebAnnotation, DamagedFilesEndInAClearError) {
+TEST(WebAnnotation, DamagedFilesAreRefusedWithAMessage) {
     const Mesh mesh = spheres(3), other = shuffled(mesh);
     AnnotationSet set = wild_set(mesh);
     const std::string text = web_annotations(mesh, set, "m.ply", {});
@@ -203,15 +203,15 @@ TEST(WebAnnotation, DamagedFilesEndInAClearError) {
     EXPECT_LT(successes, 400U);
 }
 
-TEST(WebAnnotation, PlacesBeyondWhatMeshesMayHaveAreRefused) {
+TEST(WebAnnotation, PositionsOutOfRangeAreRefused) {
     const Mesh mesh = spheres(2);
     for (const std::string places :
          {R"({"points": [[0, 0, 2e307]]})", R"({"polylines": [{"closed": false, "points": [[0, 0, 1], [-1e61, 0, 0]]}]})",
           R"({"parts": [{"area": 1, "inside": [1e300, 0, 0], "outlines": []}]})"}) {
-        const std::string said = message(
+        const std::string text_of_error = message(
             R"({"type": "Annotation", "bodyValue": "a", "target": {"source": "x", "selector": {"type": "ostraka:PlaceSelector", "places": )" +
                 places + "}}}",
             mesh);
-        EXPECT_NE(said.find("1e+60"), std::string::npos) << said;
+        EXPECT_NE(text_of_error.find("1e+60"), std::string::npos) << text_of_error;
     }
 }

@@ -42,7 +42,7 @@ TriangleSoup fan(Index count, double apex) {
 
 }  // namespace
 
-TEST(BoundedWork, ALargeConvexPolygonHasNoVertexOfMany) {
+TEST(BoundedWork, ALargeConvexPolygonHasNoVertexOfHighValence) {
     std::vector<Place> points;
     constexpr Index count = 20000;
     for (Index i = 0; i < count; ++i) points.push_back(on_circle(static_cast<double>(i) / count));
@@ -53,12 +53,12 @@ TEST(BoundedWork, ALargeConvexPolygonHasNoVertexOfMany) {
     for (const auto& t : result.soup.triangles)
         for (const Index v : t) ++valence[v];
     EXPECT_LT(*std::max_element(valence.begin(), valence.end()), 40);
-    const SelfIntersections found = self_intersections(result.soup);
-    EXPECT_TRUE(found.complete);
-    EXPECT_TRUE(found.pairs.empty());
+    const SelfIntersections intersections = self_intersections(result.soup);
+    EXPECT_TRUE(intersections.complete);
+    EXPECT_TRUE(intersections.pairs.empty());
 }
 
-TEST(BoundedWork, PolygonsThatCannotBeCutEnd) {
+TEST(BoundedWork, PolygonsThatCannotBeTriangulatedTerminate) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> anywhere(0, 1);
     std::vector<Place> line, crossing, one_place(20000, {1, 2, 3});
@@ -76,19 +76,19 @@ TEST(BoundedWork, PolygonsThatCannotBeCutEnd) {
 
 TEST(BoundedWork, AFanAroundOneVertexIsSearchedInFull) {
     for (const double apex : {0.0, 0.4}) {  // flat, and a cone
-        const SelfIntersections found = self_intersections(fan(20000, apex));
-        EXPECT_TRUE(found.complete);
-        EXPECT_TRUE(found.pairs.empty());
+        const SelfIntersections intersections = self_intersections(fan(20000, apex));
+        EXPECT_TRUE(intersections.complete);
+        EXPECT_TRUE(intersections.pairs.empty());
     }
     // A triangle folded into the fan meets those whose directions it covers.
     TriangleSoup folded = fan(1000, 0.4);
     folded.points.push_back(on_circle(0.1001, 0.001));
     folded.points.push_back(on_circle(0.1039, -0.001));
     folded.triangles.push_back({0, 1001, 1002});
-    const SelfIntersections found = self_intersections(folded);
-    EXPECT_TRUE(found.complete);
-    EXPECT_FALSE(found.pairs.empty());
-    for (const auto& [a, b] : found.pairs) EXPECT_EQ(b, 1000U);
+    const SelfIntersections intersections = self_intersections(folded);
+    EXPECT_TRUE(intersections.complete);
+    EXPECT_FALSE(intersections.pairs.empty());
+    for (const auto& [a, b] : intersections.pairs) EXPECT_EQ(b, 1000U);
 }
 
 TEST(BoundedWork, PairsAroundAVertexAreThoseThatMeetAlone) {
@@ -111,7 +111,7 @@ TEST(BoundedWork, PairsAroundAVertexAreThoseThatMeetAlone) {
     EXPECT_EQ(self_intersections(soup).pairs, expected);
 }
 
-TEST(BoundedWork, HeapsOfPointsAndFacesEnd) {
+TEST(BoundedWork, CoincidentPointsAndFacesTerminate) {
     constexpr Index count = 8000;
     TriangleSoup one_place, book{{{0, 0, 0}, {0, 0, 1}}, {}}, apart;
     for (Index i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ TEST(BoundedWork, HeapsOfPointsAndFacesEnd) {
     EXPECT_GE(crack_width(apart), 0);
 }
 
-TEST(BoundedWork, ShellsWithinShellsEnd) {
+TEST(BoundedWork, NestedShellsTerminate) {
     TriangleSoup soup;
     for (Index i = 0; i < 3000; ++i) {
         const double r = 1 + 0.01 * i;
@@ -142,7 +142,7 @@ TEST(BoundedWork, ShellsWithinShellsEnd) {
     EXPECT_EQ(diagnose(soup, {.skip_self_intersections = true}).components.size(), 3000U);
 }
 
-TEST(BoundedWork, CountsThatAreOnlyAnnouncedAreRefused) {
+TEST(BoundedWork, DeclaredCountsWithoutDataAreRefused) {
     const Scratch scratch;
     const auto refused = [&](const std::string& name, const std::string& text) {
         const Path file = scratch / name;

@@ -13,8 +13,8 @@ namespace {
 
 const std::string quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\nf 1 2\n";
 
-std::string words(const Path& a, const Path& b, const std::string& more = {}) {
-    return "mesh convert " + a.string() + " " + b.string() + " " + more;
+std::string words(const Path& a, const Path& b, const std::string& options = {}) {
+    return "mesh convert " + a.string() + " " + b.string() + " " + options;
 }
 
 }  // namespace
@@ -49,14 +49,14 @@ TEST(ConvertCommand, PolygonsAreCutAndMapped) {
     validate(map, "map", "map.json");
     EXPECT_EQ(map["from"].GetInt(), 4);
     EXPECT_EQ(map["to"].GetInt(), 3);
-    std::vector<int> list;
-    for (const auto& entry : map["map"].GetArray()) list.push_back(entry.GetInt());
-    EXPECT_EQ(list, (std::vector<int>{0, 0, 1, 1}));
+    std::vector<int> triangle_polygon;
+    for (const auto& entry : map["map"].GetArray()) triangle_polygon.push_back(entry.GetInt());
+    EXPECT_EQ(triangle_polygon, (std::vector<int>{0, 0, 1, 1}));
     EXPECT_NE(read_file(scratch / "a.ply").find("format ascii"), std::string::npos);
     EXPECT_NE(result.err.find("fewer than three distinct corners"), std::string::npos);
 }
 
-TEST(ConvertCommand, PolygonsAreHandedBack) {
+TEST(ConvertCommand, PolygonsOfAnotherFileAreRestored) {
     const Scratch scratch;
     const Path input = scratch.file("a.obj", quads), bent = scratch / "bent.ply";
     ASSERT_EQ(run_command(words(input, scratch / "a.ply")).code, 0);
@@ -80,20 +80,20 @@ TEST(ConvertCommand, PolygonsAreHandedBack) {
     // Formats of triangles keep them, and say so.
     const auto cut = run_command(words(bent, scratch / "b.stl", "--polygons-of " + input.string()));
     EXPECT_EQ(cut.code, 0);
-    EXPECT_NE(cut.err.find("cut into triangles"), std::string::npos) << cut.err;
+    EXPECT_NE(cut.err.find("they are triangulated"), std::string::npos) << cut.err;
     // Of another mesh.
-    for (const char* other :
+    for (const char* obj :
          {"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\n",
           "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 2 5 6 3\nf 1 2 3 4\n"}) {
-        const Path wrong = scratch.file("wrong.obj", other);
-        const auto result = run_command(words(bent, scratch / "c.obj", "--polygons-of " + wrong.string()));
+        const Path other_mesh = scratch.file("wrong.obj", obj);
+        const auto result = run_command(words(bent, scratch / "c.obj", "--polygons-of " + other_mesh.string()));
         EXPECT_EQ(result.code, 1) << result.err;
         EXPECT_NE(result.err.find("read from at first"), std::string::npos) << result.err;
         EXPECT_FALSE(std::filesystem::exists(scratch / "c.obj"));
     }
 }
 
-TEST(ConvertCommand, LossesAreSaid) {
+TEST(ConvertCommand, LossesAreReported) {
     const Scratch scratch;
     write_triangles(scratch / "a.ply", octahedron(), full_extras(octahedron()));
     const auto result = run_command(words(scratch / "a.ply", scratch / "a.stl"));
@@ -111,7 +111,7 @@ TEST(ConvertCommand, NonManifoldFilesAreConverted) {
     EXPECT_EQ(read_polygons(scratch / "a.off").polygon_count(), 9U);
 }
 
-TEST(ConvertCommand, WrongUsageIsTwo) {
+TEST(ConvertCommand, WrongUsageExitsWithTwo) {
     const Scratch scratch;
     const Path input = scratch.file("a.obj", quads);
     const std::string before = read_file(input);
@@ -129,7 +129,7 @@ TEST(ConvertCommand, WrongUsageIsTwo) {
     EXPECT_EQ(count_files(scratch.path()), 2U);
 }
 
-TEST(ConvertCommand, FailuresAreOneAndLeaveNothingBehind) {
+TEST(ConvertCommand, FailuresExitWithOneAndLeaveNoFiles) {
     const Scratch scratch;
     const Path input = scratch.file("a.obj", quads);
     const Path earlier = scratch.file("earlier.ply", "what stood here");

@@ -95,15 +95,15 @@ TEST(Diagnose, FlippedTriangleIsFound) {
 TEST(Diagnose, InsideOutAndCavity) {
     auto inner = cube({0.25, 0.25, 0.25}, 0.5);
     for (std::size_t t = 0; t < 12; ++t) flip(inner, t);
-    const auto alone = diagnose(inner);
-    EXPECT_EQ(alone.inside_out_components, 1u);
-    EXPECT_FALSE(sound(alone));
+    const auto separate_inner = diagnose(inner);
+    EXPECT_EQ(separate_inner.inside_out_components, 1u);
+    EXPECT_FALSE(sound(separate_inner));
     const auto hollow = diagnose(both(cube(), inner));
     EXPECT_EQ(hollow.cavities, 1u);
     EXPECT_TRUE(sound(hollow)) << hollow.defects().front();
     EXPECT_DOUBLE_EQ(hollow.volume, 1 - 0.125);
-    const auto beside = diagnose(both(cube({5, 5, 5}), inner));
-    EXPECT_EQ(beside.inside_out_components, 1u);
+    const auto disjoint = diagnose(both(cube({5, 5, 5}), inner));
+    EXPECT_EQ(disjoint.inside_out_components, 1u);
 }
 
 TEST(Diagnose, MoebiusStripCannotBeOriented) {
@@ -124,9 +124,9 @@ TEST(Diagnose, CubesThatShareAnEdgeOrAVertex) {
     EXPECT_EQ(vertex.nonmanifold_vertices, 1u);
     EXPECT_FALSE(sound(vertex));
     // Touching without being joined is no defect: vertices at one place count as joined.
-    const auto apart = diagnose(both(cube(), cube({1, 1, 1})));
-    EXPECT_TRUE(sound(apart));
-    EXPECT_EQ(apart.duplicate_vertices, 1u);
+    const auto touching = diagnose(both(cube(), cube({1, 1, 1})));
+    EXPECT_TRUE(sound(touching));
+    EXPECT_EQ(touching.duplicate_vertices, 1u);
 }
 
 TEST(Diagnose, DuplicatesDegeneratesAndIsolatedVerticesAreCounted) {
@@ -181,7 +181,7 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
             s.triangles.push_back({v, v + 1, v + 2});
         }
         std::vector<std::pair<Index, Index>> expected;
-        const auto found = self_intersections(s).pairs;
+        const auto intersections = self_intersections(s).pairs;
         for (Index a = 0; a < 40; ++a)
             for (Index b = a + 1; b < 40; ++b) {
                 const auto triangle = [&](Index t) {
@@ -197,7 +197,7 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomTriangles) {
                 int shared = 0;
                 for (const auto& x : p)
                     for (const auto& y : q) shared += x == y;
-                const bool listed = std::find(found.begin(), found.end(), std::pair{a, b}) != found.end();
+                const bool listed = std::find(intersections.begin(), intersections.end(), std::pair{a, b}) != intersections.end();
                 if (shared == 0) {
                     EXPECT_EQ(listed,
                               CGAL::do_intersect(Kernel::Triangle_3(p[0], p[1], p[2]), Kernel::Triangle_3(q[0], q[1], q[2])))
@@ -229,20 +229,20 @@ TEST(SelfIntersections, SharedVertexAndEdge) {
 TEST(SelfIntersections, DoNotDependOnThreads) {
     const auto s = both(sphere(20, 40), sphere(20, 40, 1, {0.3, 0.2, 0.1}));
     set_threads(1);
-    const auto one = self_intersections(s).pairs;
+    const auto single_thread = self_intersections(s).pairs;
     set_threads(4);
     const auto four = self_intersections(s).pairs;
     set_threads(0);
-    EXPECT_GT(one.size(), 0u);
-    EXPECT_EQ(one, four);
+    EXPECT_GT(single_thread.size(), 0u);
+    EXPECT_EQ(single_thread, four);
 }
 
 TEST(SelfIntersections, CountIsBoundedOnStackedTriangles) {
     TriangleSoup s{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}};
     s.triangles.assign(20000, {0, 1, 2});
-    const auto found = self_intersections(s, 1000);
-    EXPECT_FALSE(found.complete);
-    EXPECT_EQ(found.pairs.size(), 1000u);
+    const auto intersections = self_intersections(s, 1000);
+    EXPECT_FALSE(intersections.complete);
+    EXPECT_EQ(intersections.pairs.size(), 1000u);
 }
 
 TEST(OrientedBox, IsFoundForATurnedBox) {

@@ -99,7 +99,7 @@ TEST(Glb, FaceColoursSplitTheVertices) {
     EXPECT_STREQ(glb.json["materials"][0]["alphaMode"].GetString(), "BLEND");
 }
 
-TEST(Glb, WhatItCannotHoldIsRefusedOrSaid) {
+TEST(Glb, UnsupportedDataIsRefusedOrReported) {
     const Scratch scratch;
     TriangleSoup soup = octahedron();
     soup.points[0][0] = 0.1;

@@ -172,7 +172,7 @@ TEST(Ply, VectorsOfTheVertices) {
     EXPECT_THROW(vectors(start + "element vertex 2\n" + normals + "end_header\n1 0 0\n0 x 0\n"), Error);
 }
 
-TEST(Ply, HeadersThatLieAreRefusedBeforeMemoryIsTaken) {
+TEST(Ply, FalseHeadersAreRefusedBeforeAllocation) {
     for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
         const std::string start = std::string("ply\nformat ") + format + " 1.0\n";
         EXPECT_TRUE(has(refusal("a.ply", start + "element vertex 1000000000\n" + ply_xyz + "end_header\n0 0 0\n"), "1000000000"));
@@ -306,10 +306,10 @@ TEST(ReadPolygons, ContentWinsOverAWrongExtension) {
     std::filesystem::rename(scratch / "a.ply", scratch / "a.STL");
     const auto soup = read_polygons(scratch / "a.STL");
     EXPECT_EQ(soup.points, octahedron().points);
-    EXPECT_TRUE(has_note(soup.notes, "holds PLY"));
+    EXPECT_TRUE(has_note(soup.notes, "contains PLY"));
 }
 
-TEST(ReadPolygons, WhatIsNoMeshFileIsRefused) {
+TEST(ReadPolygons, OtherFilesAreRefused) {
     const Scratch scratch;
     EXPECT_TRUE(has(refusal("a.obj", ""), "is empty"));
     EXPECT_THROW(read_polygons(scratch / "missing.ply"), Error);
@@ -334,7 +334,7 @@ TEST(ReadMesh, SizesBeyondNumbersAreRefused) {
         return std::string();
     };
     for (const char* at : {"1 1 1", "0 0 0", "1e-80 0 0"})
-        EXPECT_TRUE(has(message(std::string("v ") + at + "\nv " + at + "\nv " + at + "\nf 1 2 3\n"), "has no size")) << at;
+        EXPECT_TRUE(has(message(std::string("v ") + at + "\nv " + at + "\nv " + at + "\nf 1 2 3\n"), "has no extent")) << at;
     for (const char* unit : {"e-80", "e-200", "e70"})
         EXPECT_TRUE(has(message(std::string("v 0 0 0\nv 1") + unit + " 0 0\nv 0 1" + unit + " 0\nf 1 2 3\n"), "1e-60 to 1e60"))
             << unit;
@@ -365,7 +365,7 @@ TEST(ReadMesh, OnlyOrientedManifoldsPass) {
     EXPECT_EQ(mesh.triangle_polygon, (Corners{0, 0}));
 }
 
-TEST(ReadPolygons, EveryDefectiveFileIsReadOrRefusedWithWords) {
+TEST(ReadPolygons, EveryDefectiveFileIsReadOrRefusedWithAMessage) {
     const Path data = OSTRAKA_SHARED_DATA;
     if (!std::filesystem::is_directory(data / "broken")) GTEST_SKIP() << "no " << data;
     std::size_t files = 0, refused = 0;

@@ -62,7 +62,7 @@ void write_off(const std::string& file, const TriangleSoup& s) {
 
 }  // namespace
 
-TEST(MeshInfoCommand, TellsSoundFromBroken) {
+TEST(MeshInfoCommand, DistinguishesSoundFromDefective) {
     const Folder folder;
     write_off(folder.file("cube.off"), cube());
     const Outcome good = run(folder, "mesh info " + folder.file("cube.off") + " --json");
@@ -90,18 +90,18 @@ TEST(MeshInfoCommand, TellsSoundFromBroken) {
 TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
     const Folder folder;
     // Every triangle on corners of its own, each off its place by up to a thousandth of the radius.
-    const TriangleSoup whole = sphere();
+    const TriangleSoup intact = sphere();
     TriangleSoup torn;
     std::uint32_t state = 1;
     const auto jitter = [&state] {
         state = state * 1664525U + 1013904223U;
         return 1e-3 * (static_cast<double>(state >> 8) / (1U << 23) - 1);
     };
-    for (const auto& triangle : whole.triangles) {
+    for (const auto& triangle : intact.triangles) {
         std::array<Index, 3> corners{};
         for (std::size_t k = 0; k < 3; ++k) {
             corners[k] = static_cast<Index>(torn.points.size());
-            Place place = whole.points[triangle[k]];
+            Place place = intact.points[triangle[k]];
             for (double& x : place) x += jitter();
             torn.points.push_back(place);
         }
@@ -110,9 +110,9 @@ TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
     write_off(folder.file("torn.off"), torn);
     const Outcome info = run(folder, "mesh info --skip-self-intersections " + folder.file("torn.off"));
     EXPECT_EQ(info.code, 3);
-    const std::size_t at = info.err.find("--merge-distance ");
-    ASSERT_NE(at, std::string::npos) << info.err;
-    const std::string share = info.err.substr(at + 17, info.err.find(')', at) - at - 17);
+    const std::size_t option_begin = info.err.find("--merge-distance ");
+    ASSERT_NE(option_begin, std::string::npos) << info.err;
+    const std::string share = info.err.substr(option_begin + 17, info.err.find(')', option_begin) - option_begin - 17);
     EXPECT_GT(std::stod(share), 1e-3 / std::sqrt(12.0));
     EXPECT_LT(std::stod(share), 0.02);
     const Outcome repaired = run(folder, "mesh repair --json " + folder.file("torn.off") + " " + folder.file("whole.ply") +
@@ -121,7 +121,7 @@ TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
     EXPECT_TRUE(report["result"]["after"]["closed"].GetBool()) << repaired.err;
     EXPECT_EQ(report["result"]["after"]["component_count"].GetInt(), 1);
     // Holes are no cracks.
-    TriangleSoup open = whole;
+    TriangleSoup open = intact;
     open.triangles.resize(open.triangles.size() - 30);
     write_off(folder.file("open.off"), open);
     EXPECT_EQ(run(folder, "mesh info " + folder.file("open.off")).err.find("--merge-distance"), std::string::npos);
@@ -130,12 +130,12 @@ TEST(MeshInfoCommand, CracksNameAMergeDistanceThatFits) {
 TEST(MeshInfoCommand, ReportDoesNotDependOnThreads) {
     const Folder folder;
     write_off(folder.file("s.off"), both(sphere(40, 80), sphere(40, 80, 1, {0.4, 0.1, 0})));
-    Json one = parse_json(run(folder, "mesh info --json --threads 1 " + folder.file("s.off")).out, "one");
+    Json single_thread = parse_json(run(folder, "mesh info --json --threads 1 " + folder.file("s.off")).out, "one");
     Json four = parse_json(run(folder, "mesh info --json --threads 4 " + folder.file("s.off")).out, "four");
-    one.RemoveMember("run");
+    single_thread.RemoveMember("run");
     four.RemoveMember("run");
-    EXPECT_EQ(to_text(one), to_text(four));
-    EXPECT_GT(one["result"]["self_intersections"].GetInt(), 0);
+    EXPECT_EQ(to_text(single_thread), to_text(four));
+    EXPECT_GT(single_thread["result"]["self_intersections"].GetInt(), 0);
 }
 
 TEST(MeshRepairCommand, WritesMeshMapsAndReport) {
@@ -169,8 +169,8 @@ TEST(MeshRepairCommand, WritesMeshMapsAndReport) {
 
 TEST(MeshRepairCommand, TheVerdictOnStlIsThatOfTheWrittenFile) {
     const Folder folder;
-    for (const Place& at : {Place{1, 1, 0}, Place{1, 1, 1}}) {  // cubes that share an edge, and a vertex
-        write_off(folder.file("in.off"), welded(both(cube(), cube(at))));
+    for (const Place& corner : {Place{1, 1, 0}, Place{1, 1, 1}}) {  // cubes that share an edge, and a vertex
+        write_off(folder.file("in.off"), welded(both(cube(), cube(corner))));
         const Outcome done = run(folder, "mesh repair " + folder.file("in.off") + " " + folder.file("out.stl"));
         EXPECT_EQ(done.code, 0) << done.err << done.out;
         EXPECT_NE(done.err.find("moved apart"), std::string::npos) << done.err;
@@ -204,7 +204,7 @@ TEST(MeshRepairCommand, RefusalLeavesTheOutputAlone) {
 }
 
 // Each broken file ends in an oriented manifold or in a refusal that names file and reason, in time.
-TEST(MeshRepairCommand, EveryBrokenFileEndsWell) {
+TEST(MeshRepairCommand, EveryDefectiveFileIsRepairedOrRefused) {
     const std::filesystem::path data(OSTRAKA_SHARED_DATA);
     if (!std::filesystem::exists(data / "broken")) GTEST_SKIP() << "the broken files are not here: " << data;
     const Folder folder;

@@ -137,25 +137,25 @@ TEST(Repair, TriangleSoupIsJoined) {
 
 // Points of one place, up to 3.5 times `noise` apart, are told from those of the next where edges are about as short.
 TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
-    auto whole = sphere(20, 40);
-    const double noise = 1e-5 * diagnose(whole).diagonal;
+    auto intact = sphere(20, 40);
+    const double noise = 1e-5 * diagnose(intact).diagonal;
     for (std::size_t t = 100; t < 1400; t += 130) {  // an end of an edge comes close to the other
-        const Place to = whole.points[whole.triangles[t][1]];
-        Place& from = whole.points[whole.triangles[t][0]];
+        const Place to = intact.points[intact.triangles[t][1]];
+        Place& from = intact.points[intact.triangles[t][0]];
         const double share = 5 * noise / length_of(from, to);
         for (std::size_t k = 0; k < 3; ++k) from[k] = to[k] + share * (from[k] - to[k]);
     }
-    const auto was = diagnose(whole);
+    const auto was = diagnose(intact);
     ASSERT_TRUE(was.closed() && was.manifold());
     for (const unsigned seed : {1u, 2u, 3u}) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> move(-noise, noise);
         TriangleSoup loose;
-        for (const auto& t : whole.triangles) {
+        for (const auto& t : intact.triangles) {
             const auto n = static_cast<Index>(loose.points.size());
             loose.triangles.push_back({n, n + 1, n + 2});
             for (const Index v : t) {
-                loose.points.push_back(whole.points[v]);
+                loose.points.push_back(intact.points[v]);
                 for (double& x : loose.points.back()) x += move(random);
             }
         }
@@ -163,8 +163,8 @@ TEST(Repair, CracksAreClosedWhereEdgesAreAsShort) {
         EXPECT_TRUE(r.after.closed() && r.after.manifold() && r.after.oriented()) << seed;
         EXPECT_EQ(r.after.euler(), 2) << seed;
         EXPECT_EQ(r.after.components.size(), 1u) << seed;
-        EXPECT_EQ(r.mesh.number_of_vertices(), whole.points.size()) << "nothing is lost";
-        EXPECT_EQ(r.mesh.number_of_faces(), whole.triangles.size());
+        EXPECT_EQ(r.mesh.number_of_vertices(), intact.points.size()) << "nothing is lost";
+        EXPECT_EQ(r.mesh.number_of_faces(), intact.triangles.size());
         EXPECT_NEAR(r.after.volume / was.volume, 1, 1e-4);
     }
 }
@@ -208,15 +208,15 @@ TEST(Repair, DuplicatesAreDroppedAndMapToTheOneKept) {
     check_maps(s, r);
 }
 
-TEST(Repair, OppositeDuplicatesOfAClosedSurfaceGo) {
+TEST(Repair, OppositeDuplicatesOfAClosedSurfaceAreRemoved) {
     for (const int every : {40, 7, 5}) {  // alone, side by side at corners and at edges
         auto s = sphere(20, 40);
-        const auto whole = s;
-        for (std::size_t t = 0; t < whole.triangles.size(); t += static_cast<std::size_t>(every)) {
-            s.triangles.push_back(whole.triangles[t]);
+        const auto intact = s;
+        for (std::size_t t = 0; t < intact.triangles.size(); t += static_cast<std::size_t>(every)) {
+            s.triangles.push_back(intact.triangles[t]);
             flip(s, s.triangles.size() - 1);
             if (every == 5) {  // and the next one, which shares an edge
-                s.triangles.push_back(whole.triangles[t + 1 < whole.triangles.size() ? t + 1 : 0]);
+                s.triangles.push_back(intact.triangles[t + 1 < intact.triangles.size() ? t + 1 : 0]);
                 flip(s, s.triangles.size() - 1);
             }
         }
@@ -224,8 +224,8 @@ TEST(Repair, OppositeDuplicatesOfAClosedSurfaceGo) {
         const auto r = repair(s);
         EXPECT_TRUE(r.after.defects().empty()) << every << " " << r.after.defects().front();
         EXPECT_EQ(r.after.components.size(), 1u) << every;
-        EXPECT_EQ(r.mesh.number_of_faces(), whole.triangles.size()) << every;
-        EXPECT_NEAR(r.after.volume, diagnose(whole).volume, 1e-12);
+        EXPECT_EQ(r.mesh.number_of_faces(), intact.triangles.size()) << every;
+        EXPECT_NEAR(r.after.volume, diagnose(intact).volume, 1e-12);
         check_maps(s, r);
     }
 }
@@ -233,7 +233,7 @@ TEST(Repair, OppositeDuplicatesOfAClosedSurfaceGo) {
 TEST(Repair, VerticesOnASideAreInsertedThere) {
     for (const double scale : {1e-9, 1.0, 1e9}) {
         auto s = moved(sphere(20, 40), scale, {0, 0, 0});
-        const auto whole = diagnose(s);
+        const auto original_diagnosis = diagnose(s);
         const auto split = [&](std::size_t t, std::size_t k, double at) {
             const auto corners = s.triangles[t];
             const Index a = corners[k], b = corners[(k + 1) % 3], c = corners[(k + 2) % 3],
@@ -255,7 +255,7 @@ TEST(Repair, VerticesOnASideAreInsertedThere) {
         const auto r = repair(s);
         EXPECT_TRUE(r.after.defects().empty()) << scale << r.after.defects().front();
         EXPECT_EQ(r.mesh.number_of_vertices(), s.points.size()) << "no point is lost or merged";
-        EXPECT_NEAR(r.after.volume / whole.volume, 1, 1e-12);
+        EXPECT_NEAR(r.after.volume / original_diagnosis.volume, 1, 1e-12);
         EXPECT_GT(counted(r, "T-junctions", "vertices inserted into sides beside them"), 20u);
     }
 }
@@ -290,14 +290,14 @@ TEST(Repair, SheetWrittenOnceForEachSideBecomesOneSheet) {
     EXPECT_EQ(r.after.self_intersections, 0u);
 }
 
-TEST(Repair, MoebiusStripIsCutAndItIsSaid) {
+TEST(Repair, MoebiusStripIsCutAndReported) {
     const auto s = moebius();
     const auto r = repair(s, {}, no_filling());
     EXPECT_TRUE(r.after.manifold() && r.after.oriented());
     EXPECT_FALSE(r.after.closed());
     EXPECT_EQ(r.mesh.number_of_faces(), s.triangles.size());
     ASSERT_FALSE(r.notes.empty());
-    EXPECT_NE(r.notes[0].find("one side"), std::string::npos);
+    EXPECT_NE(r.notes[0].find("one-sided"), std::string::npos);
     check_maps(s, r);
 }
 
@@ -335,7 +335,7 @@ TEST(Repair, FlatHoleIsFilledFlat) {
     EXPECT_DOUBLE_EQ(r.after.volume, 1);
 }
 
-TEST(Repair, LongBorderDoesNotHang) {
+TEST(Repair, LongBorderTerminates) {
     TriangleSoup s;  // a long thin collar: two borders of 20000 edges
     const Index n = 20000;
     for (Index i = 0; i < n; ++i) {
@@ -369,7 +369,7 @@ TEST(Repair, TrianglesWithoutAreaAreFlippedAway) {
     EXPECT_DOUBLE_EQ(r.after.volume, 1);
 }
 
-TEST(Repair, ComponentsStayUnlessToldOtherwise) {
+TEST(Repair, ComponentsStayByDefault) {
     const auto s = both(both(cube(), cube({3, 0, 0}, 0.1)), sphere(12, 24, 2, {8, 0, 0}));
     EXPECT_EQ(repair(s).after.components.size(), 3u);
     RepairOptions largest;
@@ -385,7 +385,7 @@ TEST(Repair, ComponentsStayUnlessToldOtherwise) {
     EXPECT_EQ(repair(s, {}, share).after.components.size(), 2u);
 }
 
-TEST(Repair, IsolatedVerticesAreDroppedUnlessToldOtherwise) {
+TEST(Repair, IsolatedVerticesAreDroppedByDefault) {
     auto s = cube();
     s.points.insert(s.points.begin(), {5, 5, 5});
     for (auto& t : s.triangles)
@@ -399,7 +399,7 @@ TEST(Repair, IsolatedVerticesAreDroppedUnlessToldOtherwise) {
     EXPECT_EQ(repair(s, {}, keep).mesh.number_of_vertices(), 9u);
 }
 
-TEST(Repair, RefusesWhatIsNoSurface) {
+TEST(Repair, RefusesInputWithoutSurface) {
     const auto refusal = [](const TriangleSoup& s) {
         try {
             repair(s);
@@ -457,19 +457,19 @@ TEST(Repair, SmallBodiesAreNotSmoothedAway) {
     EXPECT_GT(repair(s, {}, options).after.area, 0.5 * diagnose(s).area);
 }
 
-TEST(Repair, WhatRemovingIntersectionsCostsIsSaid) {
+TEST(Repair, ChangesByRemovingIntersectionsAreReported) {
     RepairOptions options;
     options.remove_self_intersections = true;
     const auto r = repair(both(sphere(16, 32), sphere(16, 32, 0.8, {0.9, 0, 0})), {}, options);
     ASSERT_TRUE(r.before);
-    const auto said = [&](const std::string& what) {
+    const auto reported = [&](const std::string& text) {
         return std::any_of(r.notes.begin(), r.notes.end(),
-                           [&](const auto& note) { return note.find(what) != std::string::npos; });
+                           [&](const auto& note) { return note.find(text) != std::string::npos; });
     };
-    EXPECT_EQ(said("the number of components changed"), r.before->components.size() != r.after.components.size());
-    EXPECT_EQ(said("the area changed"), std::abs(r.after.area - r.before->area) > 0.01 * r.before->area);
+    EXPECT_EQ(reported("the number of components changed"), r.before->components.size() != r.after.components.size());
+    EXPECT_EQ(reported("the area changed"), std::abs(r.after.area - r.before->area) > 0.01 * r.before->area);
     EXPECT_GT(std::abs(r.after.volume - r.before->volume) / r.before->volume, 0.01) << "or this test tells nothing";
-    EXPECT_TRUE(said("the volume changed"));
+    EXPECT_TRUE(reported("the volume changed"));
     EXPECT_EQ(r.after.isolated_vertices, 0u);
 }
 
@@ -522,9 +522,9 @@ TEST(Repair, ColoursLabelsAndTextureFollow) {
     }
     for (Index f = 0; f < r.mesh.number_of_faces(); ++f) {
         EXPECT_EQ(r.extras.face_labels[f], static_cast<std::int32_t>(r.face_source[f]));
-        const auto at = corners(r.mesh, Face(f));
+        const auto new_corners = corners(r.mesh, Face(f));
         for (std::size_t k = 0; k < 3; ++k)  // texture stays with its corner even where the triangle was turned over
-            EXPECT_EQ(static_cast<Index>(r.extras.corner_texture[3 * f + k][0]), r.vertex_source[at[k]]);
+            EXPECT_EQ(static_cast<Index>(r.extras.corner_texture[3 * f + k][0]), r.vertex_source[new_corners[k]]);
     }
     check_maps(s, r);
 }

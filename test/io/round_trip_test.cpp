@@ -57,7 +57,7 @@ TEST(RoundTrip, PlyKeepsEverything) {
         }
 }
 
-TEST(RoundTrip, PlyHoldsNamedNumbersOfFacesAndOtherFormatsSayThatTheyDoNot) {
+TEST(RoundTrip, PlyStoresNamedFaceValuesAndOtherFormatsReportTheLoss) {
     const Scratch scratch;
     const TriangleSoup soup = octahedron();
     WriteOptions options;

@@ -52,9 +52,9 @@ std::string problem_of(const Scratch& scratch, const std::string& name, const st
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return text.replace(at, from.size(), to);
+    const std::size_t position = text.find(from);
+    EXPECT_NE(position, std::string::npos) << from;
+    return text.replace(position, from.size(), to);
 }
 
 }  // namespace
@@ -119,17 +119,17 @@ TEST(Tetrahedra, SurfacesAloneAreReadAsWell) {
     EXPECT_TRUE(file.extras.tetrahedra.empty());
 }
 
-TEST(Tetrahedra, DamagedFilesAreRefusedWithWords) {
+TEST(Tetrahedra, DamagedFilesAreRefusedWithAMessage) {
     const Scratch scratch;
-    const auto said = [&](const std::string& from, const std::string& to) {
+    const auto problem_after = [&](const std::string& from, const std::string& to) {
         return problem_of(scratch, "bad.mesh", replaced(cube, from, to));
     };
-    EXPECT_NE(said("1 2 6 7 0", "1 2 6 70 0").find("names vertex 69 of 8"), std::string::npos);
-    EXPECT_NE(said("1 2 6 7 0", "1 2 2 7 0").find("names a vertex twice"), std::string::npos);
-    EXPECT_NE(said("Dimension 3", "Dimension 2").find("three dimensions"), std::string::npos);
-    EXPECT_NE(said("Vertices\n8", "Vertices\n999999999").find("does not fit"), std::string::npos);
-    EXPECT_NE(said("Tetrahedra\n6\n", "Tetrahedra\n7\n").find("bad.mesh, line"), std::string::npos);
-    EXPECT_NE(said("1 1 0 0", "1 x 0 0").find("bad.mesh"), std::string::npos);
+    EXPECT_NE(problem_after("1 2 6 7 0", "1 2 6 70 0").find("names vertex 69 of 8"), std::string::npos);
+    EXPECT_NE(problem_after("1 2 6 7 0", "1 2 2 7 0").find("names a vertex twice"), std::string::npos);
+    EXPECT_NE(problem_after("Dimension 3", "Dimension 2").find("not three-dimensional"), std::string::npos);
+    EXPECT_NE(problem_after("Vertices\n8", "Vertices\n999999999").find("does not fit"), std::string::npos);
+    EXPECT_NE(problem_after("Tetrahedra\n6\n", "Tetrahedra\n7\n").find("bad.mesh, line"), std::string::npos);
+    EXPECT_NE(problem_after("1 1 0 0", "1 x 0 0").find("bad.mesh"), std::string::npos);
     EXPECT_NE(problem_of(scratch, "bad.vtu", "<VTKFile>").find("XML"), std::string::npos);
     EXPECT_NE(problem_of(scratch, "bad.vtu", "<VTKFile type=\"PolyData\"/>").find("unstructured"), std::string::npos);
     write_mesh(scratch / "good.vtu", build_mesh(box(1)));

@@ -39,7 +39,7 @@ double length(const Point3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[
 void expect_exact_cover(const std::vector<Point3>& points, const std::string& name) {
     SCOPED_TRACE(name);
     const PolygonSoup soup = polygon(points);
-    const Point3 whole = area_of(points, soup.corners);
+    const Point3 total_area = area_of(points, soup.corners);
     const auto result = triangulate(PolygonSoup(soup));
     EXPECT_TRUE(result.notes.empty());
     EXPECT_EQ(result.soup.triangles.size(), points.size() - 2);
@@ -49,11 +49,11 @@ void expect_exact_cover(const std::vector<Point3>& points, const std::string& na
         EXPECT_NE(t[0], t[1]);
         EXPECT_NE(t[1], t[2]);
         EXPECT_NE(t[2], t[0]);
-        const double along = (area[0] * whole[0] + area[1] * whole[1] + area[2] * whole[2]) / length(whole);
-        EXPECT_GE(along, -1e-12 * length(whole));
+        const double along = (area[0] * total_area[0] + area[1] * total_area[1] + area[2] * total_area[2]) / length(total_area);
+        EXPECT_GE(along, -1e-12 * length(total_area));
         sum += length(area);
     }
-    EXPECT_NEAR(sum, length(whole), 1e-9 * length(whole));
+    EXPECT_NEAR(sum, length(total_area), 1e-9 * length(total_area));
 }
 
 std::vector<Point3> placed(const std::vector<std::array<double, 2>>& flat, bool mirrored, double scale, const Point3& shift) {
@@ -138,7 +138,7 @@ TEST(Triangulate, CornersFollowTheirTexture) {
             EXPECT_EQ(result.extras.corner_texture[3 * t + k][0], static_cast<float>(result.soup.triangles[t][k]));
 }
 
-TEST(Triangulate, CrossingAndFlatPolygonsEndAndAreReported) {
+TEST(Triangulate, CrossingAndFlatPolygonsTerminateAndAreReported) {
     const auto star = triangulate(polygon(regular_star(7, 3)));
     EXPECT_EQ(star.soup.triangles.size(), 5U);
     EXPECT_FALSE(star.notes.empty());
@@ -152,7 +152,7 @@ TEST(Triangulate, CrossingAndFlatPolygonsEndAndAreReported) {
     EXPECT_TRUE(triangulate(PolygonSoup()).soup.triangles.empty());
 }
 
-TEST(Triangulate, LargePolygonsEnd) {
+TEST(Triangulate, LargePolygonsTerminate) {
     // A jagged ring, a spiral and points at random: 120 thousand corners each.
     std::mt19937_64 random(5);
     std::vector<Point3> ring, scatter;

@@ -30,7 +30,7 @@ std::vector<Point> ball(std::size_t count, double scale, const Vector& shift) {
     return points;
 }
 
-TEST(PointCloud, NormalsOfABallLookOut) {
+TEST(PointCloud, NormalsOfABallPointOutward) {
     for (const double scale : {1e-6, 1.0, 1e6}) {
         const Vector shift = 100 * scale * Vector(1, -2, 3);
         const auto points = ball(3000, scale, shift);
@@ -58,7 +58,7 @@ TEST(PointCloud, SurfaceOfABall) {
     }
 }
 
-TEST(PointCloud, StatedNormalsSayWhichSideIsOut) {
+TEST(PointCloud, GivenNormalsDetermineTheOutside) {
     PointCloud cloud;
     for (int i = 0; i < 30; ++i)
         for (int j = 0; j < 30; ++j) cloud.points.emplace_back(i + 0.01 * ((7 * i + 3 * j) % 5), j, 0.02 * ((3 * i + 5 * j) % 7));
@@ -125,7 +125,7 @@ TEST(PointCloud, FilesWithNormals) {
     EXPECT_FALSE(read_point_cloud(scratch / "mesh.ply").has_value());
 }
 
-TEST(PointCloud, WhatIsWrongIsSaid) {
+TEST(PointCloud, ErrorsAreReported) {
     const Scratch scratch;
     for (const char* wrong : {"1 2\n", "1 2 3\n1 2 3 4\n", "1 2 x\n", "1 2 nan\n", "", "# nothing\n", "1 2 1e300\n"})
         EXPECT_THROW(read_point_cloud(scratch.file("w.xyz", wrong)), Error) << wrong;
@@ -194,9 +194,9 @@ TEST(FragmentFile, AnnotationsOverrideTheShape) {
     set.annotations[0].faces.resize(sherd.facets.size());
     std::iota(set.annotations[0].faces.begin(), set.annotations[0].faces.end(), 0U);
     write_annotations(scratch / "sherd.ant.json", set, sherd.mesh, "sherd.ply", {});
-    const FragmentFile whole = read_fragment(scratch / "sherd.ply", options);
-    EXPECT_EQ(whole.facets_from, "shape and annotations");
-    EXPECT_EQ(whole.fragment.facets, std::vector<Facet>(sherd.facets.size(), Facet::fracture));
+    const FragmentFile fragment = read_fragment(scratch / "sherd.ply", options);
+    EXPECT_EQ(fragment.facets_from, "shape and annotations");
+    EXPECT_EQ(fragment.fragment.facets, std::vector<Facet>(sherd.facets.size(), Facet::fracture));
     options.facets = FacetSource::annotated;
     std::filesystem::remove(scratch / "sherd.ant.json");
     EXPECT_EQ(read_fragment(scratch / "sherd.ply", options).facets_from, "nowhere");

@@ -74,7 +74,7 @@ TEST(Heads, CastsOfAMouldAgreeInTheFaceAndOthersDoNot) {
     EXPECT_GT(distance(a, b, HeadPart::back), 3 * distance(a, b, HeadPart::nose));
 }
 
-TEST(Heads, WearTakesFromTheNoseInProportion) {
+TEST(Heads, WearErodesTheNoseInProportion) {
     double last = 0;
     for (const double wear : {0.01, 0.02, 0.04}) {
         CastOptions options = quick(4);
@@ -103,15 +103,15 @@ TEST(Heads, SameForAnyNumberOfThreads) {
     CastOptions options = quick(6);
     options.wear = 0.01, options.pressure = 0.01, options.noise = 0.001, options.keep_pose = false;
     set_threads(1);
-    const std::string one = mesh_checksum(cast_head(archetype(4, true), options).mesh);
+    const std::string checksum = mesh_checksum(cast_head(archetype(4, true), options).mesh);
     set_threads(2);
-    EXPECT_EQ(mesh_checksum(cast_head(archetype(4, true), options).mesh), one);
+    EXPECT_EQ(mesh_checksum(cast_head(archetype(4, true), options).mesh), checksum);
     set_threads(0);
     options.seed = 7;
-    EXPECT_NE(mesh_checksum(cast_head(archetype(4, true), options).mesh), one);
+    EXPECT_NE(mesh_checksum(cast_head(archetype(4, true), options).mesh), checksum);
 }
 
-TEST(Heads, APlanDealsHeadsEvenlyAndNamesTellNothing) {
+TEST(Heads, APlanDistributesHeadsEvenlyAndNamesRevealNothing) {
     MouldPopulationOptions population;
     population.objects = 12, population.moulds = 3, population.hand_made = 2;
     const auto plan = plan_heads(population, {});
@@ -126,13 +126,13 @@ TEST(Heads, APlanDealsHeadsEvenlyAndNamesTellNothing) {
     EXPECT_FALSE(in_turn);
 }
 
-TEST(Heads, StandOnBodiesOfTheirOwn) {
+TEST(Heads, StandOnTheirOwnBodies) {
     CastOptions options = quick(3);
     options.keep_pose = false;
     const HeadCast head = cast_head(archetype(2), options);
     options.body = true;
-    const HeadCast whole = cast_head(archetype(2), options);
-    EXPECT_TRUE(CGAL::is_closed(whole.mesh));
+    const HeadCast complete = cast_head(archetype(2), options);
+    EXPECT_TRUE(CGAL::is_closed(complete.mesh));
     const auto area_where = [](const HeadCast& cast, const std::function<bool(HeadPart)>& holds) {
         double sum = 0;
         for (const Face f : cast.mesh.faces())
@@ -140,21 +140,21 @@ TEST(Heads, StandOnBodiesOfTheirOwn) {
         return sum;
     };
     const auto of_head = [](HeadPart part) { return part != HeadPart::stump && part != HeadPart::body; };
-    EXPECT_NEAR(area_where(whole, of_head) / area_where(head, of_head), 1, 0.05);
-    EXPECT_GT(area_where(whole, [](HeadPart part) { return part == HeadPart::body; }), area_where(head, of_head));
+    EXPECT_NEAR(area_where(complete, of_head) / area_where(head, of_head), 1, 0.05);
+    EXPECT_GT(area_where(complete, [](HeadPart part) { return part == HeadPart::body; }), area_where(head, of_head));
     // Up goes from the body to the head.
-    const Vector up(whole.up[0], whole.up[1], whole.up[2]);
+    const Vector up(complete.up[0], complete.up[1], complete.up[2]);
     double low = 1e300, high = -1e300;  // of the body's faces, of the head's
-    for (const Face f : whole.mesh.faces()) {
-        const double height = up * (centroid(whole.mesh, f) - CGAL::ORIGIN);
-        if (of_head(static_cast<HeadPart>(whole.face_labels[f]))) high = std::max(high, height);
+    for (const Face f : complete.mesh.faces()) {
+        const double height = up * (centroid(complete.mesh, f) - CGAL::ORIGIN);
+        if (of_head(static_cast<HeadPart>(complete.face_labels[f]))) high = std::max(high, height);
         else low = std::min(low, height);
     }
     EXPECT_GT(high - low, 100);
     EXPECT_NEAR(up.squared_length(), 1, 1e-9);
 }
 
-TEST(Heads, RefusesWhatCannotBeMade) {
+TEST(Heads, RefusesImpossibleOptions) {
     CastOptions options = quick(1);
     options.vertices = 100;
     EXPECT_THROW((void)cast_head(archetype(1), options), Error);

@@ -57,7 +57,7 @@ TEST(MakeCommand, ListsObjectsPartsAndLabels) {
     EXPECT_NE(run_command("mesh make --list").out.find("flower 5"), std::string::npos);
 }
 
-TEST(MakeCommand, RefusesWithoutLeavingAnything) {
+TEST(MakeCommand, RefusesWithoutWritingFiles) {
     Scratch scratch;
     const Path mesh = scratch / "m.ply";
     const auto refused = [&](const std::string& words, int code, const std::string& message) {

@@ -77,7 +77,7 @@ TEST_P(EveryObject, IsClosedOrientedOfItsGenusAtEveryResolution) {
     }
 }
 
-TEST_P(EveryObject, TrianglesAreEvenAndFaceOutward) {
+TEST_P(EveryObject, TrianglesAreUniformAndFaceOutward) {
     const SyntheticObject& object = synthetic_object(GetParam());
     const SyntheticMesh m = made(object.name, 8000);
     const double edge = mean_edge_length(m.mesh);
@@ -178,10 +178,10 @@ TEST(MakeMesh, CapsOfTheSphereHaveTheirArea) {
     const SyntheticMesh m = made("sphere", 40000);
     std::vector<double> area(sphere.parts.size(), 0);
     for (const Face f : m.mesh.faces()) area[static_cast<std::size_t>(m.face_labels[f.idx()])] += face_area(m.mesh, f);
-    const double whole = *sphere.exact_area, edge = mean_edge_length(m.mesh), r = 50;
+    const double exact_area = *sphere.exact_area, edge = mean_edge_length(m.mesh), r = 50;
     for (const auto& [part, share] : {std::pair{1, 0.005}, {2, 0.025}, {3, 0.1}}) {
         const double outline = 2 * CGAL_PI * r * std::sqrt(1 - (1 - 2 * share) * (1 - 2 * share));
-        EXPECT_NEAR(area[static_cast<std::size_t>(part)], share * whole, 0.1 * edge * outline);
+        EXPECT_NEAR(area[static_cast<std::size_t>(part)], share * exact_area, 0.1 * edge * outline);
     }
 }
 
@@ -214,7 +214,7 @@ TEST(MakeMesh, NoiseStaysWithinItsShareOfTheEdge) {
     EXPECT_GT(maximum, 0.15 * edge);
 }
 
-TEST(MakeMesh, RefusesWhatCannotBe) {
+TEST(MakeMesh, RefusesImpossibleRequests) {
     const auto kind = [](const std::string& name, std::uint64_t vertices, double noise) {
         try {
             made(name, vertices, 1, noise);

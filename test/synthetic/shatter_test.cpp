@@ -28,7 +28,7 @@ PotOptions coarse() {
     return options;
 }
 
-TEST(Shatter, APotIsClosedAndAsThickAsAsked) {
+TEST(Shatter, APotIsClosedAndAsThickAsRequested) {
     for (const std::uint64_t shape : {1, 2, 3}) {
         PotOptions options = coarse();
         options.shape = shape;
@@ -49,14 +49,14 @@ TEST(Shatter, PiecesMakeTheWhole) {
     const std::vector<Sherd> sherds = shatter(pot, options);
     EXPECT_GE(sherds.size(), 5U);
     double sum = 0, intact = 0, up = 0;
-    for (const Sherd& one : sherds) {
-        EXPECT_TRUE(CGAL::is_closed(one.mesh));
-        EXPECT_GT(volume(one.mesh), 0);
-        sum += volume(one.mesh);
+    for (const Sherd& sherd : sherds) {
+        EXPECT_TRUE(CGAL::is_closed(sherd.mesh));
+        EXPECT_GT(volume(sherd.mesh), 0);
+        sum += volume(sherd.mesh);
         Eigen::Vector3d broken = Eigen::Vector3d::Zero();
-        for (const Face f : one.mesh.faces()) {
-            if (one.broken[f]) broken += eigen(area_vector(one.mesh, f));
-            else intact += face_area(one.mesh, f);
+        for (const Face f : sherd.mesh.faces()) {
+            if (sherd.broken[f]) broken += eigen(area_vector(sherd.mesh, f));
+            else intact += face_area(sherd.mesh, f);
         }
         up += broken.z();
     }
@@ -78,7 +78,7 @@ TEST(Shatter, SameSeedSamePieces) {
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(mesh_checksum(a[k].mesh), mesh_checksum(b[k].mesh));
     EXPECT_NE(mesh_checksum(a[0].mesh), mesh_checksum(c[0].mesh));
     double worn = 0;
-    for (const Sherd& one : a) worn += volume(one.mesh);
+    for (const Sherd& sherd : a) worn += volume(sherd.mesh);
     EXPECT_LT(worn, volume(pot));
 }
 
@@ -91,16 +91,16 @@ TEST(Shatter, BreaksArchAndWearDiffersOverThem) {
     options.bow = 0.3;
     const auto arched = shatter(ball, options);
     // A plane through the middles of the break's faces, by the spread across it.
-    const auto off_plane = [](const Sherd& one) {
+    const auto off_plane = [](const Sherd& sherd) {
         Eigen::Vector3d mean = Eigen::Vector3d::Zero();
         double count = 0;
-        for (const Face f : one.mesh.faces())
-            if (one.broken[f]) mean += eigen(centroid(one.mesh, f)), ++count;
+        for (const Face f : sherd.mesh.faces())
+            if (sherd.broken[f]) mean += eigen(centroid(sherd.mesh, f)), ++count;
         mean /= count;
         Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-        for (const Face f : one.mesh.faces()) {
-            const Eigen::Vector3d d = eigen(centroid(one.mesh, f)) - mean;
-            if (one.broken[f]) spread += d * d.transpose() / count;
+        for (const Face f : sherd.mesh.faces()) {
+            const Eigen::Vector3d d = eigen(centroid(sherd.mesh, f)) - mean;
+            if (sherd.broken[f]) spread += d * d.transpose() / count;
         }
         return std::sqrt(std::max(0.0, symmetric_eigenvalues(spread)[0]));
     };
@@ -121,7 +121,7 @@ TEST(Shatter, BreaksArchAndWearDiffersOverThem) {
     EXPECT_LT(most, 2.1 * options.erosion * box_diagonal(ball));
 }
 
-TEST(Shatter, SherdsMeshedAnewShareNothingButTheirShape) {
+TEST(Shatter, RemeshedSherdsShareOnlyTheirShape) {
     const Mesh pot = make_pot(coarse());
     ShatterOptions options;
     options.pieces = 3;
@@ -151,7 +151,7 @@ TEST(Shatter, SherdsMeshedAnewShareNothingButTheirShape) {
     EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end()) << "no vertex is on two sherds";
 }
 
-TEST(Shatter, ReliefMovesTheSurfaceAsFarAsAsked) {
+TEST(Shatter, ReliefDisplacesTheSurfaceAsRequested) {
     const Mesh ball = build_mesh(test::octahedron_sphere(5));
     const Mesh rough = with_relief(ball, 0.005, 0.2, 1);
     double square = 0;
@@ -180,7 +180,7 @@ TEST(Shatter, ABodyThatCrossesItselfIsRefusedAsAnErrorOrBroken) {
     }
     for (std::size_t k = 0; k < triangles; ++k) {
         auto corner = soup.triangles[k];
-        for (Index& one : corner) one += static_cast<Index>(points);
+        for (Index& index : corner) index += static_cast<Index>(points);
         soup.triangles.push_back(corner);
     }
     const Mesh both = build_mesh(soup);
@@ -189,7 +189,7 @@ TEST(Shatter, ABodyThatCrossesItselfIsRefusedAsAnErrorOrBroken) {
         options.pieces = 3;
         options.seed = seed;
         try {
-            for (const Sherd& one : shatter(both, options)) EXPECT_TRUE(CGAL::is_closed(one.mesh));
+            for (const Sherd& sherd : shatter(both, options)) EXPECT_TRUE(CGAL::is_closed(sherd.mesh));
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::failure) << error.what();
         }

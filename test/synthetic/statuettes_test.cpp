@@ -186,21 +186,21 @@ TEST(Statuettes, PlantedSizesAreThoseOfTheLandmarks) {
     }
 }
 
-TEST(Statuettes, TheScannerSeesWhatItIsSaidToSee) {
+TEST(Statuettes, TheScannerSeesTheStatedPart) {
     StatuetteParameters p;
     p.vertices = 6000;
     p.cavity_seen = 0.5;
-    const Statuette whole = generate_statuette(p);
-    EXPECT_TRUE(closed(whole.mesh));
+    const Statuette complete = generate_statuette(p);
+    EXPECT_TRUE(closed(complete.mesh));
     p.interior = StatuetteParameters::Interior::open;
     const Statuette open = generate_statuette(p);
     EXPECT_FALSE(closed(open.mesh));
-    EXPECT_LT(open.mesh.number_of_faces(), whole.mesh.number_of_faces());
+    EXPECT_LT(open.mesh.number_of_faces(), complete.mesh.number_of_faces());
     p.interior = StatuetteParameters::Interior::closed;
     p.holes = 3;
     const Statuette holed = generate_statuette(p);
     EXPECT_FALSE(closed(holed.mesh));
-    const double lost = surface_area(whole.mesh) - surface_area(holed.mesh);
+    const double lost = surface_area(complete.mesh) - surface_area(holed.mesh);
     EXPECT_GT(lost, 0.3 * pi * p.hole_radius * p.hole_radius);
     EXPECT_LT(lost, 3.5 * pi * p.hole_radius * p.hole_radius);
 }
@@ -223,17 +223,17 @@ TEST(Statuettes, SameForAnyNumberOfThreads) {
     p.holes = 2;
     p.scan_noise = 0.05;
     set_threads(1);
-    const Statuette one = generate_statuette(p);
+    const Statuette statuette = generate_statuette(p);
     set_threads(3);
     const Statuette three = generate_statuette(p);
     set_threads(0);
-    EXPECT_EQ(mesh_checksum(one.mesh), mesh_checksum(three.mesh));
-    EXPECT_EQ(one.face_labels, three.face_labels);
+    EXPECT_EQ(mesh_checksum(statuette.mesh), mesh_checksum(three.mesh));
+    EXPECT_EQ(statuette.face_labels, three.face_labels);
     p.seed = 2;
-    EXPECT_NE(mesh_checksum(one.mesh), mesh_checksum(generate_statuette(p).mesh));
+    EXPECT_NE(mesh_checksum(statuette.mesh), mesh_checksum(generate_statuette(p).mesh));
 }
 
-TEST(Statuettes, WhatDoesNotFitIsRefused) {
+TEST(Statuettes, ImpossibleParametersAreRefused) {
     StatuetteParameters p;
     p.wall = 12;
     p.base_diameter = 40;
@@ -274,7 +274,7 @@ TEST(Population, ObjectsDoNotDependOnTheirNumberAndFollowTheLevel) {
     }
 }
 
-TEST(Population, LevelsComeCloserAndCloser) {
+TEST(Population, LevelsBecomeMoreSimilar) {
     double last = std::numeric_limits<double>::infinity();
     for (int i = 1; i <= 5; ++i) {
         const StatuetteLevel level = statuette_level(i);

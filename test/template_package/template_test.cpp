@@ -92,9 +92,9 @@ struct Ball : Scratch {
     }
     void replace(const std::string& name, const std::string& from, const std::string& to) const {
         std::string text = read_file(*this / name);
-        const std::size_t at = text.find(from);
-        ASSERT_NE(at, std::string::npos) << from;
-        write_file(*this / name, text.replace(at, from.size(), to));
+        const std::size_t position = text.find(from);
+        ASSERT_NE(position, std::string::npos) << from;
+        write_file(*this / name, text.replace(position, from.size(), to));
     }
 };
 
@@ -140,9 +140,9 @@ TEST(Template, ClassUnitAndUpAreThoseOfTheAnnotations) {
     ASSERT_TRUE(file.up);
     EXPECT_EQ((*file.up)[2], 1);
     const std::string before = read_file(ball / "bare.template.json");
-    const auto other = run_command(pack + " --unit cm");
-    EXPECT_EQ(other.code, 3);
-    EXPECT_TRUE(holds(other.out, "one mesh has one unit")) << other.out;
+    const auto with_other_unit = run_command(pack + " --unit cm");
+    EXPECT_EQ(with_other_unit.code, 3);
+    EXPECT_TRUE(holds(with_other_unit.out, "a mesh has only one unit")) << with_other_unit.out;
     EXPECT_EQ(read_file(ball / "bare.template.json"), before);
     EXPECT_EQ(run_command(pack + " --class globe").code, 0) << "another class is a remark";
     EXPECT_EQ(read_template(ball / "bare.template.json").object_class, "globe");
@@ -158,7 +158,7 @@ TEST(Template, TheFolderMayMove) {
     EXPECT_EQ(here.code, 0) << here.err << here.out;
 }
 
-TEST(Template, EachPartThatDoesNotFitIsNamed) {
+TEST(Template, EachInconsistentPartIsReported) {
     const auto after = [](auto&& change, bool defects = true) {
         const Ball ball;
         ball.pack();
@@ -175,7 +175,7 @@ TEST(Template, EachPartThatDoesNotFitIsNamed) {
     EXPECT_TRUE(holds(after([](const Ball& b) { write_mesh(b / "ball.ply", spheres(3)); }),
                       "ball.ant.json: at /mesh: made for another mesh"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_mesh(b / "ball.ply", spheres(3)); }),
-                      "ball.npy: the coordinates have 66 rows, the mesh 258"));
+                      "ball.npy: the coordinates have 66 rows, but the mesh has 258"));
     EXPECT_TRUE(holds(after(text("ball.graph.json", "[1, 2]", "[1, 7]")), "ball.graph.json: "));
     EXPECT_TRUE(holds(after(text("ball.vocabulary.json", "\"id\": \"eye\", \"label\": \"eye\"", "\"id\": \"eyes\"")),
                       "ball.ant.json: at /annotations/1/tag: the tag 'eye' is not in the vocabulary: did you mean 'eyes'?"));
@@ -191,16 +191,16 @@ TEST(Template, EachPartThatDoesNotFitIsNamed) {
         << "columns are the faces of the cage";
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18, 0.5, "<f4")); }), "float64"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18, std::nan(""))); }), "not finite"));
-    EXPECT_TRUE(
-        holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18).substr(0, 1000)); }), "does not fit the size"));
+    EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ball.npy", array(66, 18).substr(0, 1000)); }),
+                      "does not match the size"));
     EXPECT_TRUE(holds(after([](const Ball& b) { write_file(b / "ranges.json", "{"); }), "ranges.json: line 1"));
     // What contradicts without being wrong.
     EXPECT_TRUE(holds(after(text("ball.template.json", "\"unit\": \"mm\"", "\"unit\": \"cm\"")),
-                      "the unit of the annotations is 'mm', that of the template 'cm': one mesh has one unit"));
+                      "the unit of the annotations is 'mm', that of the template 'cm': a mesh has only one unit"));
     EXPECT_TRUE(holds(after(text("ball.template.json", "\"up\": [0.0, 0.0, 2.0]", "\"up\": [0, 1, 0]"), false),
                       "the upward direction of the annotations is (0, 0, 1), that of the template (0, 1, 0)"));
-    EXPECT_TRUE(
-        holds(after(text("ball.template.json", "\"class\": \"ball\"", "\"class\": \"globe\""), false), "'globe' is no concept"));
+    EXPECT_TRUE(holds(after(text("ball.template.json", "\"class\": \"ball\"", "\"class\": \"globe\""), false),
+                      "'globe' is not a concept"));
     EXPECT_TRUE(holds(after(
                           [](const Ball& b) {
                               write_mesh(b / "cage.ply", spheres(1, {{1, 0, 0}}, 1.5));
@@ -209,12 +209,11 @@ TEST(Template, EachPartThatDoesNotFitIsNamed) {
                       "the cage does not enclose the mesh: "));
 }
 
-TEST(Template, ChecksumsSayThatAFileChanged) {
+TEST(Template, ChecksumsRevealChangedFiles) {
     const Ball ball;
     ball.pack();
     write_file(ball / "ranges.json", "{\"changed\": true}");
-    EXPECT_EQ(ball.findings(true),
-              "ranges.json: the file is another one than when the template was packed (its checksum differs)\n");
+    EXPECT_EQ(ball.findings(true), "ranges.json: the file has changed since the template was packed (its checksum differs)\n");
     const auto check = run_command("template check " + ball.at("ball.template.json"));
     EXPECT_EQ(check.code, 3);
     EXPECT_TRUE(holds(check.out, "checksum differs"));
@@ -224,9 +223,9 @@ TEST(Template, PartsStayInItsFolder) {
     const Ball ball;
     std::filesystem::create_directory(ball / "inner");
     const std::string file = ball.at("inner/t.template.json");
-    const auto with = [&](const std::string& mesh, const std::string& more = {}) {
+    const auto with = [&](const std::string& mesh, const std::string& options = {}) {
         write_file(file, R"({"format": "ostraka-template", "version": 1, "mesh": ")" + mesh + "\"}");
-        return run_command("template check " + file + more);
+        return run_command("template check " + file + options);
     };
     for (const std::string& mesh :
          {std::string("../ball.ply"), ball.at("ball.ply"), std::string("x/../../ball.ply"), std::string("link.ply")}) {
@@ -270,7 +269,7 @@ TEST(Template, PartsStayInItsFolder) {
     EXPECT_EQ(run_command(pack + " --copy --landmarks " + ball.at("inner/ball.ply")).code, 2);
 }
 
-TEST(Template, NothingIsWrittenWhereThePartsDoNotFit) {
+TEST(Template, NothingIsWrittenIfThePartsAreInconsistent) {
     const Ball ball;
     (void)ball.file("ball.template.json", "earlier");
     ball.replace("ball.vocabulary.json", "\"id\": \"eye\", \"label\": \"eye\"", "\"id\": \"ear\"");

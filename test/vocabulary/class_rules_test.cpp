@@ -27,10 +27,10 @@ ClassRules rules(const std::string& text = rules_text) { return class_rules_from
 std::vector<std::string> broken(const AnnotationSet& set, const std::vector<RelationFact>& relations,
                                 const std::string& text = rules_text) {
     static const Vocabulary vocabulary = busts();
-    std::vector<std::string> list;
+    std::vector<std::string> violations;
     for (const BrokenRule& rule : check_class_rules(set, rules(text), &vocabulary, relations, "r.json"))
-        list.push_back(rule.rule + ": " + rule.text);
-    return list;
+        violations.push_back(rule.rule + ": " + rule.text);
+    return violations;
 }
 
 Annotation clay(int id, const std::string& tag, std::vector<Attribute> more = {}) {
@@ -67,44 +67,47 @@ void expect_error(const std::string& text, const std::string& place, const std::
 
 }  // namespace
 
-TEST(ClassRules, ASetThatKeepsThem) { EXPECT_EQ(broken(set_of(good()), on_head), std::vector<std::string>{}); }
+TEST(ClassRules, ASetThatSatisfiesThemHasNoViolations) { EXPECT_EQ(broken(set_of(good()), on_head), std::vector<std::string>{}); }
 
 TEST(ClassRules, Counts) {
-    auto list = good();
-    list.push_back(clay(4, "eye", {quantity("height", 1, "mm")}));
-    EXPECT_EQ(broken(set_of(list), on_head),
-              std::vector<std::string>{
-                  "two eyes: there must be exactly 2 of 'eye', there are 3: 'left eye' (id 1), 'Occhio 2' (id 2), 'eye' (id 4)"});
-    for (int id = 5; id < 8; ++id) list.push_back(clay(id, "beard"));
-    EXPECT_EQ(broken(set_of(list), on_head).at(1).substr(0, 61), "few points: there must be at most 6 of point, there are 8: 'h");
-    EXPECT_EQ(broken(set_of({}), {}), std::vector<std::string>{"two eyes: there must be exactly 2 of 'eye', there are 0"});
+    auto annotations = good();
+    annotations.push_back(clay(4, "eye", {quantity("height", 1, "mm")}));
+    EXPECT_EQ(
+        broken(set_of(annotations), on_head),
+        std::vector<std::string>{
+            "two eyes: there must be exactly 2 of 'eye', but there are 3: 'left eye' (id 1), 'Occhio 2' (id 2), 'eye' (id 4)"});
+    for (int id = 5; id < 8; ++id) annotations.push_back(clay(id, "beard"));
+    EXPECT_EQ(broken(set_of(annotations), on_head).at(1).substr(0, 65),
+              "few points: there must be at most 6 of point, but there are 8: 'h");
+    EXPECT_EQ(broken(set_of({}), {}), std::vector<std::string>{"two eyes: there must be exactly 2 of 'eye', but there are 0"});
 }
 
 TEST(ClassRules, Attributes) {
-    auto list = good();
-    list[0].attributes.clear();
-    list[1].attributes[0].descriptor.values = {25};
-    list[3].attributes[0].note = "bronze";
-    EXPECT_EQ(broken(set_of(list), on_head),
+    auto annotations = good();
+    annotations[0].attributes.clear();
+    annotations[1].attributes[0].descriptor.values = {25};
+    annotations[3].attributes[0].note = "bronze";
+    EXPECT_EQ(broken(set_of(annotations), on_head),
               (std::vector<std::string>{"material: 'head' (id 0) has no attribute 'material'",
-                                        "material: the 'material' of 'nose' (id 3) is 'bronze', it must be 'clay' or 'Marmor'",
-                                        "eyes are small: the 'height' of 'left eye' (id 1) is 25 mm, it must be 2 cm or less"}));
-    list = good();
-    list[3].attributes[0].note = "marmo";  // the same word in another language
-    list[1].attributes[0].descriptor.stale = true;
+                                        "material: the 'material' of 'nose' (id 3) is 'bronze', but must be 'clay' or 'Marmor'",
+                                        "eyes are small: the 'height' of 'left eye' (id 1) is 25 mm, but must be 2 cm or less"}));
+    annotations = good();
+    annotations[3].attributes[0].note = "marmo";  // the same word in another language
+    annotations[1].attributes[0].descriptor.stale = true;
     EXPECT_EQ(
-        broken(set_of(list), on_head),
-        std::vector<std::string>{"eyes are small: the 'height' of 'left eye' (id 1) is 15 mm (stale), it must be 2 cm or less"});
+        broken(set_of(annotations), on_head),
+        std::vector<std::string>{"eyes are small: the 'height' of 'left eye' (id 1) is 15 mm (stale), but must be 2 cm or less"});
 }
 
 TEST(ClassRules, Relations) {
-    const std::string none =
-        "nose on the head: 'nose' (id 3) stands in no relation of 'adjacency' or 'containment' to 'head' (else it is another's)";
+    const std::string missing_relation =
+        "nose on the head: 'nose' (id 3) has no relationship of type 'adjacency' or 'containment' to 'head' (else it is "
+        "another's)";
     const auto with = [](const std::vector<RelationFact>& relations) { return broken(set_of(good()), relations); };
-    EXPECT_EQ(with({}), std::vector<std::string>{none});
+    EXPECT_EQ(with({}), std::vector<std::string>{missing_relation});
     EXPECT_TRUE(with({{"adjacency", false, {3, 0}}}).empty());
-    EXPECT_EQ(with({{"containment", true, {3, 0}}}), std::vector<std::string>{none}) << "the head in the nose";
-    EXPECT_EQ(with({{"same level", false, {0, 3}}}), std::vector<std::string>{none});
+    EXPECT_EQ(with({{"containment", true, {3, 0}}}), std::vector<std::string>{missing_relation}) << "the head in the nose";
+    EXPECT_EQ(with({{"same level", false, {0, 3}}}), std::vector<std::string>{missing_relation});
     EXPECT_TRUE(with({{"containment", true, {1, 3}}}).empty()) << "an eye is a concept below head";
     auto apart = good();
     apart.push_back(clay(9, "rock"));
@@ -113,27 +116,28 @@ TEST(ClassRules, Relations) {
     // A cycle, which no mesh gives, ends.
     EXPECT_EQ(with({{"containment", true, {3, 1}}, {"containment", true, {1, 3}}}).size(), 0U);
     // A nose is a narrower concept of head, but not related to itself.
-    EXPECT_EQ(with({{"adjacency", false, {3, 3}}}), std::vector<std::string>{none});
-    auto list = good();
-    list.erase(list.begin(), list.begin() + 3);
-    const auto lonely = broken(set_of(list), {}, rule(R"("relation": {"of": "nose", "is": "adjacency", "to": "eye"})"));
-    EXPECT_EQ(lonely,
-              std::vector<std::string>{"r: 'nose' (id 3) stands in no relation of 'adjacency' to any 'eye', there is none"});
+    EXPECT_EQ(with({{"adjacency", false, {3, 3}}}), std::vector<std::string>{missing_relation});
+    auto annotations = good();
+    annotations.erase(annotations.begin(), annotations.begin() + 3);
+    const auto lonely = broken(set_of(annotations), {}, rule(R"("relation": {"of": "nose", "is": "adjacency", "to": "eye"})"));
+    EXPECT_EQ(lonely, std::vector<std::string>{
+                          "r: 'nose' (id 3) has no relationship of type 'adjacency' to any 'eye', as there is none"});
 }
 
-TEST(ClassRules, WithoutAVocabularyTagsAreLetters) {
-    const auto text = [](const std::vector<Annotation>& list) {
+TEST(ClassRules, WithoutAVocabularyTagsAreComparedLiterally) {
+    const auto text = [](const std::vector<Annotation>& annotations) {
         std::string all;
-        for (const auto& one :
-             check_class_rules(set_of(list), rules(rule(R"("count": {"of": "Eye", "min": 2})")), nullptr, {}, "r"))
-            all += one.text;
+        for (const auto& violation :
+             check_class_rules(set_of(annotations), rules(rule(R"("count": {"of": "Eye", "min": 2})")), nullptr, {}, "r"))
+            all += violation.text;
         return all;
     };
     EXPECT_EQ(text({point(0, "eye 1"), point(1, " EYE")}), "");
-    EXPECT_EQ(text({point(0, "eye 1"), point(1, "left eye")}), "there must be at least 2 of 'Eye', there are 1: 'eye 1' (id 0)");
+    EXPECT_EQ(text({point(0, "eye 1"), point(1, "left eye")}),
+              "there must be at least 2 of 'Eye', but there are 1: 'eye 1' (id 0)");
 }
 
-TEST(ClassRules, WhatIsRefused) {
+TEST(ClassRules, InvalidInputIsRefused) {
     expect_error(rule(R"("count": {"of": "eye"})"), "/rules/0/count", "without bounds");
     expect_error(rule(R"("count": {"of": "eye", "min": 3, "max": 2})"), "/rules/0/count", "above");
     expect_error(rule(R"("count": {"of": "ey", "min": 3})"), "/rules/0/count/of", "no concept 'ey'");
@@ -164,7 +168,7 @@ TEST(ClassRules, DamagedFiles) {
     EXPECT_LT(read, 200U);
 }
 
-TEST(ClassRules, TheCommandTakesRelationsFromTheMesh) {
+TEST(ClassRules, TheCommandDerivesRelationsFromTheMesh) {
     const Scratch scratch;
     const std::string data = OSTRAKA_SOURCE_DIR "/data/", pair = data + "teapot.ply " + data + "teapot.ant.json ";
     const auto check = [&](const std::string& text, const std::string& more = {}) {
@@ -182,8 +186,8 @@ TEST(ClassRules, TheCommandTakesRelationsFromTheMesh) {
     EXPECT_NE(good_answer.out.find("to any 'flowered teapot'"), std::string::npos) << good_answer.out;
     std::string mended = sound;
     mended.replace(mended.find("\"flowered teapot\""), 17, "\"teapot\"");
-    const auto kept = check(mended, words);
-    EXPECT_EQ(kept.code, 0) << kept.out << kept.err;
+    const auto remaining_violations = check(mended, words);
+    EXPECT_EQ(remaining_violations.code, 0) << remaining_violations.out << remaining_violations.err;
     const auto no_material =
         check(rule(R"("attribute": {"of": {"tag": "*", "type": "region"}, "name": "material"})"), words + " --json");
     EXPECT_EQ(no_material.code, 3);
@@ -196,5 +200,6 @@ TEST(ClassRules, TheCommandTakesRelationsFromTheMesh) {
         scratch.file("e.graph.json", R"({"format": "ostraka-graph", "version": 1, "relationships": []})").string();
     const auto stated = check(rule(R"("relation": {"of": "spout", "is": "adjacency", "to": "body"})"), " --graph " + graph);
     EXPECT_EQ(stated.code, 3) << stated.err;
-    EXPECT_NE(stated.out.find("'spout' (id 5) stands in no relation of 'adjacency' to 'body'"), std::string::npos) << stated.out;
+    EXPECT_NE(stated.out.find("'spout' (id 5) has no relationship of type 'adjacency' to 'body'"), std::string::npos)
+        << stated.out;
 }

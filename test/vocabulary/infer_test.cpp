@@ -31,7 +31,7 @@ Attribute length(const std::string& name, double value, const std::string& unit 
 
 }  // namespace
 
-TEST(Infer, ARuleThatHoldsGivesItsWordAndSaysWhy) {
+TEST(Infer, ARuleThatHoldsInfersItsValueWithAReason) {
     const InferenceResult result = infer(set_of({point(0, "whiskers", {length("bumpiness", 0.05, "1/mm")})}), busts());
     EXPECT_EQ(words_of(result.annotations, 0), "beard style=straight");
     const Attribute& attribute = result.annotations.annotations[0].attributes.back();
@@ -41,7 +41,8 @@ TEST(Infer, ARuleThatHoldsGivesItsWordAndSaysWhy) {
     EXPECT_EQ(result.inferred[0].rule, "smooth");
     EXPECT_TRUE(result.contradictions.empty());
     // The rule 'rough' fails on its first condition: what its second lacks is of no interest.
-    EXPECT_EQ(result.missing, std::vector<std::string>{"'whiskers' (id 0): the rule 'red' cannot be judged: it has no 'remark'"});
+    EXPECT_EQ(result.missing,
+              std::vector<std::string>{"'whiskers' (id 0): the rule 'red' cannot be evaluated: it has no 'remark'"});
     // What is inferred fits the vocabulary, and is inferred anew, not twice.
     EXPECT_TRUE(check_against_vocabulary(result.annotations, busts()).empty());
     const InferenceResult again = infer(result.annotations, busts());
@@ -88,8 +89,8 @@ TEST(Infer, RatiosAcrossAnnotations) {
             if (holds(line, "'rough'")) return line;
         return std::string("nothing is missing");
     };
-    EXPECT_EQ(missing({}), "'beard' (id 0): the rule 'rough' cannot be judged: there is no 'eye'");
-    EXPECT_TRUE(holds(missing({point(1, "eye"), point(2, "eye")}), "several of 'eye'"));
+    EXPECT_EQ(missing({}), "'beard' (id 0): the rule 'rough' cannot be evaluated: there is no 'eye'");
+    EXPECT_TRUE(holds(missing({point(1, "eye"), point(2, "eye")}), "more than one 'eye'"));
     EXPECT_TRUE(holds(missing({point(1, "eye")}), "it has no 'height' of 'eye'"));
     EXPECT_TRUE(holds(missing({point(1, "eye", {length("height", 0)})}), "is zero"));
     EXPECT_TRUE(holds(missing({point(1, "eye", {length("height", 1, "jars")})}), "'cm' and 'jars' cannot be compared"));
@@ -107,11 +108,11 @@ TEST(Infer, MissingInputs) {
     EXPECT_TRUE(result.inferred.empty());
     // Two rules of the beard, and the one for all concepts on beard and nose.
     ASSERT_EQ(result.missing.size(), 4U);
-    EXPECT_EQ(result.missing[0], "'beard' (id 0): the rule 'smooth' cannot be judged: it has no 'bumpiness'");
+    EXPECT_EQ(result.missing[0], "'beard' (id 0): the rule 'smooth' cannot be evaluated: it has no 'bumpiness'");
     EXPECT_TRUE(infer(set_of({}), busts()).missing.empty());
 }
 
-TEST(Infer, RulesThatContradictEachOtherAreNamed) {
+TEST(Infer, ContradictingRulesAreReported) {
     Vocabulary vocabulary = busts();
     vocabulary.rules[0].conditions[0].below = 0.4;
     const AnnotationSet set = set_of(
@@ -120,24 +121,24 @@ TEST(Infer, RulesThatContradictEachOtherAreNamed) {
     EXPECT_EQ(words_of(result.annotations, 0), "");
     EXPECT_TRUE(result.inferred.empty());
     ASSERT_EQ(result.contradictions.size(), 1U);
-    EXPECT_TRUE(holds(result.contradictions[0], "'beard style' is left out: the rule 'smooth'")) << result.contradictions[0];
-    EXPECT_TRUE(holds(result.contradictions[0], "but the rule 'rough' says 'curly'")) << result.contradictions[0];
+    EXPECT_TRUE(holds(result.contradictions[0], "'beard style' is not inferred: the rule 'smooth'")) << result.contradictions[0];
+    EXPECT_TRUE(holds(result.contradictions[0], "but the rule 'rough' infers 'curly'")) << result.contradictions[0];
 }
 
-TEST(Infer, WhatAPersonStatedStays) {
+TEST(Infer, StatedAttributesAreKept) {
     const auto with = [](const std::string& stated) {
         return infer(set_of({point(0, "beard", {length("bumpiness", 0.05, "1/mm"), word("Tipo di barba", stated)})}), busts());
     };
     const InferenceResult other = with("curly");
     EXPECT_EQ(words_of(other.annotations, 0), "Tipo di barba=curly");
     ASSERT_EQ(other.contradictions.size(), 1U);
-    EXPECT_TRUE(holds(other.contradictions[0], "stated to be 'curly', but the rule 'smooth' says 'straight'"));
+    EXPECT_TRUE(holds(other.contradictions[0], "stated to be 'curly', but the rule 'smooth' infers 'straight'"));
     const InferenceResult same = with("Straight");
     EXPECT_EQ(words_of(same.annotations, 0), "Tipo di barba=Straight");
     EXPECT_TRUE(same.contradictions.empty());
 }
 
-TEST(Infer, WordsAreInputsToo) {
+TEST(Infer, TextValuesAreInputsToo) {
     // red remark -> clay; and of clay beards, say they are curly, without an order of the rules.
     Vocabulary vocabulary = busts();
     InferenceRule rule = vocabulary.rules[1];
@@ -195,7 +196,7 @@ TEST(Infer, LongChainsOfRulesInAnyOrder) {
     }
 }
 
-TEST(Infer, RulesThatAllContradictAreCountedNotListed) {
+TEST(Infer, ManyContradictionsAreCountedNotListed) {
     Vocabulary vocabulary;
     Concept thing;
     thing.id = "thing";

@@ -22,10 +22,10 @@ const std::string prefixes = R"(
 Vocabulary read(const std::string& text) { return vocabulary_from_skos(prefixes + text, false, "pots.ttl"); }
 
 const Concept& concept_of(const Vocabulary& vocabulary, const std::string& id) {
-    const auto found =
-        std::find_if(vocabulary.concepts.begin(), vocabulary.concepts.end(), [&](const Concept& one) { return one.id == id; });
-    if (found == vocabulary.concepts.end()) throw std::runtime_error("no concept " + id);
-    return *found;
+    const auto match = std::find_if(vocabulary.concepts.begin(), vocabulary.concepts.end(),
+                                    [&](const Concept& candidate) { return candidate.id == id; });
+    if (match == vocabulary.concepts.end()) throw std::runtime_error("no concept " + id);
+    return *match;
 }
 
 using Names = std::vector<std::string>;
@@ -81,7 +81,7 @@ obo:BFO_0000050 a owl:ObjectProperty .
     EXPECT_EQ(vocabulary.concepts.size(), 8U);
     ASSERT_EQ(vocabulary.notes.size(), 2U);
     EXPECT_NE(vocabulary.notes[0].find("1 deprecated"), std::string::npos);
-    EXPECT_NE(vocabulary.notes[1].find("3 statements of classes not kept"), std::string::npos) << vocabulary.notes[1];
+    EXPECT_NE(vocabulary.notes[1].find("3 statements about classes not kept"), std::string::npos) << vocabulary.notes[1];
 }
 
 TEST(Owl, SkosFilesStayAsTheyAre) {
@@ -94,7 +94,7 @@ TEST(Owl, SkosFilesStayAsTheyAre) {
     EXPECT_EQ(vocabulary.concepts[0].id, "handle");
 }
 
-TEST(Owl, OddAndHostileFilesEndWithAnErrorOrAVocabulary) {
+TEST(Owl, InvalidAndHostileFilesGiveAnErrorOrAVocabulary) {
     EXPECT_THROW(read(""), Error);
     EXPECT_THROW(read(":a a owl:Class ; rdfs:subClassOf :b . :b a owl:Class ; rdfs:subClassOf :a ."), Error);  // a cycle
     // Lists and intersections that lead to themselves.

@@ -33,7 +33,7 @@ using Places = std::vector<std::size_t>;
 
 }  // namespace
 
-TEST(TagWords, WithoutAVocabularyGoByTheLetters) {
+TEST(TagWords, WithoutAVocabularyCompareLiterally) {
     const TagWords words;
     EXPECT_TRUE(words.means("Flower 3", "flower"));
     EXPECT_TRUE(words.means("flower", " FLOWER "));
@@ -43,7 +43,7 @@ TEST(TagWords, WithoutAVocabularyGoByTheLetters) {
     EXPECT_NE(words.key("flower 3"), words.key("flower 4"));
 }
 
-TEST(TagWords, WithAVocabularyGoByConcepts) {
+TEST(TagWords, WithAVocabularyCompareConcepts) {
     const Vocabulary vocabulary = parts();
     const TagWords words(&vocabulary);
     EXPECT_TRUE(words.means("manico", "handle"));

@@ -49,17 +49,17 @@ TEST(VocabularyCommand, ShowIsATree) {
     EXPECT_TRUE(holds(under.out, "\n  left eye ")) << under.out;
     EXPECT_FALSE(holds(under.out, "vase"));
     // English, and a word about it, where the language is none of the vocabulary's.
-    const auto odd = run_command("vocabulary show --language xx " + words);
-    EXPECT_EQ(odd.code, 0);
-    EXPECT_TRUE(holds(odd.err, "no label is in the language 'xx'; there are de, en, it")) << odd.err;
-    EXPECT_EQ(odd.out.substr(0, odd.out.find("  id")),
-              run_command("vocabulary show " + words).out.substr(0, odd.out.find("  id")));
-    EXPECT_TRUE(holds(odd.out, "\n    head ")) << odd.out;
+    const auto unknown_language = run_command("vocabulary show --language xx " + words);
+    EXPECT_EQ(unknown_language.code, 0);
+    EXPECT_TRUE(holds(unknown_language.err, "no label is in the language 'xx'; there are de, en, it")) << unknown_language.err;
+    EXPECT_EQ(unknown_language.out.substr(0, unknown_language.out.find("  id")),
+              run_command("vocabulary show " + words).out.substr(0, unknown_language.out.find("  id")));
+    EXPECT_TRUE(holds(unknown_language.out, "\n    head ")) << unknown_language.out;
     EXPECT_EQ(run_command("vocabulary show --language it " + words).err, "");
     EXPECT_TRUE(holds(under.out, " of ")) << "the rules that may apply to eyes, of all: " << under.out;
-    const auto none = run_command("vocabulary show --under ocho " + words);
-    EXPECT_EQ(none.code, 1);
-    EXPECT_TRUE(holds(none.err, "occhio")) << none.err;
+    const auto unknown_concept = run_command("vocabulary show --under ocho " + words);
+    EXPECT_EQ(unknown_concept.code, 1);
+    EXPECT_TRUE(holds(unknown_concept.err, "occhio")) << unknown_concept.err;
 }
 
 TEST(VocabularyCommand, TheAnnotatedObjectsOfTheProjectFit) {

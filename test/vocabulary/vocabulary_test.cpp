@@ -43,16 +43,16 @@ std::vector<std::string> defects(const AnnotationSet& set, const CheckVocabulary
 }
 
 std::string only_defect(const Annotation& annotation, const CheckVocabularyOptions& options = {}) {
-    const auto list = defects(set_of({annotation}), options);
-    EXPECT_EQ(list.size(), 1U);
-    return list.empty() ? "" : list.front();
+    const auto found_defects = defects(set_of({annotation}), options);
+    EXPECT_EQ(found_defects.size(), 1U);
+    return found_defects.empty() ? "" : found_defects.front();
 }
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
-TEST(TextMatch, CaseAndBlanksDoNotCount) {
+TEST(TextMatch, CaseAndBlanksAreIgnored) {
     EXPECT_EQ(folded("  Left \t EYE "), "left eye");
     EXPECT_EQ(folded("\xC3\x84RMEL \xC3\x96hr"), "\xC3\xA4rmel \xC3\xB6hr");
     EXPECT_EQ(folded("\xCE\x9A\xCE\x95\xCE\xA6\xCE\x91\xCE\x9B\xCE\x89"), "\xCE\xBA\xCE\xB5\xCF\x86\xCE\xB1\xCE\xBB\xCE\xAE");
@@ -98,7 +98,7 @@ TEST(Vocabulary, ReadingAndWritingGivesTheSame) {
     EXPECT_EQ(again.concepts[6].others, vocabulary.concepts[6].others);
 }
 
-TEST(Vocabulary, WhatIsRefused) {
+TEST(Vocabulary, InvalidInputIsRefused) {
     expect_error(changed("\"id\": \"nose\"", "\"id\": \"eye\""), "/concepts/4/id", "/concepts/1");
     expect_error(changed("\"broader\": \"head\",\n   \"attributes\": [{\"name\": \"height\", \"min\": 1",
                          "\"broader\": \"haed\",\n   \"attributes\": [{\"name\": \"height\", \"min\": 1"),
@@ -106,25 +106,25 @@ TEST(Vocabulary, WhatIsRefused) {
     expect_error(changed(R"("it": "testa"}, )", R"("it": "testa"}, "broader": "left eye", )"), "/broader", "-> 'head'");
     expect_error(changed(R"("broader": ["eye"])", R"("broader": "left eye")"), "/concepts/2/broader", "'left eye' -> 'left eye'");
     expect_error(changed(R"("broader": ["eye"])", R"("broader": ["eye", "eye"])"), "/concepts/2/broader", "twice");
-    expect_error(changed(R"("min": 10, "max": 400)", R"("min": 400, "max": 10)"), "/concepts/0/attributes/0", "upside down");
+    expect_error(changed(R"("min": 10, "max": 400)", R"("min": 400, "max": 10)"), "/concepts/0/attributes/0", "reversed");
     expect_error(changed(R"({"name": "remark"})", R"({"name": "Height "})"), "/concepts/0/attributes/1", "twice");
     expect_error(changed(R"("curly", "wavy", "straight"])", R"("curly", "wavy", "Wavy"])"), "/values/2", "twice");
     expect_error(changed(R"(["curly", "wavy", "straight"])", R"(["curly"], "min": 1)"), "/concepts/3/attributes/0", "keep one");
     expect_error(changed(R"("id": "nose")", R"("id": "")"), "/concepts/4/id", "minLength");
     expect_error(changed(R"("id": "nose")", R"("id": "nose", "lable": "x")"), "/concepts/4", "unknown member 'lable'");
     expect_error(changed(R"("format": "ostraka-vocabulary")", R"("format": "ostraka-recipe")"), "/format", "ostraka-recipe");
-    expect_error(changed(R"({"en": "head")", R"({"english!": "head")"), "/concepts/0/label", "no language");
-    expect_error(changed(R"("en": ["whiskers")", R"("en-": ["whiskers")"), "/concepts/3/alternatives", "no language");
+    expect_error(changed(R"({"en": "head")", R"({"english!": "head")"), "/concepts/0/label", "not a language tag");
+    expect_error(changed(R"("en": ["whiskers")", R"("en-": ["whiskers")"), "/concepts/3/alternatives", "not a language tag");
     expect_error("[]", "the root", "object");
 }
 
-TEST(Vocabulary, RulesThatMakeNoSense) {
+TEST(Vocabulary, InvalidRulesAreRefused) {
     expect_error(changed(R"("id": "rough", "concept": "beard")", R"("id": "rough", "concept": "baerd")"), "/rules/1/concept",
                  "'beard'");
     expect_error(changed(R"("id": "rough")", R"("id": "smooth")"), "/rules/1/id", "smooth");
     expect_error(changed(R"("value": "curly")", R"("value": "curlie")"), "/rules/1/then/value", "did you mean 'curly'");
     expect_error(changed(R"("attribute": "beard style", "value": "curly")", R"("attribute": "style", "value": "curly")"),
-                 "/rules/1/then/attribute", "may not carry");
+                 "/rules/1/then/attribute", "not an attribute of");
     expect_error(changed(R"("attribute": "beard style", "value": "curly")", R"("attribute": "width", "value": "curly")"),
                  "/rules/1/then/attribute", "quantity");
     expect_error(changed(R"("min": 0.1, "max": 0.5)", R"("min": 0.6, "max": 0.5)"), "/rules/1/if/0", "no number");
@@ -157,8 +157,8 @@ TEST(Vocabulary, TagsByIdAndByLabel) {
     const Vocabulary vocabulary = busts();
     const VocabularySearch search(vocabulary);
     const auto id = [&](const std::string& tag) {
-        const auto found = search.concept_of(tag);
-        return found ? vocabulary.concepts[*found].id : std::string();
+        const auto concept_index = search.concept_of(tag);
+        return concept_index ? vocabulary.concepts[*concept_index].id : std::string();
     };
     EXPECT_EQ(id("eye"), "eye");
     EXPECT_EQ(id("OCCHIO"), "eye");
@@ -191,7 +191,7 @@ TEST(CheckAgainstVocabulary, TagsThatFitAndThatDoNot) {
     EXPECT_TRUE(defects(set_of({point(0, "head"), point(1, "Auge 1"), point(2, "whiskers")})).empty());
     EXPECT_EQ(only_defect(point(0, "bread")),
               "/annotations/0/tag the tag 'bread' is not in the vocabulary: did you mean 'head' or 'beard'?");
-    EXPECT_TRUE(holds(only_defect(point(0, "Nase")), "may mean 'rock', 'n2'"));
+    EXPECT_TRUE(holds(only_defect(point(0, "Nase")), "is ambiguous between 'rock', 'n2'"));
     EXPECT_TRUE(holds(only_defect(point(0, "")), "not in the vocabulary"));
     EXPECT_TRUE(defects(set_of({})).empty());
 }
@@ -202,7 +202,8 @@ TEST(CheckAgainstVocabulary, Words) {
                                        word("material", "Marmor")})}))
                     .empty());
     EXPECT_TRUE(holds(only_defect(point(0, "beard", {word("beard style", "curley")})), "did you mean 'curly'?"));
-    EXPECT_TRUE(holds(only_defect(point(0, "beard", {word("beard style", "plaited")})), "one of 'curly', 'wavy', 'straight'"));
+    EXPECT_TRUE(
+        holds(only_defect(point(0, "beard", {word("beard style", "plaited")})), "its values are 'curly', 'wavy', 'straight'"));
     EXPECT_TRUE(holds(only_defect(point(0, "beard", {word("beard stile", "curly")})), "did you mean 'beard style'?"));
     EXPECT_TRUE(holds(only_defect(point(0, "nose", {word("beard style", "curly")})), "not among those of 'nose'"));
     EXPECT_TRUE(holds(only_defect(point(0, "beard", {word("width", "broad")})), "a quantity in the vocabulary"));
@@ -213,7 +214,7 @@ TEST(CheckAgainstVocabulary, Quantities) {
     EXPECT_TRUE(defects(set_of({point(0, "eye", {quantity("height", 1.5, "cm")})})).empty());
     EXPECT_TRUE(
         holds(only_defect(point(0, "eye", {quantity("height", 2.5, "cm")})), "2.5 cm, outside its range of 1 to 20.5 mm"));
-    EXPECT_TRUE(holds(only_defect(point(0, "eye", {quantity("height", 2.5, "mm^2")})), "cannot be brought"));
+    EXPECT_TRUE(holds(only_defect(point(0, "eye", {quantity("height", 2.5, "mm^2")})), "cannot be converted"));
     EXPECT_TRUE(holds(only_defect(point(0, "beard", {quantity("bumpiness", -1, "1/mm")})), "0 1/mm or more"));
     Attribute list = quantity("height", 5, "mm");
     list.descriptor.values = {5, 6, 77};
@@ -245,7 +246,7 @@ TEST(CheckAgainstVocabulary, AMeasureHasItsRangeToo) {
     }
 }
 
-TEST(Vocabulary, ExamineNamesWhatMayBeMeantOtherwise) {
+TEST(Vocabulary, ExamineReportsAmbiguities) {
     const auto text_of = [](const Vocabulary& vocabulary) {
         std::string text;
         for (const auto& finding : examine(vocabulary)) {
@@ -255,7 +256,7 @@ TEST(Vocabulary, ExamineNamesWhatMayBeMeantOtherwise) {
         return text;
     };
     std::string text = text_of(busts());
-    EXPECT_TRUE(holds(text, "the label 'Nase' means 'rock', 'n2'")) << text;
+    EXPECT_TRUE(holds(text, "the label 'Nase' belongs to 'rock', 'n2'")) << text;
     EXPECT_TRUE(holds(text, "'left eye' has no label in de, it")) << text;
     EXPECT_FALSE(holds(text, "can both hold")) << text;
     Vocabulary clash = busts();

@@ -203,7 +203,7 @@ TEST(Session, RefusesInWordsAndChangesNothing) {
             {R"({"id":1,"do":"file","file":"../ball.ply/../../x"})", "no file of the session"},
             {R"({"id":1,"do":"save","name":"../up"})", "no name for a folder"},
             {R"({"id":1,"do":"save","name":"x"})", "has no annotations"},
-            {R"({"id":1,"do":"select","expression":{"halfspace":7}})", "does not fit"},
+            {R"({"id":1,"do":"select","expression":{"halfspace":7}})", "does not match"},
             {R"({"id":1,"do":"dance"})", "is no change"},
             {R"({"id":1})", "is no change"},
             {R"([1,2])", "no object"},

@@ -43,7 +43,7 @@ const Wrong wrong_studies[]{
      "/steps/a/program/2", "may lead out"},
     {"a name with a zero byte",
      R"("steps": {"a": {"operation": "mesh make", "with": {"object": "vase"}, "keep": {"output": "record.json\u0000.ply"}}})",
-     "/steps/a/keep/output", "no name of a file"},
+     "/steps/a/keep/output", "is not a file name"},
     {"parameters with too many values together",
      R"("parameters": {"a": {"from": 1, "to": 90000}, "b": {"from": 1, "to": 90000}, "c": {"from": 1, "to": 90000}}, "steps": {)" GOOD
      "}",

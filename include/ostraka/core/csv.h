@@ -14,15 +14,15 @@ namespace ostraka {
 std::string guarded(const std::string& text);
 std::string unguarded(const std::string& text);
 
-/// One row of a CSV file (RFC 4180) with a line feed at the end. Cells are guarded unless they are plain numbers.
+/// One row of a CSV file (RFC 4180) with a line feed at the end. Cells are protected unless they are plain numbers.
 std::string csv_row(const std::vector<std::string>& cells);
 
 struct CsvRow {
     std::size_t line = 0;  ///< line on which the row begins, from 1
     std::vector<std::string> cells;
 };
-/// The non-empty rows of a CSV file; cells are not unguarded. A byte order mark is skipped. Throws Error (input), naming file
-/// and line, if a quoted cell is not closed or is followed by text.
+/// The non-empty rows of a CSV file; the protection of cells is not removed. A byte order mark is skipped. Throws Error (input),
+/// naming file and line, if a quoted cell is not closed or is followed by text.
 std::vector<CsvRow> csv_rows(std::string_view text, char separator, const std::string& where);
 /// The most frequent separator of the first line: comma, semicolon or tab.
 char csv_separator(std::string_view text);

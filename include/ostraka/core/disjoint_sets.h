@@ -32,7 +32,7 @@ public:
     }
 
     /// Joins two sets under the root of the first.
-    void unite_into(std::size_t kept, std::size_t gone) { parent_[find(gone)] = find(kept); }
+    void unite_into(std::size_t target, std::size_t source) { parent_[find(source)] = find(target); }
 
 private:
     std::vector<Index> parent_;

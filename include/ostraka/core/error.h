@@ -16,7 +16,7 @@ enum class ErrorKind {
 /// The problem, its location (file, line, element) and the remedy.
 class Error : public std::runtime_error {
 public:
-    Error(ErrorKind kind, const std::string& where, const std::string& what, const std::string& remedy = {});
+    Error(ErrorKind kind, const std::string& where, const std::string& problem, const std::string& remedy = {});
 
     [[nodiscard]] ErrorKind kind() const { return kind_; }
     [[nodiscard]] const std::string& where() const { return where_; }
@@ -31,8 +31,8 @@ private:
 };
 
 /// Shorthands that throw an Error, so that a check stays on one line.
-[[noreturn]] void fail_input(const std::string& where, const std::string& what, const std::string& remedy = {});
-[[noreturn]] void fail_work(const std::string& where, const std::string& what, const std::string& remedy = {});
-[[noreturn]] void fail_usage(const std::string& what, const std::string& remedy = {});
+[[noreturn]] void fail_input(const std::string& where, const std::string& problem, const std::string& remedy = {});
+[[noreturn]] void fail_work(const std::string& where, const std::string& problem, const std::string& remedy = {});
+[[noreturn]] void fail_usage(const std::string& problem, const std::string& remedy = {});
 
 }  // namespace ostraka

@@ -29,9 +29,9 @@ bool file_exists(const Path& file);
 /// Size in bytes; 0 if there is no such file.
 std::size_t size_of_file(const Path& file);
 bool is_folder(const Path& folder);
-/// Names of the files directly in a folder, sorted. `others`: receives the names of entries that are neither files nor folders,
-/// such as dangling links.
-std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* others = nullptr);
+/// Names of the files directly in a folder, sorted. `other_entries`: receives the names of entries that are neither files nor
+/// folders, such as dangling links.
+std::vector<std::string> files_in(const Path& folder, std::vector<std::string>* other_entries = nullptr);
 /// Creates the folder and its missing parents. Throws Error (failure) if it cannot be created or is a file.
 void make_folder(const Path& folder);
 void remove_file(const Path& file);
@@ -99,8 +99,8 @@ private:
     friend class AtomicFile;
     friend void replace_outputs(const Path&, const std::string&);
     friend void make_folder(const Path&);
-    std::vector<std::pair<Path, Path>> waiting_;          ///< temporary name, name
-    std::vector<Path> made_;                              ///< created folders, parents first
+    std::vector<std::pair<Path, Path>> pending_;          ///< temporary name, name
+    std::vector<Path> created_;                           ///< created folders, parents first
     std::vector<std::pair<Path, std::string>> replaced_;  ///< folder, owner
     OutputTransaction* outer_;
 };

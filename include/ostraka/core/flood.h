@@ -6,25 +6,25 @@
 namespace ostraka {
 
 /// Faces that can be reached from `start` across edges, in breadth-first order, `start` first. Only faces not yet marked in
-/// `seen` are visited; they are marked. An edge is crossed if `crosses(halfedge)` is true for the halfedge in the face already
+/// `visited` are visited; they are marked. An edge is crossed if `crosses(halfedge)` is true for the halfedge in the face already
 /// reached; `crosses` is called once for each such halfedge, border edges included.
 template <class Crosses>
-std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& seen, Crosses&& crosses) {
+std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& visited, Crosses&& crosses) {
     std::vector<Face> reached{start};
-    seen[start] = true;
+    visited[start] = true;
     for (std::size_t i = 0; i < reached.size(); ++i)
         for (const Halfedge h : mesh.halfedges_around_face(mesh.halfedge(reached[i]))) {
             if (!crosses(h)) continue;
             const Face next = mesh.face(mesh.opposite(h));
-            if (next == Mesh::null_face() || seen[next]) continue;
-            seen[next] = true;
+            if (next == Mesh::null_face() || visited[next]) continue;
+            visited[next] = true;
             reached.push_back(next);
         }
     return reached;
 }
-/// Across all edges: the connected component without the faces already seen.
-inline std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& seen) {
-    return flood_faces(mesh, start, seen, [](Halfedge) { return true; });
+/// Across all edges: the connected component without the faces already visited.
+inline std::vector<Face> flood_faces(const Mesh& mesh, Face start, std::vector<bool>& visited) {
+    return flood_faces(mesh, start, visited, [](Halfedge) { return true; });
 }
 
 }  // namespace ostraka

@@ -56,9 +56,9 @@ void validate(const JsonValue& value, const std::string& schema, const std::stri
 /// name.
 Json built_in_document(const std::string& name);
 
-/// Length in bytes of the UTF-8 character at byte `at`, which must be below the length of the text; 0 if no valid character
+/// Length in bytes of the UTF-8 character at byte `position`, which must be below the length of the text; 0 if no valid character
 /// begins there.
-std::size_t utf8_length(std::string_view text, std::size_t at);
+std::size_t utf8_length(std::string_view text, std::size_t position);
 
 JsonValue json_string(std::string_view text, JsonAllocator& allocator);
 void add_member(JsonValue& object, std::string_view name, JsonValue value, JsonAllocator& allocator);
@@ -67,17 +67,17 @@ void add_member(JsonValue& object, std::string_view name, std::string_view text,
 /// The member, or nullptr if there is none.
 const JsonValue* find_member(const JsonValue& object, std::string_view name);
 
-/// The value of a member, with a default if there is no such member: nullopt, `otherwise`, an empty text (also if the member is
+/// The value of a member, with a default if there is no such member: nullopt, `fallback`, an empty text (also if the member is
 /// no string), false, an empty list (also if the member is no array). A member that is read as a number must be one.
 std::optional<double> number_in(const JsonValue& object, std::string_view name);
-double number_or(const JsonValue& object, std::string_view name, double otherwise);
+double number_or(const JsonValue& object, std::string_view name, double fallback);
 std::string text_in(const JsonValue& object, std::string_view name);
 bool flag_in(const JsonValue& object, std::string_view name);
 JsonValue::ConstArray list_in(const JsonValue& object, std::string_view name);
 
 /// The text of a string value; the numbers of an array of three.
 std::string text_of(const JsonValue& value);
-std::array<double, 3> triple_of(const JsonValue& list);
+std::array<double, 3> triple_of(const JsonValue& values);
 
 /// Throws Error (input) with `remedy` if the document states a format other than `format`. A document without a format is
 /// accepted.

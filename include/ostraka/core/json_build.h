@@ -21,18 +21,18 @@ JsonValue json_value(T&& value, JsonAllocator& allocator) {
     else if constexpr (std::convertible_to<Type, std::string_view>) return json_string(value, allocator);
     else if constexpr (requires { value.has_value(); }) return value ? json_value(*value, allocator) : JsonValue();
     else {
-        JsonValue list(rapidjson::kArrayType);
-        if constexpr (requires { value.size(); }) list.Reserve(static_cast<rapidjson::SizeType>(value.size()), allocator);
-        for (const auto& one : value) list.PushBack(json_value(one, allocator), allocator);
-        return list;
+        JsonValue array(rapidjson::kArrayType);
+        if constexpr (requires { value.size(); }) array.Reserve(static_cast<rapidjson::SizeType>(value.size()), allocator);
+        for (const auto& element : value) array.PushBack(json_value(element, allocator), allocator);
+        return array;
     }
 }
-/// JSON array of `of(element)` for each element.
-template <class Elements, class Of>
-JsonValue json_list(const Elements& elements, JsonAllocator& allocator, Of&& of) {
-    JsonValue list(rapidjson::kArrayType);
-    for (const auto& element : elements) list.PushBack(json_value(of(element), allocator), allocator);
-    return list;
+/// JSON array of `transform(element)` for each element.
+template <class Elements, class Transform>
+JsonValue json_list(const Elements& elements, JsonAllocator& allocator, Transform&& transform) {
+    JsonValue array(rapidjson::kArrayType);
+    for (const auto& element : elements) array.PushBack(json_value(transform(element), allocator), allocator);
+    return array;
 }
 /// [value]
 JsonValue json_list_of(JsonValue value, JsonAllocator& allocator);
@@ -47,12 +47,12 @@ void add_members(JsonValue& object, JsonAllocator& allocator, std::string_view n
 /// As add_members, but skips false and empty texts, lists and optionals.
 template <class Value, class... Rest>
 void add_given(JsonValue& object, JsonAllocator& allocator, std::string_view name, Value&& value, Rest&&... rest) {
-    bool given = false;
+    bool nonempty = false;
     if constexpr (std::derived_from<std::remove_cvref_t<Value>, JsonValue>)
-        given = value.IsArray() ? !value.Empty() : value.MemberCount() > 0;
-    else if constexpr (requires { value.empty(); }) given = !value.empty();
-    else given = static_cast<bool>(value);
-    if (given) add_members(object, allocator, name, std::forward<Value>(value));
+        nonempty = value.IsArray() ? !value.Empty() : value.MemberCount() > 0;
+    else if constexpr (requires { value.empty(); }) nonempty = !value.empty();
+    else nonempty = static_cast<bool>(value);
+    if (nonempty) add_members(object, allocator, name, std::forward<Value>(value));
     if constexpr (sizeof...(rest) > 0) add_given(object, allocator, std::forward<Rest>(rest)...);
 }
 /// Copies the listed members that the object `from` has.

@@ -12,7 +12,7 @@ double resident_memory();
 double memory_limit();
 
 /// To be called before large work. Throws Error (failure) if `bytes` in addition to the memory now in use exceed the limit. For
-/// the message: `what` needs the memory, `remedy` needs less.
-void require_memory(double bytes, const std::string& what, const std::string& remedy);
+/// the message: `purpose` needs the memory, `remedy` needs less.
+void require_memory(double bytes, const std::string& purpose, const std::string& remedy);
 
 }  // namespace ostraka

@@ -30,8 +30,8 @@ struct Range {
 };
 struct Choices {
     std::vector<std::string> names;
-    Choices(std::initializer_list<const char*> list) : names(list.begin(), list.end()) {}
-    explicit Choices(std::vector<std::string> list) : names(std::move(list)) {}
+    Choices(std::initializer_list<const char*> choices) : names(choices.begin(), choices.end()) {}
+    explicit Choices(std::vector<std::string> choices) : names(std::move(choices)) {}
 };
 /// Words that are allowed besides other values; help and completion offer them.
 struct Words {
@@ -71,8 +71,9 @@ public:
     OptionValue(std::optional<std::string>& value) : place(&value) {}
     template <class Enum>
     requires std::is_enum_v<Enum> OptionValue(Enum& value)
-        : place(EnumValue{&value, [](const void* at) { return static_cast<std::size_t>(*static_cast<const Enum*>(at)); },
-                          [](void* at, std::size_t index) { *static_cast<Enum*>(at) = static_cast<Enum>(index); }}) {}
+        : place(EnumValue{&value,
+                          [](const void* address) { return static_cast<std::size_t>(*static_cast<const Enum*>(address)); },
+                          [](void* address, std::size_t index) { *static_cast<Enum*>(address) = static_cast<Enum>(index); }}) {}
     // NOLINTEND(google-explicit-constructor)
     Place place;
 };
@@ -157,9 +158,9 @@ private:
 
 template <class Options>
 OptionList options_of(const Options& options) {
-    OptionList list;
-    const_cast<Options&>(options).describe(list);
-    return list;
+    OptionList result;
+    const_cast<Options&>(options).describe(result);
+    return result;
 }
 
 /// Throws Error (usage) with the option, its value and the allowed values.

@@ -16,9 +16,9 @@ void run_apart(std::function<void()> work);
 /// The same for work on `data`, which is moved to the work and returned.
 template <class Data, class Work>
 Data run_apart_on(Data data, Work work) {
-    const auto held = std::make_shared<std::pair<Data, Work>>(std::move(data), std::move(work));
-    run_apart([held] { held->second(held->first); });
-    return std::move(held->first);
+    const auto state = std::make_shared<std::pair<Data, Work>>(std::move(data), std::move(work));
+    run_apart([state] { state->second(state->first); });
+    return std::move(state->first);
 }
 
 }  // namespace ostraka

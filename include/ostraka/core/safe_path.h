@@ -8,18 +8,18 @@
 
 namespace ostraka {
 
-/// Throws Error (input) for a name with a zero byte, which no file can have. For the message: `where` is the file, `at` the
+/// Throws Error (input) for a name with a zero byte, which no file can have. For the message: `where` is the file, `location` the
 /// position in it.
-void require_file_name(const std::string& name, const std::string& where, const std::string& at);
+void require_file_name(const std::string& name, const std::string& where, const std::string& location);
 
 /// Throws Error (input) unless `name` is a single path component: not empty, not "." or "..", without separators and control
 /// characters.
-void require_plain_name(const std::string& name, const std::string& where, const std::string& at);
+void require_plain_name(const std::string& name, const std::string& where, const std::string& location);
 
 /// The path of `name`, which was read from a file in `folder`. Throws Error (input) with `remedy` if the name is absolute or
-/// leads out of the folder, also through links. `whose` describes the folder in the message.
-Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& at,
-                 const std::string& whose, const std::string& remedy);
+/// leads out of the folder, also through links. `folder_description` describes the folder in the message.
+Path file_inside(const std::string& name, const Path& folder, const std::string& where, const std::string& location,
+                 const std::string& folder_description, const std::string& remedy);
 
 /// The absolute path with all links resolved, including dangling links (writing to a dangling link creates its target). Empty
 /// if links form a cycle.

@@ -14,7 +14,7 @@ struct Character {
     char32_t code = 0;
     std::size_t length = 1;
 };
-Character character_at(std::string_view text, std::size_t at);
+Character character_at(std::string_view text, std::size_t position);
 
 /// The characters of a text; a byte at which no valid UTF-8 character begins becomes its value plus `not_utf8`.
 inline constexpr char32_t not_utf8 = 0x110000;
@@ -24,8 +24,8 @@ std::u32string characters(std::string_view text);
 /// bidirectional formatting characters (U+202A to U+202E, U+2066 to U+2069).
 bool is_control(char32_t code);
 
-/// The text with each control character replaced by `instead`.
-std::string without_controls(std::string_view text, std::string_view instead);
+/// The text with each control character replaced by `replacement`.
+std::string without_controls(std::string_view text, std::string_view replacement);
 
 /// Percent-encoding: every byte except letters, digits and -._~ as %XX (RFC 3986).
 std::string percent_encoded(std::string_view text);
@@ -42,8 +42,8 @@ std::string_view trimmed(std::string_view text);
 /// The text with ASCII capital letters in lower case.
 std::string lower_case(std::string_view text);
 
-/// The line that begins at `at`, without its line feed; moves `at` to the next line.
-std::string_view line_at(std::string_view text, std::size_t& at);
+/// The line that begins at `position`, without its line feed; moves `position` to the next line.
+std::string_view line_at(std::string_view text, std::size_t& position);
 /// The words between blanks.
 std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks = " \t\r\n");
 

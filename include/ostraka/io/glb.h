@@ -82,7 +82,7 @@ public:
 
     [[nodiscard]] const Json& document() const { return document_; }
     [[nodiscard]] const std::string& where() const { return where_; }
-    [[noreturn]] void fail(const std::string& pointer, const std::string& what) const;
+    [[noreturn]] void fail(const std::string& pointer, const std::string& problem) const;
 
     /// A non-negative integer member of an object, or `fallback` if it is missing.
     [[nodiscard]] std::size_t number(const JsonValue& object, const char* name, const std::string& pointer,

@@ -77,7 +77,7 @@ struct Template {
 Template load_template(TemplateFile file, const TemplateOptions& options = {});
 
 /// Requires a template without defects, and with a mesh: throws Error (input) that names the file and the part.
-void check_usable(const Template& known, const std::string& file);
+void check_usable(const Template& loaded, const std::string& file);
 
 /// Name of a part in a template file in `folder`: relative to the folder, with '/'.
 std::string part_name(const Path& folder, const Path& part);

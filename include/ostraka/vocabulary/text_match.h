@@ -21,7 +21,7 @@ std::vector<std::string> near_misses(const std::string& text, const std::vector<
 std::string did_you_mean(const std::vector<std::string>& suggestions);
 
 /// The list as text: "'a', 'b' or 'c'".
-std::string alternatives(const std::vector<std::string>& list);
+std::string alternatives(const std::vector<std::string>& names);
 
 /// A folded text without a blank and number at its end.
 std::string without_number(const std::string& folded_text);
