@@ -88,7 +88,7 @@ TEST(ConvertCommand, PolygonsAreHandedBack) {
         const Path wrong = scratch.file("wrong.obj", other);
         const auto result = run_command(words(bent, scratch / "c.obj", "--polygons-of " + wrong.string()));
         EXPECT_EQ(result.code, 1) << result.err;
-        EXPECT_NE(result.err.find("read from at first"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("originally read from"), std::string::npos) << result.err;
         EXPECT_FALSE(std::filesystem::exists(scratch / "c.obj"));
     }
 }
