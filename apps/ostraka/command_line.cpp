@@ -190,7 +190,8 @@ std::string type_of(const Option& option) {
 }
 
 void add_option(CLI::App& command, Option& option) {
-    const std::string flag = "--" + option.name, help = option.help + (option.unit.empty() ? "" : " (" + option.unit + ")");
+    const std::string flag = "--" + option.name,
+                      help = option.help + (option.unit.empty() ? "" : fmt::format(" ({})", option.unit));
     CLI::Option* cli_option = nullptr;
     if (option.type() == OptionType::boolean) {
         const bool is_on = option.initial == "true";

@@ -10,6 +10,8 @@
 #include "ostraka/transfer/lay_curves.h"
 #include "ostraka/vocabulary/vocabulary.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace ostraka {
@@ -63,7 +65,8 @@ void report_annotations(Context& context, Report& report, const Mesh& mesh, cons
         if (annotation.type != AnnotationType::point) row.shown("perimeter / length", number(summary.length));
         std::vector<std::string> attributes;
         for (const Attribute& attribute : annotation.attributes) attributes.push_back(attribute_text(attribute));
-        row("attributes", attributes, joined(attributes, "; ") + (annotation.note.empty() ? "" : " [" + annotation.note + "]"));
+        row("attributes", attributes,
+            joined(attributes, "; ") + (annotation.note.empty() ? "" : fmt::format(" [{}]", annotation.note)));
         if (!annotation.note.empty()) row("note", annotation.note);
     }
 }

@@ -156,7 +156,9 @@ private:
         leave_out_outliers(report);
     }
 
-    static std::string remedy_of(const Error& error) { return error.remedy().empty() ? "" : " (" + error.remedy() + ")"; }
+    static std::string remedy_of(const Error& error) {
+        return error.remedy().empty() ? "" : fmt::format(" ({})", error.remedy());
+    }
 
     /// Leaves out copies and fragments of a very different size, and reports them.
     void leave_out_outliers(Report& report) {

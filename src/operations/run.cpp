@@ -298,8 +298,8 @@ struct Replay final : Operation {
     static void compare_inputs(const StudyRecord& before, const StudyRecord& now, const Differs& report_difference) {
         const std::map<std::string, std::string> current(now.depends.begin(), now.depends.end());
         for (const auto& [name, old_value] : before.depends)
-            if (const auto found = current.find(name); found == current.end() || found->second != old_value)
-                report_difference(name, old_value, found == current.end() ? "" : found->second,
+            if (const auto recorded = current.find(name); recorded == current.end() || recorded->second != old_value)
+                report_difference(name, old_value, recorded == current.end() ? "" : recorded->second,
                                   name == "toolkit" ? "another version" : "another input or option");
     }
 

@@ -228,7 +228,7 @@ struct StudyMoulds final : StudyOperation {
         const auto& names = study.matrices.names;
         const std::vector<int> order = leaf_order(study.groups.tree);
         HeatMap map;
-        map.title = "Distances by " + similarity + ", heads in the order of the tree";
+        map.title = fmt::format("Distances by {}, heads in the order of the tree", similarity);
         map.label = "distance";
         map.minimum = 0, map.maximum = 1;
         const auto n = static_cast<Eigen::Index>(order.size());

@@ -29,7 +29,7 @@ void Scene::add(const ShownShape& shape) {
     if (shape.graph != nullptr && shape.set != nullptr) object.checks = check_relations(*shape.mesh, *shape.set, *shape.graph);
     object.cage = shape.cage;
     object.maps = shape.maps;
-    object.exact = {shape.key, !known_.contains(shape.key)};
+    object.exact = {shape.key, !known_keys_.contains(shape.key)};
     const AnnotationSet no_annotations;
     std::optional<PageSlices> slices;
     for (const Path& file : shape.files) {

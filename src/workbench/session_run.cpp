@@ -268,7 +268,7 @@ void Session::take_folder(const std::string& folder, SessionState& state) const 
     for (const std::string& name : files_in(folder_ / folder)) {
         if (extension(name) != ".ply" || ++count > maximum) continue;
         SessionObject object{free_name(state, stem_of(name)), {{"mesh", folder + "/" + name}}};
-        const std::string annotations = folder + "/" + stem_of(name) + ".ant.json";
+        const std::string annotations = fmt::format("{}/{}.ant.json", folder, stem_of(name));
         if (file_exists(folder_ / annotations)) object.parts["annotations"] = annotations;
         state.objects.push_back(std::move(object));
         state.active = state.objects.size() - 1;
